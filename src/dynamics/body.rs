@@ -1,0 +1,160 @@
+//! A rigid body as the integrator sees it: free flight, impulses, inverse inertia.
+
+use bevy::math::{DMat3, DQuat, DVec3};
+
+/// How a body can turn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Spin {
+    /// Rotation plays no part: fully locked, or every element holds the body at its centre.
+    Still,
+    /// Free rotation, carried as angular momentum, which free flight keeps exactly.
+    Free {
+        /// kg m²/s, world frame.
+        momentum: DVec3,
+    },
+    /// Some rotation axes locked: carried as angular velocity (rad/s, world frame), as the engine does.
+    Locked { velocity: DVec3 },
+}
+
+/// One dynamic body: state, inertia, and what acts on it besides elements. World frame, SI.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Body {
+    /// Centre of mass.
+    pub position: DVec3,
+    /// Of the centre of mass.
+    pub velocity: DVec3,
+    /// From the body's frame to the world.
+    pub rotation: DQuat,
+    pub spin: Spin,
+    /// Per world axis; zero on a locked axis.
+    pub inverse_mass: DVec3,
+    /// Principal moments of inertia, and the frame they belong to within the body.
+    pub inertia: DVec3,
+    pub principal: DQuat,
+    /// World axes about which the body cannot turn.
+    pub rotation_locked: [bool; 3],
+    /// Acceleration by everything but elements: gravity and the user's force.
+    pub acceleration: DVec3,
+    /// The user's torque.
+    pub torque: DVec3,
+}
+
+/// exp of a rotation vector.
+pub(crate) fn turn(by: DVec3) -> DQuat {
+    DQuat::from_scaled_axis(by)
+}
+
+impl Body {
+    /// Inverse inertia in the world frame at the present rotation; zero where locked.
+    pub(crate) fn inverse_inertia(&self) -> DMat3 {
+        if self.spin == Spin::Still {
+            return DMat3::ZERO;
+        }
+        let inverse = DVec3::select(
+            self.inertia.cmpgt(DVec3::ZERO),
+            self.inertia.recip(),
+            DVec3::ZERO,
+        );
+        let mut world = if inverse.x == inverse.y && inverse.y == inverse.z {
+            DMat3::from_diagonal(inverse)
+        } else {
+            let frame = DMat3::from_quat(self.rotation * self.principal);
+            frame * DMat3::from_diagonal(inverse) * frame.transpose()
+        };
+        for (axis, _) in self.rotation_locked.iter().enumerate().filter(|(_, l)| **l) {
+            for other in 0..3 {
+                world.col_mut(axis)[other] = 0.0;
+                world.col_mut(other)[axis] = 0.0;
+            }
+        }
+        world
+    }
+
+    pub(crate) fn angular_velocity(&self) -> DVec3 {
+        match self.spin {
+            Spin::Still => DVec3::ZERO,
+            Spin::Free { momentum } => self.inverse_inertia() * momentum,
+            Spin::Locked { velocity } => velocity,
+        }
+    }
+
+    /// The spin that has this angular velocity at the present rotation.
+    pub(crate) fn set_angular_velocity(&mut self, velocity: DVec3) {
+        self.spin = match self.spin {
+            Spin::Still => Spin::Still,
+            Spin::Locked { .. } => Spin::Locked { velocity },
+            Spin::Free { .. } => {
+                let frame = self.rotation * self.principal;
+                Spin::Free {
+                    momentum: frame * (self.inertia * (frame.inverse() * velocity)),
+                }
+            }
+        };
+    }
+
+    /// Angular acceleration by the user's torque, and the gyroscopic one of free flight.
+    pub(crate) fn angular_acceleration(&self, inverse_inertia: DMat3) -> (DVec3, DVec3) {
+        let pushed = inverse_inertia * self.torque;
+        match self.spin {
+            Spin::Free { momentum } => (
+                pushed,
+                inverse_inertia * momentum.cross(inverse_inertia * momentum),
+            ),
+            Spin::Still | Spin::Locked { .. } => (pushed, DVec3::ZERO),
+        }
+    }
+
+    /// Free flight: straight, and turning with constant angular momentum (implicit midpoint, so the
+    /// drift is its own mirror image in time).
+    pub(crate) fn drift(&mut self, time: f64) {
+        self.position += time * self.velocity;
+        match self.spin {
+            Spin::Still => {}
+            Spin::Locked { velocity } => {
+                self.rotation = (turn(time * velocity) * self.rotation).normalize();
+            }
+            Spin::Free { momentum } => {
+                if momentum == DVec3::ZERO {
+                    return;
+                }
+                let start = self.rotation;
+                let mut velocity = self.inverse_inertia() * momentum;
+                if self.inertia.max_element() != self.inertia.min_element() {
+                    // Each pass shrinks the error by the angle turned times the anisotropy.
+                    for _ in 0..4 {
+                        self.rotation = turn(0.5 * time * velocity) * start;
+                        velocity = self.inverse_inertia() * momentum;
+                    }
+                }
+                self.rotation = (turn(time * velocity) * start).normalize();
+            }
+        }
+    }
+
+    /// An impulse (N s) at `arm` from the centre of mass, with the inverse inertia at hand.
+    pub(crate) fn apply(&mut self, impulse: DVec3, arm: DVec3, inverse_inertia: DMat3) {
+        self.velocity += self.inverse_mass * impulse;
+        self.apply_angular(arm.cross(impulse), inverse_inertia);
+    }
+
+    pub(crate) fn apply_angular(&mut self, impulse: DVec3, inverse_inertia: DMat3) {
+        match &mut self.spin {
+            Spin::Still => {}
+            Spin::Free { momentum } => *momentum += impulse,
+            Spin::Locked { velocity } => *velocity += inverse_inertia * impulse,
+        }
+    }
+
+    /// Gravity and the user's force and torque over a time.
+    pub(crate) fn apply_external(&mut self, time: f64, inverse_inertia: DMat3) {
+        self.velocity += time * self.acceleration;
+        self.apply_angular(time * self.torque, inverse_inertia);
+    }
+
+    pub(crate) fn is_finite(&self) -> bool {
+        self.position.is_finite()
+            && self.velocity.is_finite()
+            && self.rotation.is_finite()
+            && self.angular_velocity().is_finite()
+    }
+}

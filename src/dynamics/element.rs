@@ -1,0 +1,225 @@
+//! An element between two ends, and the line it measures between them.
+
+use super::body::{Body, Spin};
+use bevy::math::{DMat3, DVec3};
+
+/// Where an element is held.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum End {
+    /// On a dynamic body, `arm` from its centre of mass in the body's frame.
+    Body { index: usize, arm: DVec3 },
+    /// A point that moves as something else decides: a fixed or kinematic body, or a plain entity.
+    Path { position: DVec3, velocity: DVec3 },
+}
+
+/// What the integrator needs of one spring, damper or pair of both.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Element {
+    pub ends: [End; 2],
+    /// N/m.
+    pub stiffness: f64,
+    /// N s/m.
+    pub damping: f64,
+    /// m.
+    pub rest_length: f64,
+    /// The last direction from end A to end B that was well defined.
+    pub direction: Option<DVec3>,
+}
+
+/// One end of the line, resolved at an instant.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Hold {
+    /// Index of the dynamic body, if there is one.
+    pub body: Option<usize>,
+    /// From the centre of mass to the held point, world frame.
+    pub arm: DVec3,
+    pub inverse_mass: DVec3,
+    pub inverse_inertia: DMat3,
+    position: DVec3,
+}
+
+/// Velocity-dependent quantities of the line.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Motion {
+    /// Rate of the length.
+    pub axial: f64,
+    /// Square of the speed across the line.
+    pub lateral_square: f64,
+    /// Velocity across the line.
+    pub lateral: DVec3,
+    /// Axial acceleration of the separation by outside forces,
+    pub pushed: f64,
+    /// by the arms' turning in free flight,
+    pub arms: f64,
+    /// and by the turning of the line itself.
+    pub turning: f64,
+}
+
+impl Motion {
+    /// Axial acceleration of the separation by everything but elements.
+    pub(crate) fn outside(&self) -> f64 {
+        self.pushed + self.arms + self.turning
+    }
+}
+
+/// The line from end A to end B at an instant.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Line {
+    pub holds: [Hold; 2],
+    pub length: f64,
+    pub direction: DVec3,
+    /// Inverse of the effective mass along the line, 1/kg.
+    pub inverse_mass: f64,
+    /// Zero rest length: the spring is an isotropic oscillator and has no special axis.
+    pub isotropic: bool,
+}
+
+impl End {
+    fn hold(&self, bodies: &[Body]) -> Hold {
+        match *self {
+            End::Path { position, .. } => Hold {
+                body: None,
+                arm: DVec3::ZERO,
+                inverse_mass: DVec3::ZERO,
+                inverse_inertia: DMat3::ZERO,
+                position,
+            },
+            End::Body { index, arm } => {
+                let body = &bodies[index];
+                let arm = body.rotation * arm;
+                Hold {
+                    body: Some(index),
+                    arm,
+                    inverse_mass: body.inverse_mass,
+                    inverse_inertia: body.inverse_inertia(),
+                    position: body.position + arm,
+                }
+            }
+        }
+    }
+
+    /// Moves a prescribed point along its path.
+    pub(crate) fn drift(&mut self, time: f64) {
+        if let End::Path { position, velocity } = self {
+            *position += time * *velocity;
+        }
+    }
+
+    /// Velocity of the held point, its acceleration by outside forces, and that of free flight.
+    fn motion(&self, hold: &Hold, bodies: &[Body]) -> (DVec3, DVec3, DVec3) {
+        match (*self, hold.body) {
+            (End::Body { .. }, Some(index)) => {
+                let body = &bodies[index];
+                if body.spin == Spin::Still {
+                    return (body.velocity, body.acceleration, DVec3::ZERO);
+                }
+                let turning = body.angular_velocity();
+                let swing = turning.cross(hold.arm);
+                let (pushed, free) = body.angular_acceleration(hold.inverse_inertia);
+                (
+                    body.velocity + swing,
+                    body.acceleration + pushed.cross(hold.arm),
+                    free.cross(hold.arm) + turning.cross(swing),
+                )
+            }
+            (End::Path { velocity, .. }, _) => (velocity, DVec3::ZERO, DVec3::ZERO),
+            (End::Body { .. }, None) => (DVec3::ZERO, DVec3::ZERO, DVec3::ZERO),
+        }
+    }
+}
+
+impl Hold {
+    /// Inverse effective mass of this end along a direction.
+    pub(crate) fn inverse_mass_along(&self, direction: DVec3) -> f64 {
+        let lever = self.arm.cross(direction);
+        (self.inverse_mass * direction).dot(direction) + lever.dot(self.inverse_inertia * lever)
+    }
+}
+
+impl Element {
+    /// The line at this instant, or `None` where the ends coincide and nothing says which way to push.
+    pub(crate) fn line(&self, bodies: &[Body]) -> Option<Line> {
+        let holds = [self.ends[0].hold(bodies), self.ends[1].hold(bodies)];
+        let d = holds[1].position - holds[0].position;
+        let length = d.length();
+        let isotropic = self.rest_length == 0.0;
+        // Below this the direction is rounding noise of the engine's f32 positions.
+        let scale = holds[0].position.abs().max_element().max(self.rest_length);
+        let direction = if length > 1e-9 * scale.max(1e-3) {
+            d / length
+        } else if let Some(last) = self.direction {
+            last
+        } else if isotropic {
+            // Whatever acts on the ends decides; with nothing acting any axis will do.
+            let [a, b] = [0, 1].map(|i| self.ends[i].motion(&holds[i], bodies));
+            let hint = (b.0 - a.0) + (b.1 - a.1);
+            hint.try_normalize().unwrap_or(DVec3::Y)
+        } else {
+            return None;
+        };
+        let inverse_mass = holds.iter().map(|h| h.inverse_mass_along(direction)).sum();
+        Some(Line {
+            holds,
+            length: d.dot(direction),
+            direction,
+            inverse_mass,
+            isotropic,
+        })
+    }
+}
+
+impl Line {
+    /// What the line does at the bodies' present velocities; `step` resolves the turning.
+    pub(crate) fn motion(&self, element: &Element, bodies: &[Body], step: f64) -> Motion {
+        let [a, b] = [0, 1].map(|i| element.ends[i].motion(&self.holds[i], bodies));
+        let velocity = b.0 - a.0;
+        let axial = velocity.dot(self.direction);
+        let lateral = velocity - axial * self.direction;
+        let lateral_square = lateral.length_squared();
+        let arms = (b.2 - a.2).dot(self.direction);
+        let turning = if self.isotropic {
+            0.0
+        } else {
+            // |lateral|²/L, bounded where the line turns further than the step can follow.
+            let half = 0.5 * step;
+            let reach = (self.length * self.length + half * half * lateral_square).sqrt();
+            if lateral_square == 0.0 {
+                0.0
+            } else {
+                2.0 * lateral_square / (self.length.abs() + reach)
+            }
+        };
+        Motion {
+            axial,
+            lateral_square,
+            lateral,
+            pushed: (b.1 - a.1).dot(self.direction),
+            arms,
+            turning,
+        }
+    }
+
+    /// Length change over the step that led here, divided by the step: with it damping is second order.
+    pub(crate) fn backward_rate(&self, motion: &Motion, step: f64) -> f64 {
+        let along = self.length - step * motion.axial;
+        if self.isotropic || along <= 0.0 {
+            // Through the centre: the line flips, its rate does not.
+            return motion.axial - 0.5 * step * motion.arms;
+        }
+        let before = (along * along + step * step * motion.lateral_square).sqrt();
+        (self.length - before) / step - 0.5 * step * motion.arms
+    }
+
+    /// An impulse pair along the line, positive pushing the ends apart.
+    pub(crate) fn push(&self, bodies: &mut [Body], impulse: f64) {
+        for (hold, sign) in self.holds.iter().zip([-1.0, 1.0]) {
+            if let Some(index) = hold.body {
+                bodies[index].apply(
+                    sign * impulse * self.direction,
+                    hold.arm,
+                    hold.inverse_inertia,
+                );
+            }
+        }
+    }
+}

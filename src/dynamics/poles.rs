@@ -1,0 +1,220 @@
+//! Poles placed exactly: the numbers that make one drift–kick–drift step of a damped oscillator
+//! decay and turn at precisely the true rate, whatever the step.
+
+/// Phase per step (radians) up to which the frequency is exact; beyond it the sampled motion cannot
+/// be told from a slower one, so the phase saturates below π and only energy stays exact.
+const RESOLVED_PHASE: f64 = 2.5;
+
+/// Decay exponent per step beyond which the velocity map is frozen: by then the motion is over
+/// within the step, and the exact map would only be badly conditioned.
+const RESOLVED_DECAY: f64 = 3.0;
+
+/// Coefficients of one step h for y″ = −ω²y − 2γy′ + a, with z = (ωh)² and g = γh.
+///
+/// With r = ω²y − a, the kick at the half drift is `Δv = −h·restoring·r − loss·v`; the step then has
+/// exactly the trace and determinant of the true flow. It differs from the true flow by a change of
+/// velocity, `v_true = speed·v + skew·h·r`, which [`super::kick`] undoes, so that one step is the true
+/// flow itself for any initial state.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Poles {
+    /// (1 − p₁)(1 − p₂)/z, where p are the poles of the flow.
+    pub restoring: f64,
+    /// 1 − p₁p₂ = 1 − e^(−2g).
+    pub loss: f64,
+    /// Ratio of true to stepped velocity.
+    pub speed: f64,
+    /// What the true velocity adds for each h·r.
+    pub skew: f64,
+}
+
+/// (1 − e^(−x))/x.
+fn decay_ratio(x: f64) -> f64 {
+    if x < 1e-12 { 1.0 } else { -(-x).exp_m1() / x }
+}
+
+/// The damped phase σ, and the phase used for it.
+fn saturated(phase: f64) -> f64 {
+    use std::f64::consts::PI;
+    if phase <= RESOLVED_PHASE {
+        phase
+    } else {
+        PI - (PI - RESOLVED_PHASE) * RESOLVED_PHASE / phase
+    }
+}
+
+impl Poles {
+    /// `z` = k h²/m, `g` = c h/(2 m); both finite and not negative.
+    pub(crate) fn new(z: f64, g: f64) -> Self {
+        let discriminant = z - g * g;
+        let (restoring, slow) = if discriminant > 0.0 {
+            let phase = saturated(discriminant.sqrt());
+            let half = (phase / 2.0).sin();
+            let settle = -(-g).exp_m1();
+            ((settle * settle + 4.0 * (-g).exp() * half * half) / z, g)
+        } else {
+            let fast = g + (-discriminant).sqrt();
+            let slow = if fast > 0.0 { z / fast } else { 0.0 };
+            (decay_ratio(fast) * decay_ratio(slow), slow)
+        };
+        let shrink = if slow > RESOLVED_DECAY {
+            RESOLVED_DECAY / slow
+        } else {
+            1.0
+        };
+        let (speed, skew) = velocity_map(z * shrink * shrink, g * shrink);
+        Self {
+            restoring,
+            loss: -(-2.0 * g).exp_m1(),
+            speed,
+            // `velocity_map` speaks of a step shrunk by that factor.
+            skew: skew * shrink,
+        }
+    }
+}
+
+/// `speed` and `skew`: E P = P M solved for P = [[1, 0], [p, speed]] with p = skew·z/h.
+fn velocity_map(z: f64, g: f64) -> (f64, f64) {
+    let square = g * g - z;
+    // e^(−g)·φ and e^(−g)·C, where φ = sin σ/σ (or sinh r/r) and C = cos σ (or cosh r).
+    let (sine, cosine) = if square < 0.0 {
+        let phase = (-square).sqrt();
+        let used = saturated(phase);
+        let sine = if phase < 1e-4 {
+            1.0 - phase * phase / 6.0
+        } else {
+            used.sin() / phase
+        };
+        ((-g).exp() * sine, (-g).exp() * used.cos())
+    } else {
+        let r = square.sqrt();
+        let slow = if g + r > 0.0 { z / (g + r) } else { 0.0 };
+        let (p1, p2) = ((-slow).exp(), (-g - r).exp());
+        let sine = if r < 1e-4 {
+            (-g).exp()
+        } else {
+            (p1 - p2) / (2.0 * r)
+        };
+        (sine, (p1 + p2) / 2.0)
+    };
+    let scaled_cosh = (1.0 + (-2.0 * g).exp()) / 2.0;
+    let speed = (scaled_cosh + cosine) / (2.0 * sine);
+    let skew = if g == 0.0 {
+        0.0
+    } else if g * g < 0.5 && square.abs() < 0.5 {
+        // The difference sinhc(g) − φ, divided by z, as its series: no cancellation.
+        let (u, w) = (g * g, square);
+        let series = 1.0 / 6.0
+            + (u + w) / 120.0
+            + (u * u + u * w + w * w) / 5040.0
+            + (u + w) * (u * u + w * w) / 362_880.0;
+        g * (-g).exp() * series / sine
+    } else if z < 1e-5 * g * g {
+        // A damper with hardly a spring: the limit for small z.
+        (1.0 / g.tanh() - 1.0 / g) / 2.0
+    } else {
+        ((1.0 - (-2.0 * g).exp()) / (2.0 * sine) - g) / z
+    };
+    (speed, skew)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The exact flow over h = 1, by the series of the matrix exponential of [[0, 1], [−z, −2g]].
+    fn exact(z: f64, g: f64) -> [[f64; 2]; 2] {
+        let halvings = 20;
+        let h = 0.5_f64.powi(halvings);
+        let a = [[0.0, h], [-z * h, -2.0 * g * h]];
+        let mul = |x: [[f64; 2]; 2], y: [[f64; 2]; 2]| {
+            let mut out = [[0.0; 2]; 2];
+            for i in 0..2 {
+                for j in 0..2 {
+                    out[i][j] = x[i][0] * y[0][j] + x[i][1] * y[1][j];
+                }
+            }
+            out
+        };
+        let mut power = [[1.0, 0.0], [0.0, 1.0]];
+        let mut sum = power;
+        let mut factorial = 1.0;
+        for n in 1..8 {
+            power = mul(power, a);
+            factorial *= n as f64;
+            for i in 0..2 {
+                for j in 0..2 {
+                    sum[i][j] += power[i][j] / factorial;
+                }
+            }
+        }
+        for _ in 0..halvings {
+            sum = mul(sum, sum);
+        }
+        sum
+    }
+
+    /// Our step over h = 1 for a state (y, v): velocity map undone, drift–kick–drift, map applied.
+    fn step(z: f64, g: f64, y: f64, v: f64) -> (f64, f64) {
+        let p = Poles::new(z, g);
+        let v = (v - p.skew * z * y) / p.speed;
+        let q = y + v / 2.0;
+        let v2 = v - p.restoring * z * q - p.loss * v;
+        let y2 = q + v2 / 2.0;
+        (y2, p.speed * v2 + p.skew * z * y2)
+    }
+
+    #[test]
+    fn one_step_is_the_true_flow_for_any_initial_state() {
+        for phase in [1e-6_f64, 1e-3, 0.02, 0.3, 1.0, 2.0, 2.4] {
+            for zeta in [0.0, 1e-6, 0.05, 0.5, 0.999, 1.0, 1.001, 3.0, 20.0] {
+                let (z, g) = (phase * phase, zeta * phase);
+                let slow = if zeta > 1.0 {
+                    z / (g + (g * g - z).sqrt())
+                } else {
+                    g
+                };
+                if slow > RESOLVED_DECAY {
+                    continue;
+                }
+                let e = exact(z, g);
+                for (y, v) in [(1.0, 0.0), (0.0, 1.0)] {
+                    let (y2, v2) = step(z, g, y, v);
+                    let (y3, v3) = (e[0][0] * y + e[0][1] * v, e[1][0] * y + e[1][1] * v);
+                    assert!(
+                        (y2 - y3).abs() < 2e-8 && (v2 - v3).abs() < 2e-8,
+                        "ωh {phase} ζ {zeta} from ({y}, {v}): ({y2}, {v2}) against ({y3}, {v3})"
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn coefficients_stay_finite_and_bounded_at_any_stiffness() {
+        for phase in [0.0_f64, 1e-9, 0.5, 2.6, 3.1, 3.2, 6.2832, 100.0, 1e6] {
+            for g in [0.0, 1e-9, 0.1, 1.0, 30.0, 1e3, 1e9] {
+                let p = Poles::new(phase * phase, g);
+                for value in [p.restoring, p.loss, p.speed, p.skew] {
+                    assert!(value.is_finite(), "ωh {phase} γh {g}: {p:?}");
+                }
+                assert!(p.speed > 0.0, "ωh {phase} γh {g}: {p:?}");
+                // The kick never throws the end past the mirror of where it was.
+                assert!(p.restoring * phase * phase <= 4.0 + 1e-12);
+            }
+        }
+    }
+
+    #[test]
+    fn energy_is_kept_where_the_phase_is_no_longer_resolved() {
+        for phase in [2.6_f64, 6.2832, 37.0, 100.0, 1e4] {
+            let z = phase * phase;
+            let (mut y, mut v) = (0.3 / phase, 1.0);
+            let energy = |y: f64, v: f64| z * y * y + v * v;
+            let start = energy(y, v);
+            for _ in 0..1000 {
+                (y, v) = step(z, 0.0, y, v);
+                assert!((energy(y, v) / start - 1.0).abs() < 1e-6, "ωh {phase}");
+            }
+        }
+    }
+}
