@@ -1,0 +1,159 @@
+//! A Rapier body as the integrator's body, and the way back.
+
+use super::timestep::Plan;
+use crate::dynamics::body::{Body, Spin, turn};
+use crate::dynamics::delivery::{Delivery, force_for, torque_for};
+use bevy::math::DVec3;
+use bevy::prelude::*;
+use bevy_rapier3d::prelude::ExternalForce;
+use bevy_rapier3d::rapier::dynamics::{LockedAxes, RigidBody as RapierBody, RigidBodyType};
+
+/// Position and velocity of a point fixed to a body (`local` in its frame).
+pub(super) fn point_of(body: &RapierBody, local: DVec3) -> (DVec3, DVec3) {
+    let pose = body.position();
+    let rotation = pose.rotation.as_dquat().normalize();
+    let arm = rotation * (local - body.local_center_of_mass().as_dvec3());
+    let center = pose.translation.as_dvec3() + rotation * body.local_center_of_mass().as_dvec3();
+    let velocity = body.linvel().as_dvec3() + body.angvel().as_dvec3().cross(arm);
+    (center + arm, velocity)
+}
+
+/// Where a point of a body that the game moves will be after the step.
+pub(super) fn point_after(body: &RapierBody, local: DVec3, time: f64) -> DVec3 {
+    let (now, _) = point_of(body, local);
+    if !body.is_kinematic() || !body.is_enabled() {
+        return now;
+    }
+    let next = body.next_position();
+    let here = body.position();
+    if next != here {
+        return next.translation.as_dvec3() + next.rotation.as_dquat().normalize() * local;
+    }
+    match body.body_type() {
+        // Velocity-based: moves straight and turns steadily.
+        RigidBodyType::KinematicVelocityBased => {
+            let turned = turn(time * body.angvel().as_dvec3());
+            let (center, _) = point_of(body, body.local_center_of_mass().as_dvec3());
+            center + time * body.linvel().as_dvec3() + turned * (now - center)
+        }
+        _ => now,
+    }
+}
+
+/// Whether an element can move it.
+pub(super) fn is_movable(body: &RapierBody) -> bool {
+    body.is_dynamic() && body.is_enabled()
+}
+
+/// The integrator's view. `turns` is false where every element holds the body at its centre of mass.
+pub(super) fn read(body: &RapierBody, gravity: Vec3, user: &ExternalForce, turns: bool) -> Body {
+    let properties = &body.mass_properties().local_mprops;
+    let rotation = body.position().rotation.as_dquat().normalize();
+    let locks = body.locked_axes();
+    let locked = |axes: [LockedAxes; 3]| axes.map(|axis| locks.contains(axis));
+    let [x, y, z] = locked([
+        LockedAxes::TRANSLATION_LOCKED_X,
+        LockedAxes::TRANSLATION_LOCKED_Y,
+        LockedAxes::TRANSLATION_LOCKED_Z,
+    ]);
+    let free = |locked: bool| {
+        if locked {
+            0.0
+        } else {
+            f64::from(properties.inv_mass)
+        }
+    };
+    let inverse_mass = DVec3::new(free(x), free(y), free(z));
+    let rotation_locked = locked([
+        LockedAxes::ROTATION_LOCKED_X,
+        LockedAxes::ROTATION_LOCKED_Y,
+        LockedAxes::ROTATION_LOCKED_Z,
+    ]);
+    let moves = DVec3::select(inverse_mass.cmpgt(DVec3::ZERO), DVec3::ONE, DVec3::ZERO);
+    let angular_velocity = body.angvel().as_dvec3();
+    let mut out = Body {
+        position: body.position().translation.as_dvec3()
+            + rotation * properties.local_com.as_dvec3(),
+        velocity: body.linvel().as_dvec3(),
+        rotation,
+        spin: Spin::Still,
+        inverse_mass,
+        inertia: properties.principal_inertia().as_dvec3(),
+        principal: properties
+            .principal_inertia_local_frame
+            .as_dquat()
+            .normalize(),
+        rotation_locked,
+        acceleration: moves * gravity.as_dvec3() * f64::from(body.gravity_scale())
+            + inverse_mass * user.force.as_dvec3(),
+        torque: user.torque.as_dvec3(),
+    };
+    if turns {
+        if rotation_locked == [false; 3] {
+            out.spin = Spin::Free {
+                momentum: DVec3::ZERO,
+            };
+            out.set_angular_velocity(angular_velocity);
+        } else if rotation_locked != [true; 3] || angular_velocity != DVec3::ZERO {
+            out.spin = Spin::Locked {
+                velocity: angular_velocity,
+            };
+        }
+    }
+    out
+}
+
+/// Sets the body's velocities for the start of the step, and returns the force and torque that
+/// elements must add over it, so that the engine ends where the integrator did.
+pub(super) fn deliver(
+    body: &mut RapierBody,
+    start: &Body,
+    end: &Body,
+    plan: &Plan,
+    base_iterations: usize,
+    takes_impulses: bool,
+) -> ExternalForce {
+    let schedule = plan.schedule(base_iterations + body.additional_solver_iterations());
+    let time = schedule.time;
+    let linear = if takes_impulses {
+        let planned = schedule.linear(start.position, start.velocity, end);
+        let linvel = (start.velocity + planned.jump).as_vec3();
+        body.set_linvel(linvel, false);
+        // The engine's velocity is rounded; the force makes up for it.
+        after_rounding(start.velocity, linvel, end.velocity, time)
+    } else {
+        (end.velocity - start.velocity) / time
+    };
+    let force = force_for(linear - start.acceleration, start.inverse_mass);
+    let mut torque = DVec3::ZERO;
+    if start.spin != Spin::Still {
+        let inverse_inertia = start.inverse_inertia();
+        let spin = start.angular_velocity();
+        let Delivery { jump, rate } = if takes_impulses {
+            schedule.angular(start, body.gyroscopic_forces_enabled(), end)
+        } else {
+            Delivery {
+                jump: DVec3::ZERO,
+                rate: (end.angular_velocity() - spin) / time,
+            }
+        };
+        if takes_impulses {
+            body.set_angvel((spin + jump).as_vec3(), false);
+        }
+        torque = torque_for(rate, inverse_inertia) - start.torque;
+        for axis in 0..3 {
+            if start.rotation_locked[axis] {
+                torque[axis] = 0.0;
+            }
+        }
+    }
+    ExternalForce {
+        force: force.as_vec3(),
+        torque: torque.as_vec3(),
+    }
+}
+
+fn after_rounding(from: DVec3, rounded: Vec3, to: DVec3, time: f64) -> DVec3 {
+    let jumped = rounded.as_dvec3() - from;
+    (to - from - jumped) / time
+}

@@ -1,0 +1,130 @@
+//! One `ExternalForce` per body, two owners: the user's share and ours, kept apart.
+
+use bevy::ecs::entity_disabling::Disabled;
+use bevy::ecs::query::Allow;
+use bevy::prelude::*;
+use bevy_rapier3d::prelude::*;
+use bevy_rapier3d::rapier::dynamics::RigidBody as RapierBody;
+
+/// On a body that elements act on: their share of what stands in its `ExternalForce`.
+///
+/// `ExternalForce` holds the sum of both shares after every step. Whatever is assigned to it is taken
+/// as the user's new share; to change that relative to what it was, start from `user`.
+///
+/// The share of the elements is the force delivered, not the springs' own: together with an impulse
+/// at the start of the step it makes the engine's few substeps end where the springs take the body.
+#[derive(Component, Reflect, Clone, Debug, PartialEq)]
+#[reflect(Component, Debug, PartialEq, Clone)]
+pub struct SpringLoad {
+    /// Force (N) and torque (N m) delivered by elements over the last step, world frame.
+    pub elements: ExternalForce,
+    /// Force and torque that the user wrote.
+    pub user: ExternalForce,
+    /// What we left in the component.
+    #[reflect(ignore)]
+    pub(super) mirrored: ExternalForce,
+    /// Velocities one step ago, to tell rest from a turning point.
+    #[reflect(ignore)]
+    pub(super) before: Option<(Vec3, Vec3)>,
+    /// Which elements load the body; a change wakes it.
+    #[reflect(ignore)]
+    pub(super) signature: u64,
+    /// We gave the body a second solver iteration.
+    #[reflect(ignore)]
+    pub(super) raised_iterations: bool,
+}
+
+impl SpringLoad {
+    pub(super) fn new(user: ExternalForce) -> Self {
+        Self {
+            elements: ExternalForce::default(),
+            user,
+            mirrored: user,
+            before: None,
+            signature: 0,
+            raised_iterations: false,
+        }
+    }
+
+    /// Takes in what the user wrote since the last step.
+    pub(super) fn read_user(&mut self, component: &ExternalForce, changed: bool) {
+        if !changed {
+            return;
+        }
+        let now = *component;
+        take_in(&mut self.user.force, now.force, self.mirrored.force);
+        take_in(&mut self.user.torque, now.torque, self.mirrored.torque);
+    }
+
+    /// Puts both shares into the engine, and into the component without marking it changed: a change
+    /// would make bevy_rapier write it again and keep the body awake for ever.
+    pub(super) fn write(
+        &mut self,
+        elements: ExternalForce,
+        body: &mut RapierBody,
+        component: Option<&mut Mut<ExternalForce>>,
+    ) {
+        self.elements = elements;
+        self.mirrored = self.user + elements;
+        body.reset_forces(false);
+        body.reset_torques(false);
+        body.add_force(self.mirrored.force, false);
+        body.add_torque(self.mirrored.torque, false);
+        if let Some(component) = component {
+            *component.bypass_change_detection() = self.mirrored;
+        }
+    }
+}
+
+/// Components that differ from what we left there were written by the user. A vector set to the very
+/// value it had is a clearing if that is zero, and no change otherwise.
+fn take_in(share: &mut Vec3, now: Vec3, left: Vec3) {
+    if now == left {
+        if now == Vec3::ZERO {
+            *share = Vec3::ZERO;
+        }
+        return;
+    }
+    for axis in 0..3 {
+        if now[axis].to_bits() != left[axis].to_bits() {
+            share[axis] = now[axis];
+        }
+    }
+}
+
+/// Takes our share back from bodies that no element acts on any more.
+pub(super) fn release(
+    loads: &mut Query<
+        (
+            Entity,
+            &mut SpringLoad,
+            Option<&mut ExternalForce>,
+            Option<&RapierRigidBodyHandle>,
+            Option<&RapierContextEntityLink>,
+        ),
+        Allow<Disabled>,
+    >,
+    sets: &mut Query<&mut RapierRigidBodySet>,
+    is_loaded: impl Fn(Entity) -> bool,
+    commands: &mut Commands,
+) {
+    for (entity, mut load, mut component, handle, link) in loads {
+        if is_loaded(entity) {
+            continue;
+        }
+        if let Some(component) = &component {
+            load.read_user(component, component.is_changed());
+        }
+        if let (Some(handle), Some(link)) = (handle, link)
+            && let Ok(mut set) = sets.get_mut(link.0)
+            && let Some(body) = set.bodies.get_mut(handle.0)
+        {
+            load.write(ExternalForce::default(), body, component.as_mut());
+            if load.raised_iterations {
+                body.set_additional_solver_iterations(0);
+            }
+            body.wake_up(true);
+        }
+        commands.entity(entity).try_remove::<SpringLoad>();
+    }
+}

@@ -1,0 +1,88 @@
+//! Wrong set-ups are told in one message that says what to change.
+
+use crate::plugin::CoiloverSettings;
+use bevy::app::DynEq;
+use bevy::ecs::schedule::Schedules;
+use bevy::prelude::*;
+use bevy_rapier3d::plugin::systems;
+use bevy_rapier3d::prelude::*;
+
+/// What has been told already.
+#[derive(Resource, Default)]
+pub(crate) struct Watched {
+    /// The engine does not step where we run: doing anything would only heap up impulses.
+    misplaced: bool,
+    variable: bool,
+    mismatch: bool,
+}
+
+/// Whether Rapier is there, and steps in our schedule.
+pub(crate) fn check_schedule(
+    settings: Res<CoiloverSettings>,
+    schedules: Res<Schedules>,
+    rapier: Option<Res<RapierContextInitialization>>,
+    mut watched: ResMut<Watched>,
+) {
+    if rapier.is_none() {
+        log::error!(
+            "bevy_coilover: RapierPhysicsPlugin is missing, so springs and dampers do nothing; add \
+             RapierPhysicsPlugin::<NoUserData>::default().in_fixed_schedule() to the app"
+        );
+        return;
+    }
+    let label = settings.schedule;
+    // Any schedule that steps the engine holds Rapier's write-back, which has no generic parameter.
+    let writeback = IntoSystem::into_system(systems::writeback_rigid_bodies).system_type();
+    let steps_here = schedules.get(label).is_some_and(|schedule| {
+        schedule
+            .graph()
+            .systems
+            .iter()
+            .any(|(_, system, _)| system.system_type() == writeback)
+    });
+    watched.misplaced = !steps_here;
+    if !steps_here {
+        log::error!(
+            "bevy_coilover: CoiloverPlugin runs in {label:?} but RapierPhysicsPlugin does not, so \
+             springs and dampers do nothing; use CoiloverPlugin::new(…) with Rapier's schedule, or \
+             RapierPhysicsPlugin::in_fixed_schedule() with CoiloverPlugin::default()"
+        );
+    }
+}
+
+/// Whether Rapier steps in our schedule, as far as [`check_schedule`] could see.
+pub(crate) fn in_place(watched: Res<Watched>) -> bool {
+    !watched.misplaced
+}
+
+/// Whether the engine's step fits the schedule's.
+pub(crate) fn check_timestep(
+    mode: Res<TimestepMode>,
+    settings: Res<CoiloverSettings>,
+    fixed: Option<Res<Time<Fixed>>>,
+    mut watched: ResMut<Watched>,
+) {
+    let Some(fixed) = fixed.filter(|_| settings.schedule.dyn_eq(&FixedUpdate as &dyn DynEq)) else {
+        return;
+    };
+    let tick = fixed.timestep().as_secs_f32();
+    match *mode {
+        TimestepMode::Variable { .. } if !watched.variable => {
+            watched.variable = true;
+            log::warn!(
+                "bevy_coilover: TimestepMode::Variable in FixedUpdate ties the physics to max_dt; \
+                 insert TimestepMode::Fixed {{ dt: {tick}, substeps: 1 }} instead"
+            );
+        }
+        TimestepMode::Fixed { dt, .. } if !watched.mismatch && (dt - tick).abs() > 1e-3 * tick => {
+            watched.mismatch = true;
+            log::warn!(
+                "bevy_coilover: TimestepMode::Fixed steps {dt} s while FixedUpdate ticks every \
+                 {tick} s, so physics runs {:.2} times as fast as time; set both alike, for \
+                 example with Time::<Fixed>::from_seconds({dt})",
+                dt / tick
+            );
+        }
+        _ => {}
+    }
+}

@@ -1,0 +1,357 @@
+//! The step: components, integration, delivery.
+
+use super::body::{deliver, is_movable, point_after, point_of, read};
+use super::check::Fault;
+use super::forces::{SpringLoad, release};
+use super::scene::{ElementRow, Held, Scene};
+use super::sleep::{is_restless, keep_awake};
+use super::timestep::Plan;
+use crate::dynamics::body::Body;
+use crate::dynamics::element::{Element, End};
+use crate::dynamics::step::Component;
+use crate::plugin::CoiloverSettings;
+use bevy::ecs::entity_disabling::Disabled;
+use bevy::ecs::query::Allow;
+use bevy::prelude::*;
+use bevy_rapier3d::prelude::*;
+
+/// What of a Rapier context the step needs.
+type ContextParts<'a> = (
+    &'a RapierContextSimulation,
+    &'a RapierContextJoints,
+    &'a RapierConfiguration,
+    &'a SimulationToRenderTime,
+);
+
+/// Loads of bodies, also of disabled ones: their share must be taken back too.
+type Loads<'w, 's> = Query<
+    'w,
+    's,
+    (
+        Entity,
+        &'static mut SpringLoad,
+        Option<&'static mut ExternalForce>,
+        Option<&'static RapierRigidBodyHandle>,
+        Option<&'static RapierContextEntityLink>,
+    ),
+    Allow<Disabled>,
+>;
+
+/// Elements of one component, by index into the scene.
+#[derive(Default)]
+struct Group {
+    elements: Vec<usize>,
+    bodies: Vec<usize>,
+}
+
+/// Computes and delivers every element's force for the coming engine step.
+pub(crate) fn solve(
+    mut scene: ResMut<Scene>,
+    settings: Res<CoiloverSettings>,
+    mode: Res<TimestepMode>,
+    time: Res<Time>,
+    contexts: Query<ContextParts>,
+    mut sets: Query<&mut RapierRigidBodySet>,
+    mut loads: Loads,
+    mut commands: Commands,
+) {
+    let scene = &mut *scene;
+    for (_, mut load, component, ..) in &mut loads {
+        if let Some(component) = component {
+            let changed = component.is_changed();
+            if changed {
+                load.read_user(&component, changed);
+            }
+        }
+    }
+    let index = &scene.index;
+    release(
+        &mut loads,
+        &mut sets,
+        |e| index.contains_key(&e),
+        &mut commands,
+    );
+
+    scene.time = 0.0;
+    let mut slots = vec![usize::MAX; scene.bodies.len()];
+    for group in components(scene) {
+        let Some(context) = group.bodies.first().map(|b| scene.bodies[*b].context) else {
+            continue;
+        };
+        let Ok((simulation, joints, configuration, lag)) = contexts.get(context) else {
+            continue;
+        };
+        let plan = Plan::new(*mode, time.delta_secs(), lag.diff);
+        if plan.time <= 0.0 || !configuration.physics_pipeline_active {
+            continue;
+        }
+        scene.time = plan.time;
+        let Ok(mut set) = sets.get_mut(context) else {
+            continue;
+        };
+        let parameters = &simulation.integration_parameters;
+        for (slot, body) in group.bodies.iter().enumerate() {
+            slots[*body] = slot;
+        }
+        let step = Step {
+            plan,
+            base_iterations: parameters.num_solver_iterations,
+            length_unit: parameters.length_unit,
+            gravity: configuration.gravity,
+            joints,
+            settings: &settings,
+        };
+        step.run(scene, &group, &slots, &mut set, &mut loads);
+    }
+    // Without a movable body nothing is stepped, but the readouts still want the time.
+    if scene.time == 0.0 {
+        for (_, _, configuration, lag) in &contexts {
+            if configuration.physics_pipeline_active {
+                scene.time = Plan::new(*mode, time.delta_secs(), lag.diff).time;
+            }
+        }
+    }
+}
+
+/// Elements that share bodies, directly or through others.
+fn components(scene: &Scene) -> Vec<Group> {
+    let mut parent: Vec<usize> = (0..scene.bodies.len()).collect();
+    fn root(parent: &mut [usize], mut at: usize) -> usize {
+        while parent[at] != at {
+            parent[at] = parent[parent[at]];
+            at = parent[at];
+        }
+        at
+    }
+    let movable = |row: &ElementRow| {
+        row.held.map(|held| match held {
+            Held::Body { movable, .. } => movable,
+            Held::Path { .. } => None,
+        })
+    };
+    for row in &scene.elements {
+        if let [Some(a), Some(b)] = movable(row) {
+            let (a, b) = (root(&mut parent, a), root(&mut parent, b));
+            parent[a.max(b)] = a.min(b);
+        }
+    }
+    let mut groups: Vec<Group> = Vec::new();
+    let mut group_of = vec![usize::MAX; scene.bodies.len()];
+    for body in 0..scene.bodies.len() {
+        let r = root(&mut parent, body);
+        if group_of[r] == usize::MAX {
+            group_of[r] = groups.len();
+            groups.push(Group::default());
+        }
+        groups[group_of[r]].bodies.push(body);
+    }
+    for (i, row) in scene.elements.iter().enumerate() {
+        if let Some(body) = movable(row).into_iter().flatten().next() {
+            let r = root(&mut parent, body);
+            groups[group_of[r]].elements.push(i);
+        }
+    }
+    groups
+}
+
+/// What holds for every component of a context in this step.
+struct Step<'a> {
+    plan: Plan,
+    base_iterations: usize,
+    length_unit: f32,
+    gravity: Vec3,
+    joints: &'a RapierContextJoints,
+    settings: &'a CoiloverSettings,
+}
+
+impl Step<'_> {
+    fn run(
+        &self,
+        scene: &mut Scene,
+        group: &Group,
+        slots: &[usize],
+        set: &mut RapierRigidBodySet,
+        loads: &mut Loads,
+    ) {
+        let mut component = Component::default();
+        for b in &group.bodies {
+            let row = scene.bodies[*b];
+            let user = loads
+                .get(row.entity)
+                .map(|(_, load, ..)| load.user)
+                .unwrap_or_default();
+            let Some(body) = set.bodies.get(row.handle) else {
+                return;
+            };
+            component
+                .bodies
+                .push(read(body, self.gravity, &user, row.turns));
+        }
+        let sound = component.bodies.iter().all(Body::is_finite);
+        let mut disturbed = false;
+        for e in &group.elements {
+            let row = &mut scene.elements[*e];
+            let ends = row.held.map(|held| self.end(held, slots, set));
+            disturbed |= row.changed
+                || ends.iter().any(|end| {
+                    matches!(end, End::Path { velocity, .. } if velocity.length_squared() > 0.0)
+                });
+            if let Some(element) = element(row, ends, &component.bodies) {
+                component.elements.push(element);
+            }
+        }
+        if !self.is_awake(scene, group, &component, set, loads, disturbed) {
+            return;
+        }
+        let start = component.bodies.clone();
+        if sound && !component.elements.is_empty() {
+            component.advance(self.plan.time, self.settings.accuracy());
+        }
+        let sound = sound && component.bodies.iter().all(Body::is_finite);
+        for (slot, b) in group.bodies.iter().enumerate() {
+            let row = scene.bodies[*b];
+            let (Some(body), Ok((_, mut load, mut force, ..))) =
+                (set.bodies.get_mut(row.handle), loads.get_mut(row.entity))
+            else {
+                continue;
+            };
+            load.before = Some((body.linvel(), body.angvel()));
+            if body.is_sleeping() {
+                continue;
+            }
+            let mut share = ExternalForce::default();
+            if sound && !component.elements.is_empty() {
+                let multibody = self.joints.multibody_joints.rigid_body_link(row.handle);
+                if self.base_iterations * self.plan.pipeline_steps as usize == 1
+                    && body.additional_solver_iterations() == 0
+                {
+                    // One substep has room for a force or an impulse, not for both.
+                    body.set_additional_solver_iterations(1);
+                    load.raised_iterations = true;
+                }
+                share = deliver(
+                    body,
+                    &start[slot],
+                    &component.bodies[slot],
+                    &self.plan,
+                    self.base_iterations,
+                    multibody.is_none(),
+                );
+            }
+            load.write(share, body, force.as_mut());
+        }
+        for (element, e) in component.elements.iter().zip(
+            group
+                .elements
+                .iter()
+                .filter(|e| scene.elements[**e].fault.is_none())
+                .copied()
+                .collect::<Vec<_>>(),
+        ) {
+            scene.elements[e].direction = element.direction;
+        }
+    }
+
+    fn end(&self, held: Held, slots: &[usize], set: &RapierRigidBodySet) -> End {
+        let path = |from: bevy::math::DVec3, to: bevy::math::DVec3| End::Path {
+            position: from,
+            velocity: (to - from) / self.plan.time,
+        };
+        match held {
+            Held::Path { from, to } => path(from, to),
+            Held::Body {
+                handle,
+                local,
+                movable,
+                ..
+            } => match (movable, set.bodies.get(handle)) {
+                (Some(index), Some(body)) => End::Body {
+                    index: slots[index],
+                    arm: local - body.local_center_of_mass().as_dvec3(),
+                },
+                (None, Some(body)) => path(
+                    point_of(body, local).0,
+                    point_after(body, local, self.plan.time),
+                ),
+                (_, None) => path(local, local),
+            },
+        }
+    }
+
+    /// Wakes, keeps awake or lets sleep; says whether there is anything to do.
+    fn is_awake(
+        &self,
+        scene: &Scene,
+        group: &Group,
+        component: &Component,
+        set: &mut RapierRigidBodySet,
+        loads: &mut Loads,
+        mut disturbed: bool,
+    ) -> bool {
+        let mut all_asleep = true;
+        let mut restless = false;
+        let omega = component
+            .elements
+            .iter()
+            .filter_map(|e| Some(e.stiffness * e.line(&component.bodies)?.inverse_mass))
+            .fold(0.0, f64::max)
+            .sqrt() as f32;
+        // A damper alone has no period; a second stands in for it.
+        let omega = if omega == 0.0 { 1.0 } else { omega };
+        for b in &group.bodies {
+            let row = scene.bodies[*b];
+            let (Some(body), Ok((_, mut load, ..))) =
+                (set.bodies.get(row.handle), loads.get_mut(row.entity))
+            else {
+                continue;
+            };
+            disturbed |= load.signature != row.signature;
+            load.signature = row.signature;
+            if !body.is_sleeping() && is_movable(body) {
+                all_asleep = false;
+                restless |=
+                    is_restless(&load, body, omega, self.plan.time as f32, self.length_unit);
+            }
+        }
+        if all_asleep && !disturbed {
+            return false;
+        }
+        if disturbed || restless {
+            for b in &group.bodies {
+                if let Some(body) = set.bodies.get_mut(scene.bodies[*b].handle) {
+                    if body.is_sleeping() {
+                        body.wake_up(true);
+                    }
+                    keep_awake(body);
+                }
+            }
+        }
+        true
+    }
+}
+
+/// The integrator's element, its rest length captured if need be; or none, with the fault noted.
+fn element(row: &mut ElementRow, ends: [End; 2], bodies: &[Body]) -> Option<Element> {
+    let p = &mut row.parameters;
+    let mut element = Element {
+        ends,
+        stiffness: f64::from(p.stiffness),
+        damping: f64::from(p.damping),
+        rest_length: f64::from(p.rest_length.unwrap_or(0.0)),
+        direction: row.direction,
+    };
+    if p.rest_length.is_none() {
+        let length = element.line(bodies).map_or(0.0, |line| line.length.abs());
+        p.rest_length = Some(length as f32);
+        element.rest_length = f64::from(length as f32);
+        row.captured = true;
+    }
+    if element.line(bodies).is_none() {
+        row.fault = Some(Fault::new(
+            p.names.ends[1],
+            "coincides with body_a, so nothing says which way to push; move one or set Anchors",
+        ));
+        return None;
+    }
+    Some(element)
+}

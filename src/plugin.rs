@@ -1,0 +1,126 @@
+//! The physics plugin: settings, schedule, system sets.
+
+use crate::dynamics::step::Accuracy;
+use crate::element::{Anchors, Damper, Spring, SpringDamper, SpringFault};
+use crate::engine::{self, Scene, SpringLoad, Watched};
+use crate::readout::SpringReadout;
+use bevy::ecs::intern::Interned;
+use bevy::ecs::schedule::ScheduleLabel;
+use bevy::prelude::*;
+use bevy_rapier3d::prelude::{PhysicsSet, TimestepMode};
+
+/// Springs and dampers for bodies simulated by `bevy_rapier3d`; physics alone, nothing drawn.
+///
+/// Add it beside `RapierPhysicsPlugin::<NoUserData>::default().in_fixed_schedule()`.
+///
+/// One kick of every element per engine step is enough for most scenes. The error of anything that
+/// swings or turns falls with the square of [`with_microsteps`](Self::with_microsteps), and
+/// [`with_extrapolation`](Self::with_extrapolation) buys fourth order for three kicks.
+#[derive(Clone, Copy, Debug)]
+pub struct CoiloverPlugin {
+    settings: CoiloverSettings,
+}
+
+/// How the plugin runs.
+#[derive(Resource, Clone, Copy, Debug)]
+pub struct CoiloverSettings {
+    /// Micro-steps per engine step, at least 1; may be changed at any time.
+    pub microsteps: u32,
+    /// Combine one and two times as many micro-steps to fourth order wherever the motion is resolved,
+    /// and take three times as many plain ones elsewhere.
+    pub extrapolation: bool,
+    pub(crate) schedule: Interned<dyn ScheduleLabel>,
+}
+
+impl CoiloverSettings {
+    pub(crate) fn accuracy(&self) -> Accuracy {
+        Accuracy {
+            microsteps: self.microsteps.max(1),
+            extrapolate: self.extrapolation,
+        }
+    }
+}
+
+/// What the plugin does in its schedule, in this order.
+#[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum CoiloverSystems {
+    /// After Rapier's `PhysicsSet::SyncBackend`: elements and their ends are found.
+    Prepare,
+    /// Then: forces are computed and written. Change elements before [`Self::Prepare`] to have them
+    /// act in the same step.
+    Solve,
+    /// After Rapier's `PhysicsSet::Writeback`: [`SpringReadout`] is written. Read it after this.
+    Readout,
+}
+
+impl Default for CoiloverPlugin {
+    fn default() -> Self {
+        Self::new(FixedUpdate)
+    }
+}
+
+impl CoiloverPlugin {
+    /// Runs in this schedule, which must be Rapier's. `default()` is `FixedUpdate`.
+    pub fn new(schedule: impl ScheduleLabel) -> Self {
+        Self {
+            settings: CoiloverSettings {
+                microsteps: 1,
+                extrapolation: false,
+                schedule: schedule.intern(),
+            },
+        }
+    }
+
+    /// Sets the accuracy dial: micro-steps per engine step (default 1; 0 counts as 1).
+    pub const fn with_microsteps(mut self, microsteps: u32) -> Self {
+        self.settings.microsteps = microsteps;
+        self
+    }
+
+    /// Turns on the fourth-order combination wherever it is valid.
+    pub const fn with_extrapolation(mut self) -> Self {
+        self.settings.extrapolation = true;
+        self
+    }
+}
+
+impl Plugin for CoiloverPlugin {
+    fn build(&self, app: &mut App) {
+        app.register_type::<Spring>()
+            .register_type::<Damper>()
+            .register_type::<SpringDamper>()
+            .register_type::<Anchors>()
+            .register_type::<SpringReadout>()
+            .register_type::<SpringLoad>()
+            .register_type::<SpringFault>()
+            .insert_resource(self.settings)
+            .init_resource::<Scene>()
+            .init_resource::<Watched>()
+            .add_systems(PreStartup, engine::check_schedule);
+
+        let schedule = self.settings.schedule;
+        app.configure_sets(
+            schedule,
+            (
+                (CoiloverSystems::Prepare, CoiloverSystems::Solve)
+                    .chain()
+                    .after(PhysicsSet::SyncBackend)
+                    .before(PhysicsSet::StepSimulation),
+                CoiloverSystems::Readout.after(PhysicsSet::Writeback),
+            ),
+        )
+        .add_systems(
+            schedule,
+            (
+                (engine::check_timestep, engine::prepare)
+                    .chain()
+                    .in_set(CoiloverSystems::Prepare),
+                engine::solve.in_set(CoiloverSystems::Solve),
+                engine::measure.in_set(CoiloverSystems::Readout),
+            )
+                // Without Rapier there is nothing to do, and a message has said so.
+                .run_if(resource_exists::<TimestepMode>)
+                .run_if(engine::in_place),
+        );
+    }
+}

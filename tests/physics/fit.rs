@@ -1,0 +1,65 @@
+//! Least-squares fits of what a lab measured.
+
+/// y ≈ offset + cosine·cos ωt + sine·sin ωt.
+#[derive(Clone, Copy, Debug)]
+pub struct Sine {
+    pub offset: f64,
+    pub cosine: f64,
+    pub sine: f64,
+    /// Sum of squared residuals.
+    pub residual: f64,
+}
+
+impl Sine {
+    pub fn amplitude(&self) -> f64 {
+        self.cosine.hypot(self.sine)
+    }
+
+    /// The best sine of a known angular frequency.
+    pub fn fit(samples: &[(f64, f64)], omega: f64) -> Self {
+        let basis = |t: f64| [1.0, (omega * t).cos(), (omega * t).sin()];
+        let mut m = [[0.0_f64; 4]; 3];
+        for (t, y) in samples {
+            let b = basis(*t);
+            for r in 0..3 {
+                for c in 0..3 {
+                    m[r][c] += b[r] * b[c];
+                }
+                m[r][3] += b[r] * y;
+            }
+        }
+        for i in 0..3 {
+            let pivot = m[i];
+            for r in (0..3).filter(|r| *r != i) {
+                let factor = m[r][i] / pivot[i];
+                for c in 0..4 {
+                    m[r][c] -= factor * pivot[c];
+                }
+            }
+        }
+        let [offset, cosine, sine] = [0, 1, 2].map(|i| m[i][3] / m[i][i]);
+        let residual = samples
+            .iter()
+            .map(|(t, y)| {
+                let b = basis(*t);
+                (y - offset - cosine * b[1] - sine * b[2]).powi(2)
+            })
+            .sum();
+        Self { offset, cosine, sine, residual }
+    }
+}
+
+/// The angular frequency within 1 % of a guess whose sine fits best.
+pub fn frequency(samples: &[(f64, f64)], guess: f64) -> f64 {
+    let (mut low, mut high) = (guess * 0.99, guess * 1.01);
+    for _ in 0..80 {
+        let third = (high - low) / 3.0;
+        let (a, b) = (low + third, high - third);
+        if Sine::fit(samples, a).residual < Sine::fit(samples, b).residual {
+            high = b;
+        } else {
+            low = a;
+        }
+    }
+    0.5 * (low + high)
+}

@@ -1,0 +1,209 @@
+//! A headless app with the real Rapier pipeline, stepped tick by tick.
+
+use bevy::ecs::schedule::SingleThreadedExecutor;
+use bevy::prelude::*;
+use bevy::time::TimeUpdateStrategy;
+use bevy_coilover::prelude::*;
+use bevy_rapier3d::prelude::*;
+use std::time::Duration;
+
+pub const DT: f32 = 1.0 / 60.0;
+pub const GRAVITY: f64 = 9.81;
+
+/// A lab: an app whose every `tick` is one engine step.
+pub struct Lab {
+    pub app: App,
+}
+
+/// What the engine should do differently from its defaults.
+#[derive(Clone, Copy)]
+pub struct Engine {
+    pub dt: f32,
+    pub iterations: usize,
+    pub substeps: usize,
+    pub gravity: Vec3,
+}
+
+impl Default for Engine {
+    fn default() -> Self {
+        Self {
+            dt: DT,
+            iterations: 4,
+            substeps: 1,
+            gravity: Vec3::NEG_Y * GRAVITY as f32,
+        }
+    }
+}
+
+impl Lab {
+    pub fn new() -> Self {
+        Self::with(CoiloverPlugin::default(), Engine::default())
+    }
+
+    pub fn weightless() -> Self {
+        Self::with(
+            CoiloverPlugin::default(),
+            Engine {
+                gravity: Vec3::ZERO,
+                ..default()
+            },
+        )
+    }
+
+    pub fn microsteps(n: u32) -> Self {
+        Self::with(
+            CoiloverPlugin::default().with_microsteps(n),
+            Engine::default(),
+        )
+    }
+
+    pub fn with(plugin: CoiloverPlugin, engine: Engine) -> Self {
+        let mut lab = Self::without_plugin(engine);
+        lab.app.add_plugins(plugin);
+        lab.prime();
+        lab
+    }
+
+    /// The same engine without springs; call [`prime`](Self::prime) after adding what else it needs.
+    pub fn without_plugin(engine: Engine) -> Self {
+        let mut app = App::new();
+        let mut rapier = RapierPhysicsPlugin::<NoUserData>::default().in_fixed_schedule();
+        rapier = rapier.with_custom_initialization(
+            RapierContextInitialization::InitializeDefaultRapierContext {
+                integration_parameters: bevy_rapier3d::rapier::dynamics::IntegrationParameters {
+                    num_solver_iterations: engine.iterations,
+                    ..default()
+                },
+                rapier_configuration: RapierConfiguration {
+                    gravity: engine.gravity,
+                    ..RapierConfiguration::new(1.0)
+                },
+            },
+        );
+        let tick = Duration::from_secs_f32(engine.dt);
+        app.add_plugins((MinimalPlugins, TransformPlugin))
+            .insert_resource(TimestepMode::Fixed {
+                dt: engine.dt,
+                substeps: engine.substeps,
+            })
+            .insert_resource(Time::<Fixed>::from_duration(tick))
+            .insert_resource(TimeUpdateStrategy::ManualDuration(tick))
+            .add_plugins(rapier);
+        Self { app }
+    }
+
+    /// Runs the start-up schedules; the first update passes no time, so no tick.
+    pub fn prime(&mut self) {
+        self.app.finish();
+        self.app.cleanup();
+        // Waking worker threads costs ten times what the small systems of a lab do.
+        for (_, schedule) in self.app.world_mut().resource_mut::<Schedules>().iter_mut() {
+            schedule.set_executor(SingleThreadedExecutor::new());
+        }
+        self.app.update();
+    }
+
+    pub fn tick(&mut self) {
+        self.app.update();
+    }
+
+    pub fn run(&mut self, seconds: f64) {
+        for _ in 0..self.ticks(seconds) {
+            self.tick();
+        }
+    }
+
+    pub fn dt(&self) -> f64 {
+        match *self.app.world().resource::<TimestepMode>() {
+            TimestepMode::Fixed { dt, .. } => f64::from(dt),
+            _ => f64::from(DT),
+        }
+    }
+
+    pub fn ticks(&self, seconds: f64) -> usize {
+        (seconds / self.dt()).round() as usize
+    }
+
+    pub fn spawn(&mut self, bundle: impl Bundle) -> Entity {
+        self.app.world_mut().spawn(bundle).id()
+    }
+
+    /// A body without collider: mass, and principal inertia 0.4 of it.
+    pub fn body(&mut self, mass: f32, at: Vec3) -> Entity {
+        self.spawn(body(mass, at))
+    }
+
+    /// A plain entity to hold on to.
+    pub fn point(&mut self, at: Vec3) -> Entity {
+        self.spawn(Transform::from_translation(at))
+    }
+
+    pub fn position(&self, entity: Entity) -> Vec3 {
+        self.get::<Transform>(entity).translation
+    }
+
+    pub fn velocity(&self, entity: Entity) -> Vec3 {
+        self.get::<Velocity>(entity).linear
+    }
+
+    pub fn get<C: Component>(&self, entity: Entity) -> &C {
+        self.app
+            .world()
+            .get::<C>(entity)
+            .expect("the component is there")
+    }
+
+    pub fn get_mut<C: Component<Mutability = bevy::ecs::component::Mutable>>(
+        &mut self,
+        entity: Entity,
+    ) -> Mut<'_, C> {
+        self.app
+            .world_mut()
+            .get_mut::<C>(entity)
+            .expect("the component is there")
+    }
+
+    pub fn readout(&self, element: Entity) -> SpringReadout {
+        *self.get::<SpringReadout>(element)
+    }
+
+    pub fn is_sleeping(&self, entity: Entity) -> bool {
+        self.get::<Sleeping>(entity).sleeping
+    }
+
+    pub fn commands(&mut self) -> bevy::ecs::system::Commands<'_, '_> {
+        self.app.world_mut().commands()
+    }
+}
+
+/// A dynamic body without collider: its mass, and a principal inertia of 0.4 kg m² per kg.
+pub fn body(mass: f32, at: Vec3) -> impl Bundle {
+    brick(mass, Vec3::splat(0.4 * mass), at)
+}
+
+/// A dynamic body without collider, with its own principal inertia.
+pub fn brick(mass: f32, inertia: Vec3, at: Vec3) -> impl Bundle {
+    (
+        RigidBody::Dynamic,
+        Transform::from_translation(at),
+        AdditionalMassProperties::MassProperties(MassProperties {
+            mass,
+            principal_inertia: inertia,
+            ..default()
+        }),
+        Velocity::default(),
+        Sleeping::default(),
+    )
+}
+
+/// Rows of a reference file in `tests/data`: one every 1/240 s, t first.
+pub fn reference(text: &str) -> Vec<Vec<f64>> {
+    text.lines()
+        .skip(2)
+        .map(|line| {
+            line.split(',')
+                .map(|x| x.parse().expect("a number"))
+                .collect()
+        })
+        .collect()
+}
