@@ -53,6 +53,26 @@ impl Schedule {
         }
     }
 
+    /// The engine caps speeds. Where a delivery would exceed that at either end of the step, it moves
+    /// steadily instead: the displacement stays right, speed is lost rather than gained.
+    pub(crate) fn capped(
+        &self,
+        delivery: Delivery,
+        velocity: DVec3,
+        displacement: DVec3,
+        cap: f64,
+    ) -> Delivery {
+        let first = velocity + delivery.jump + self.time / f64::from(self.substeps) * delivery.rate;
+        let last = velocity + delivery.jump + self.time * delivery.rate;
+        if first.length().max(last.length()) <= cap {
+            return delivery;
+        }
+        Delivery {
+            jump: displacement / self.time - velocity,
+            rate: DVec3::ZERO,
+        }
+    }
+
     /// Linear part: from (x, v) to where `body` now is.
     pub(crate) fn linear(&self, position: DVec3, velocity: DVec3, body: &Body) -> Delivery {
         self.reach(

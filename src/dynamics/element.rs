@@ -22,7 +22,7 @@ pub(crate) struct Element {
     pub damping: f64,
     /// m.
     pub rest_length: f64,
-    /// The last direction from end A to end B that was well defined.
+    /// From end A to end B where the step began; see [`Element::aim`].
     pub direction: Option<DVec3>,
 }
 
@@ -56,6 +56,12 @@ pub(crate) struct Motion {
 }
 
 impl Motion {
+    /// What the straight half drift of a step added to the length by turning; the kick must not take
+    /// that for stretch, for it answers all turning at once.
+    pub(crate) fn drifted(&self, step: f64) -> f64 {
+        step * step / 8.0 * (self.turning + self.arms)
+    }
+
     /// Axial acceleration of the separation by everything but elements.
     pub(crate) fn outside(&self) -> f64 {
         self.pushed + self.arms + self.turning
@@ -137,25 +143,40 @@ impl Hold {
 }
 
 impl Element {
+    /// The separation from end A to end B, and how much of it is more than rounding of the engine's f32.
+    fn separation(&self, holds: &[Hold; 2]) -> (DVec3, bool) {
+        let d = holds[1].position - holds[0].position;
+        let scale = holds[0].position.abs().max_element().max(self.rest_length);
+        (d, d.length() > 1e-9 * scale.max(1e-3))
+    }
+
+    /// Notes on which side of end A end B is before a drift. A stiff spring that is far from rest
+    /// drifts through the centre and is kicked back within one step; its force must not turn round on
+    /// the way.
+    pub(crate) fn aim(&mut self, bodies: &[Body]) {
+        let holds = [self.ends[0].hold(bodies), self.ends[1].hold(bodies)];
+        if let (d, true) = self.separation(&holds) {
+            self.direction = Some(d.normalize());
+        }
+    }
+
     /// The line at this instant, or `None` where the ends coincide and nothing says which way to push.
+    /// Its length is negative while end B is on the far side of end A during a drift.
     pub(crate) fn line(&self, bodies: &[Body]) -> Option<Line> {
         let holds = [self.ends[0].hold(bodies), self.ends[1].hold(bodies)];
-        let d = holds[1].position - holds[0].position;
-        let length = d.length();
+        let (d, apart) = self.separation(&holds);
         let isotropic = self.rest_length == 0.0;
-        // Below this the direction is rounding noise of the engine's f32 positions.
-        let scale = holds[0].position.abs().max_element().max(self.rest_length);
-        let direction = if length > 1e-9 * scale.max(1e-3) {
-            d / length
-        } else if let Some(last) = self.direction {
-            last
-        } else if isotropic {
-            // Whatever acts on the ends decides; with nothing acting any axis will do.
-            let [a, b] = [0, 1].map(|i| self.ends[i].motion(&holds[i], bodies));
-            let hint = (b.0 - a.0) + (b.1 - a.1);
-            hint.try_normalize().unwrap_or(DVec3::Y)
-        } else {
-            return None;
+        let direction = match (apart, self.direction) {
+            (true, None) => d.normalize(),
+            (true, Some(side)) => d.normalize() * if d.dot(side) < 0.0 { -1.0 } else { 1.0 },
+            (false, Some(side)) => side,
+            (false, None) if isotropic => {
+                // Whatever acts on the ends decides; with nothing acting any axis will do.
+                let [a, b] = [0, 1].map(|i| self.ends[i].motion(&holds[i], bodies));
+                let hint = (b.0 - a.0) + (b.1 - a.1);
+                hint.try_normalize().unwrap_or(DVec3::Y)
+            }
+            (false, None) => return None,
         };
         let inverse_mass = holds.iter().map(|h| h.inverse_mass_along(direction)).sum();
         Some(Line {
@@ -186,7 +207,7 @@ impl Line {
             if lateral_square == 0.0 {
                 0.0
             } else {
-                2.0 * lateral_square / (self.length.abs() + reach)
+                (2.0 * lateral_square / (self.length.abs() + reach)).copysign(self.length)
             }
         };
         Motion {
@@ -202,23 +223,41 @@ impl Line {
     /// Length change over the step that led here, divided by the step: with it damping is second order.
     pub(crate) fn backward_rate(&self, motion: &Motion, step: f64) -> f64 {
         let along = self.length - step * motion.axial;
-        if self.isotropic || along <= 0.0 {
+        if self.isotropic || along * self.length <= 0.0 {
             // Through the centre: the line flips, its rate does not.
             return motion.axial - 0.5 * step * motion.arms;
         }
-        let before = (along * along + step * step * motion.lateral_square).sqrt();
+        let before = (along * along + step * step * motion.lateral_square)
+            .sqrt()
+            .copysign(along);
         (self.length - before) / step - 0.5 * step * motion.arms
     }
 
     /// An impulse pair along the line, positive pushing the ends apart.
     pub(crate) fn push(&self, bodies: &mut [Body], impulse: f64) {
+        self.impulse(bodies, impulse * self.direction);
+    }
+
+    /// Changes the relative velocity across the line.
+    pub(crate) fn push_across(&self, bodies: &mut [Body], change: DVec3) {
+        let Some(across) = change.try_normalize() else {
+            return;
+        };
+        let inverse_mass: f64 = self
+            .holds
+            .iter()
+            .map(|h| h.inverse_mass_along(across))
+            .sum();
+        if inverse_mass > 0.0 {
+            self.impulse(bodies, change / inverse_mass);
+        }
+    }
+
+    /// An impulse on end B and its opposite on end A.
+    fn impulse(&self, bodies: &mut [Body], impulse: DVec3) {
         for (hold, sign) in self.holds.iter().zip([-1.0, 1.0]) {
             if let Some(index) = hold.body {
-                bodies[index].apply(
-                    sign * impulse * self.direction,
-                    hold.arm,
-                    hold.inverse_inertia,
-                );
+                bodies[index].apply(sign * impulse, hold.arm, hold.inverse_inertia);
             }
         }
     }

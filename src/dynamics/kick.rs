@@ -4,9 +4,9 @@
 //! coefficients of [`Poles`], the relative axial acceleration over the step is
 //! −restoring·r − loss/h·rate. The element's own share of it is that less a_out.
 
-use super::body::Body;
+use super::body::{Body, Spin};
 use super::element::{Element, Line, Motion};
-use super::poles::Poles;
+use super::poles::{Poles, RESOLVED_PHASE};
 
 /// The poles of an element on this line for a step.
 fn poles(element: &Element, line: &Line, step: f64) -> Poles {
@@ -16,43 +16,46 @@ fn poles(element: &Element, line: &Line, step: f64) -> Poles {
     )
 }
 
-/// ω²·stretch − a_out.
-fn unanswered(element: &Element, line: &Line, outside: f64) -> f64 {
-    element.stiffness * line.inverse_mass * (line.length - element.rest_length) - outside
+/// ω²·stretch − a_out for a length.
+fn unanswered(element: &Element, line: &Line, length: f64, outside: f64) -> f64 {
+    element.stiffness * line.inverse_mass * (length - element.rest_length) - outside
 }
 
 /// The kick at the half drift: element and outside forces together.
-pub(crate) fn kick(element: &mut Element, bodies: &mut [Body], step: f64) {
+pub(crate) fn kick(element: &Element, bodies: &mut [Body], step: f64) {
     let Some(line) = element.line(bodies) else {
         return external(bodies, step);
     };
-    element.direction = Some(line.direction);
     if line.inverse_mass <= 0.0 {
         return external(bodies, step);
     }
     let poles = poles(element, &line, step);
     let before = line.motion(element, bodies, step);
     let rate = line.backward_rate(&before, step);
-    let impulse = |outside: f64| {
-        let total =
-            -poles.restoring * unanswered(element, &line, outside) - poles.loss / step * rate;
+    let impulse = |outside: f64, drifted: f64| {
+        let unanswered = unanswered(element, &line, line.length - drifted, outside);
+        let total = -poles.restoring * unanswered - poles.loss / step * rate;
         step * (total - outside) / line.inverse_mass
     };
+    let z = element.stiffness * line.inverse_mass * step * step;
+    if swings_across(&line, bodies) && !is_resolved(z) {
+        // The line turns too fast to tell along from across: what is lost along it is lost across.
+        line.push_across(bodies, -poles.loss * before.lateral);
+    }
     // What acts from outside depends on the speed across the line, which the kick changes. The mean of
     // before and after makes the step its own mirror image in time, so that its error has even powers
     // of the step only.
     let mut trial = [bodies[0], *bodies.last().unwrap_or(&bodies[0])];
     let trial = &mut trial[..bodies.len()];
-    act(&line, trial, impulse(before.outside()), step);
+    let first = impulse(before.outside(), before.drifted(step));
+    act(&line, trial, first, step);
     let after = line.motion(element, trial, step);
-    act(
-        &line,
-        bodies,
-        impulse(0.5 * (before.outside() + after.outside())),
-        step,
-    );
+    let mean = |f: &dyn Fn(&Motion) -> f64| 0.5 * (f(&before) + f(&after));
+    let second = impulse(mean(&Motion::outside), mean(&|m| m.drifted(step)));
+    act(&line, bodies, second, step);
 }
 
+/// Element and outside forces.
 fn act(line: &Line, bodies: &mut [Body], impulse: f64, step: f64) {
     line.push(bodies, impulse);
     external(bodies, step);
@@ -85,15 +88,50 @@ pub(crate) fn map_velocity(element: &Element, bodies: &mut [Body], step: f64, ma
     if line.inverse_mass <= 0.0 {
         return;
     }
-    let poles = poles(element, &line, step);
+    let coefficients = poles(element, &line, step);
     let motion = line.motion(element, bodies, step);
-    let axial = motion.axial;
-    let offset = poles.skew * step * unanswered(element, &line, motion.outside());
+    let unanswered = unanswered(element, &line, line.length, motion.outside());
+    let offset = coefficients.skew * step * unanswered;
     let mapped = match map {
-        Map::ToStepped => (axial - offset) / poles.speed,
-        Map::ToTrue => poles.speed * axial + offset,
+        Map::ToStepped => (motion.axial - offset) / coefficients.speed,
+        Map::ToTrue => coefficients.speed * motion.axial + offset,
     };
-    line.push(bodies, (mapped - axial) / line.inverse_mass);
+    line.push(bodies, (mapped - motion.axial) / line.inverse_mass);
+    if swings_across(&line, bodies) {
+        map_lateral(element, bodies, &line, &motion, step, map);
+    }
+}
+
+/// An isotropic spring swings across its line as well as along it. Only where no body turns: a pair of
+/// impulses across the line is a torque.
+fn swings_across(line: &Line, bodies: &[Body]) -> bool {
+    line.isotropic && bodies.iter().all(|body| body.spin == Spin::Still)
+}
+
+fn map_lateral(
+    element: &Element,
+    bodies: &mut [Body],
+    line: &Line,
+    motion: &Motion,
+    step: f64,
+    map: Map,
+) {
+    let z = element.stiffness * line.inverse_mass * step * step;
+    let coefficients = poles(element, line, step);
+    let speed = if is_resolved(z) {
+        coefficients.speed_across(z)
+    } else {
+        coefficients.speed
+    };
+    let factor = match map {
+        Map::ToStepped => 1.0 / speed,
+        Map::ToTrue => speed,
+    };
+    line.push_across(bodies, (factor - 1.0) * motion.lateral);
+}
+
+fn is_resolved(z: f64) -> bool {
+    z < RESOLVED_PHASE * RESOLVED_PHASE
 }
 
 /// ω h of the element where it stands, and whether the lateral motion is resolved too.

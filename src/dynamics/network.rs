@@ -123,7 +123,7 @@ impl Network {
     }
 
     /// The kick at the half drift: all elements and outside forces together.
-    pub(crate) fn kick(elements: &mut [Element], bodies: &mut [Body], step: f64) {
+    pub(crate) fn kick(elements: &[Element], bodies: &mut [Body], step: f64) {
         let z_max = Self::stiffest(elements, bodies, step);
         let theta = placement(z_max);
         let eta = if z_max > RESOLVED {
@@ -136,11 +136,10 @@ impl Network {
 
         let mut matrix = DMatrix::zeros(network.size, network.size);
         let mut rows = Vec::with_capacity(elements.len());
-        for element in elements.iter_mut() {
+        for element in elements {
             let Some(line) = element.line(bodies) else {
                 continue;
             };
-            element.direction = Some(line.direction);
             let before = line.motion(element, bodies, step);
             let rate = line.backward_rate(&before, step);
             let tension =
@@ -175,12 +174,13 @@ impl Network {
         };
 
         let solve = |turning: &dyn Fn(usize) -> f64| {
+            let drift = h2 / 8.0;
             let mut right = network.outside(bodies);
             for (i, (element, row)) in rows.iter().enumerate() {
                 let k = element.stiffness;
                 let tension = row.tension
                     + eta * step * k * row.rate
-                    + (theta * h2 * k + 0.5 * step * element.damping) * turning(i);
+                    + ((theta * h2 - drift) * k + 0.5 * step * element.damping) * turning(i);
                 network.load(
                     &mut right,
                     &jacobian(&row.line, row.line.direction),

@@ -1,9 +1,15 @@
 //! Poles placed exactly: the numbers that make one drift–kick–drift step of a damped oscillator
 //! decay and turn at precisely the true rate, whatever the step.
 
-/// Phase per step (radians) up to which the frequency is exact; beyond it the sampled motion cannot
-/// be told from a slower one, so the phase saturates below π and only energy stays exact.
-const RESOLVED_PHASE: f64 = 2.5;
+/// Phase per step (radians) up to which the frequency is exact. Not far beyond it the sampled motion
+/// cannot be told from a slower one, so the phase stays there and only the energy is exact: stepped
+/// velocities are then smaller than true ones, and drifts no longer than the motion they belong to.
+pub(crate) const RESOLVED_PHASE: f64 = 2.5;
+
+/// Decay exponent per step that is added to motion of unresolved phase. The engine rounds positions to
+/// f32, and a spring of ω h = 100 makes of every rounding a hundred times as much speed; without this
+/// a minute of it would heat a swinging rod by several per cent.
+const UNRESOLVED_DECAY: f64 = 0.01;
 
 /// Decay exponent per step beyond which the velocity map is frozen: by then the motion is over
 /// within the step, and the exact map would only be badly conditioned.
@@ -32,22 +38,14 @@ fn decay_ratio(x: f64) -> f64 {
     if x < 1e-12 { 1.0 } else { -(-x).exp_m1() / x }
 }
 
-/// The damped phase σ, and the phase used for it.
-fn saturated(phase: f64) -> f64 {
-    use std::f64::consts::PI;
-    if phase <= RESOLVED_PHASE {
-        phase
-    } else {
-        PI - (PI - RESOLVED_PHASE) * RESOLVED_PHASE / phase
-    }
-}
-
 impl Poles {
     /// `z` = k h²/m, `g` = c h/(2 m); both finite and not negative.
     pub(crate) fn new(z: f64, g: f64) -> Self {
+        let unresolved = (1.0 - RESOLVED_PHASE * RESOLVED_PHASE / z).max(0.0);
+        let g = g.max(UNRESOLVED_DECAY * unresolved);
         let discriminant = z - g * g;
         let (restoring, slow) = if discriminant > 0.0 {
-            let phase = saturated(discriminant.sqrt());
+            let phase = discriminant.sqrt().min(RESOLVED_PHASE);
             let half = (phase / 2.0).sin();
             let settle = -(-g).exp_m1();
             ((settle * settle + 4.0 * (-g).exp() * half * half) / z, g)
@@ -70,6 +68,15 @@ impl Poles {
             skew: skew * shrink,
         }
     }
+
+    /// Ratio of true to stepped velocity for undamped motion under the same kick: the one that gives
+    /// the stepped orbit the energy of the true one.
+    pub(crate) fn speed_across(&self, z: f64) -> f64 {
+        (0.5 * ((4.0 - self.restoring * z) / self.restoring)
+            .max(0.0)
+            .sqrt())
+        .max(1e-3)
+    }
 }
 
 /// `speed` and `skew`: E P = P M solved for P = [[1, 0], [p, speed]] with p = skew·z/h.
@@ -78,7 +85,7 @@ fn velocity_map(z: f64, g: f64) -> (f64, f64) {
     // e^(−g)·φ and e^(−g)·C, where φ = sin σ/σ (or sinh r/r) and C = cos σ (or cosh r).
     let (sine, cosine) = if square < 0.0 {
         let phase = (-square).sqrt();
-        let used = saturated(phase);
+        let used = phase.min(RESOLVED_PHASE);
         let sine = if phase < 1e-4 {
             1.0 - phase * phase / 6.0
         } else {
@@ -211,10 +218,14 @@ mod tests {
             let (mut y, mut v) = (0.3 / phase, 1.0);
             let energy = |y: f64, v: f64| z * y * y + v * v;
             let start = energy(y, v);
-            for _ in 0..1000 {
+            for _ in 0..100 {
                 (y, v) = step(z, 0.0, y, v);
-                assert!((energy(y, v) / start - 1.0).abs() < 1e-6, "ωh {phase}");
+                assert!(energy(y, v) < start * 1.02, "ωh {phase}: gained");
             }
+            // No more is lost than by the decay that settles rounding noise.
+            let least = (-2.0 * 100.0 * UNRESOLVED_DECAY).exp();
+            let left = energy(y, v) / start;
+            assert!(left > 0.5 * least, "ωh {phase}: {left} left");
         }
     }
 }

@@ -65,20 +65,28 @@ impl Component {
     fn microsteps(&mut self, time: f64, count: u32) {
         let step = time / f64::from(count);
         let alone = self.elements.len() == 1;
+        self.aim();
         if alone {
             kick::map_velocity(&self.elements[0], &mut self.bodies, step, Map::ToStepped);
         }
         for _ in 0..count {
             self.drift(step / 2.0);
             if alone {
-                kick::kick(&mut self.elements[0], &mut self.bodies, step);
+                kick::kick(&self.elements[0], &mut self.bodies, step);
             } else {
-                Network::kick(&mut self.elements, &mut self.bodies, step);
+                Network::kick(&self.elements, &mut self.bodies, step);
             }
             self.drift(step / 2.0);
+            self.aim();
         }
         if alone {
             kick::map_velocity(&self.elements[0], &mut self.bodies, step, Map::ToTrue);
+        }
+    }
+
+    fn aim(&mut self) {
+        for element in &mut self.elements {
+            element.aim(&self.bodies);
         }
     }
 

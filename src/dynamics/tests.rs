@@ -90,15 +90,15 @@ fn elastic_pendulum_follows_the_reference_at_each_setting() {
     let damped = include_str!("../../tests/data/pendulum_k500_c5.csv");
     let stiff = include_str!("../../tests/data/pendulum_k50000_c100.csv");
     for (file, k, c, setting, bar) in [
-        (soft, 50.0, 0.0, accuracy(1, false), 2e-3),
+        (soft, 50.0, 0.0, accuracy(1, false), 1.5e-3),
         (soft, 50.0, 0.0, accuracy(16, false), 1e-5),
-        (soft, 50.0, 0.0, accuracy(1, true), 5e-6),
-        (damped, 500.0, 5.0, accuracy(1, false), 0.014),
-        (damped, 500.0, 5.0, accuracy(16, false), 6e-5),
-        (damped, 500.0, 5.0, accuracy(1, true), 5e-5),
-        (stiff, 5e4, 100.0, accuracy(1, false), 0.016),
-        (stiff, 5e4, 100.0, accuracy(16, false), 7e-5),
-        (stiff, 5e4, 100.0, accuracy(1, true), 0.005),
+        (soft, 50.0, 0.0, accuracy(1, true), 1e-6),
+        (damped, 500.0, 5.0, accuracy(1, false), 3.5e-3),
+        (damped, 500.0, 5.0, accuracy(16, false), 1.5e-5),
+        (damped, 500.0, 5.0, accuracy(1, true), 1e-5),
+        (stiff, 5e4, 100.0, accuracy(1, false), 1.5e-3),
+        (stiff, 5e4, 100.0, accuracy(16, false), 1e-5),
+        (stiff, 5e4, 100.0, accuracy(1, true), 5e-4),
     ] {
         let error = pendulum_error(file, k, c, setting);
         assert!(error < bar, "k {k} c {c} {setting:?}: {error:.3e} m");
@@ -226,9 +226,9 @@ fn engine_substeps_reach_the_state_that_was_ordered() {
                 let d = s.angular(start, gyroscopic, end);
                 let (r, w) = s.engine_rotation(start, start.angular_velocity(), gyroscopic, &d);
                 let apart = (r.inverse() * end.rotation).xyz().length();
-                assert!(apart < 1e-8, "n {n}: {apart:.1e}");
+                assert!(apart < 1e-7, "n {n}: {apart:.1e}");
                 let missed = (w - end.angular_velocity()).length();
-                assert!(missed < 1e-7, "n {n}: {missed:.1e}");
+                assert!(missed < 1e-6, "n {n}: {missed:.1e}");
             }
         }
     }
@@ -272,9 +272,9 @@ fn chain_of_ten_swings_as_the_reference() {
         error(accuracy(4, false)),
         error(accuracy(2, true)),
     );
-    assert!(one < 8e-3, "{one:.2e}");
-    assert!(four < 6e-4, "{four:.2e}");
-    assert!(extrapolated < 1e-4, "{extrapolated:.2e}");
+    assert!(one < 4e-3, "{one:.2e}");
+    assert!(four < 3e-4, "{four:.2e}");
+    assert!(extrapolated < 1e-5, "{extrapolated:.2e}");
 }
 
 #[test]

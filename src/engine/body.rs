@@ -8,6 +8,20 @@ use bevy::prelude::*;
 use bevy_rapier3d::prelude::ExternalForce;
 use bevy_rapier3d::rapier::dynamics::{LockedAxes, RigidBody as RapierBody, RigidBodyType};
 
+/// Rapier turns no body further in one pipeline step (`MAX_ROTATION` in its solver), rad.
+const FASTEST_TURN: f64 = std::f64::consts::FRAC_PI_4;
+
+/// What the engine's settings mean for a delivery.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Engine {
+    /// Solver iterations of a body that asks for no more.
+    pub iterations: usize,
+    /// Its cap on speeds, m/s.
+    pub fastest: f64,
+    pub length_unit: f32,
+    pub gravity: Vec3,
+}
+
 /// Position and velocity of a point fixed to a body (`local` in its frame).
 pub(super) fn point_of(body: &RapierBody, local: DVec3) -> (DVec3, DVec3) {
     let pose = body.position();
@@ -110,17 +124,23 @@ pub(super) fn deliver(
     start: &Body,
     end: &Body,
     plan: &Plan,
-    base_iterations: usize,
+    engine: &Engine,
     takes_impulses: bool,
 ) -> ExternalForce {
-    let schedule = plan.schedule(base_iterations + body.additional_solver_iterations());
+    let schedule = plan.schedule(engine.iterations + body.additional_solver_iterations());
     let time = schedule.time;
     let linear = if takes_impulses {
-        let planned = schedule.linear(start.position, start.velocity, end);
+        let planned = schedule.capped(
+            schedule.linear(start.position, start.velocity, end),
+            start.velocity,
+            end.position - start.position,
+            engine.fastest,
+        );
         let linvel = (start.velocity + planned.jump).as_vec3();
         body.set_linvel(linvel, false);
         // The engine's velocity is rounded; the force makes up for it.
-        after_rounding(start.velocity, linvel, end.velocity, time)
+        let rounding = start.velocity + planned.jump - linvel.as_dvec3();
+        planned.rate + rounding / time
     } else {
         (end.velocity - start.velocity) / time
     };
@@ -130,7 +150,15 @@ pub(super) fn deliver(
         let inverse_inertia = start.inverse_inertia();
         let spin = start.angular_velocity();
         let Delivery { jump, rate } = if takes_impulses {
-            schedule.angular(start, body.gyroscopic_forces_enabled(), end)
+            let planned = schedule.angular(start, body.gyroscopic_forces_enabled(), end);
+            let turned = (end.rotation * start.rotation.inverse()).to_scaled_axis();
+            // A body that may turn fast has no cap.
+            let cap = if body.is_fast_rotation_allowed() {
+                f64::INFINITY
+            } else {
+                FASTEST_TURN * f64::from(plan.pipeline_steps) / time
+            };
+            schedule.capped(planned, spin, turned, cap)
         } else {
             Delivery {
                 jump: DVec3::ZERO,
@@ -151,9 +179,4 @@ pub(super) fn deliver(
         force: force.as_vec3(),
         torque: torque.as_vec3(),
     }
-}
-
-fn after_rounding(from: DVec3, rounded: Vec3, to: DVec3, time: f64) -> DVec3 {
-    let jumped = rounded.as_dvec3() - from;
-    (to - from - jumped) / time
 }

@@ -1,6 +1,6 @@
 //! The step: components, integration, delivery.
 
-use super::body::{deliver, is_movable, point_after, point_of, read};
+use super::body::{Engine, deliver, is_movable, point_after, point_of, read};
 use super::check::Fault;
 use super::forces::{SpringLoad, release};
 use super::scene::{ElementRow, Held, Scene};
@@ -95,9 +95,12 @@ pub(crate) fn solve(
         }
         let step = Step {
             plan,
-            base_iterations: parameters.num_solver_iterations,
-            length_unit: parameters.length_unit,
-            gravity: configuration.gravity,
+            engine: Engine {
+                iterations: parameters.num_solver_iterations,
+                fastest: f64::from(parameters.max_linear_velocity()),
+                length_unit: parameters.length_unit,
+                gravity: configuration.gravity,
+            },
             joints,
             settings: &settings,
         };
@@ -157,9 +160,7 @@ fn components(scene: &Scene) -> Vec<Group> {
 /// What holds for every component of a context in this step.
 struct Step<'a> {
     plan: Plan,
-    base_iterations: usize,
-    length_unit: f32,
-    gravity: Vec3,
+    engine: Engine,
     joints: &'a RapierContextJoints,
     settings: &'a CoiloverSettings,
 }
@@ -185,7 +186,7 @@ impl Step<'_> {
             };
             component
                 .bodies
-                .push(read(body, self.gravity, &user, row.turns));
+                .push(read(body, self.engine.gravity, &user, row.turns));
         }
         let sound = component.bodies.iter().all(Body::is_finite);
         let mut disturbed = false;
@@ -222,7 +223,7 @@ impl Step<'_> {
             let mut share = ExternalForce::default();
             if sound && !component.elements.is_empty() {
                 let multibody = self.joints.multibody_joints.rigid_body_link(row.handle);
-                if self.base_iterations * self.plan.pipeline_steps as usize == 1
+                if self.engine.iterations * self.plan.pipeline_steps as usize == 1
                     && body.additional_solver_iterations() == 0
                 {
                     // One substep has room for a force or an impulse, not for both.
@@ -234,7 +235,7 @@ impl Step<'_> {
                     &start[slot],
                     &component.bodies[slot],
                     &self.plan,
-                    self.base_iterations,
+                    &self.engine,
                     multibody.is_none(),
                 );
             }
@@ -309,8 +310,13 @@ impl Step<'_> {
             load.signature = row.signature;
             if !body.is_sleeping() && is_movable(body) {
                 all_asleep = false;
-                restless |=
-                    is_restless(&load, body, omega, self.plan.time as f32, self.length_unit);
+                restless |= is_restless(
+                    &load,
+                    body,
+                    omega,
+                    self.plan.time as f32,
+                    self.engine.length_unit,
+                );
             }
         }
         if all_asleep && !disturbed {

@@ -45,7 +45,12 @@ impl Sine {
                 (y - offset - cosine * b[1] - sine * b[2]).powi(2)
             })
             .sum();
-        Self { offset, cosine, sine, residual }
+        Self {
+            offset,
+            cosine,
+            sine,
+            residual,
+        }
     }
 }
 

@@ -14,11 +14,18 @@ fn frequency_and_amplitude_hold_from_soft_to_barely_resolved() {
         let mut lab = Lab::new();
         let hook = lab.point(Vec3::ZERO);
         let weight = lab.body(mass, Vec3::NEG_Y);
-        lab.spawn(Spring::new(hook, weight).with_stiffness(k).with_rest_length(0.9));
+        lab.spawn(
+            Spring::new(hook, weight)
+                .with_stiffness(k)
+                .with_rest_length(0.9),
+        );
         let samples: Vec<(f64, f64)> = (1..=600)
             .map(|i| {
                 lab.tick();
-                (f64::from(i) * f64::from(DT), f64::from(lab.position(weight).y))
+                (
+                    f64::from(i) * f64::from(DT),
+                    f64::from(lab.position(weight).y),
+                )
             })
             .collect();
         let error = (frequency(&samples, omega) / omega - 1.0).abs();

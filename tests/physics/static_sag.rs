@@ -23,6 +23,9 @@ fn sag_is_weight_over_stiffness_at_any_stiffness() {
         let sag = f64::from(mass) * GRAVITY / f64::from(k);
         let error = (-f64::from(lab.position(weight).y) - 1.0 - sag).abs();
         println!("static sag, ω·dt {phase}: sag {sag:.3e} m, error {error:.1e} m");
-        assert!(error <= (5e-4 * sag).max(1e-6), "ω·dt {phase}: {error:e} of {sag:e}");
+        assert!(
+            error <= (5e-4 * sag).max(1e-6),
+            "ω·dt {phase}: {error:e} of {sag:e}"
+        );
     }
 }

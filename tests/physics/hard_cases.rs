@@ -1,0 +1,175 @@
+//! Can anything make it blow up?
+
+use crate::harness::*;
+use bevy::prelude::*;
+use bevy_coilover::prelude::*;
+use bevy_rapier3d::prelude::*;
+
+/// Runs a weightless pair for 60 s; the largest mechanical energy over the first, with what the
+/// spring could not have had at the start.
+struct Outcome {
+    growth: f64,
+    farthest: f32,
+}
+
+fn run(masses: [f32; 2], k: f32, c: f32, rest: f32, apart: Vec3, kick: Vec3) -> Outcome {
+    let mut lab = Lab::weightless();
+    let a = lab.body(masses[0], Vec3::ZERO);
+    let b = lab.body(masses[1], apart);
+    lab.get_mut::<Velocity>(b).linear = kick;
+    lab.spawn(
+        SpringDamper::new(a, b)
+            .with_stiffness(k)
+            .with_damping(c)
+            .with_rest_length(rest),
+    );
+    let stretch = f64::from(apart.length() - rest);
+    let start = 0.5 * f64::from(k) * stretch * stretch
+        + 0.5 * f64::from(masses[1]) * f64::from(kick.length_squared());
+    let (mut most, mut farthest) = (0.0_f64, 0.0_f32);
+    for _ in 0..3600 {
+        lab.tick();
+        let mut energy = 0.0;
+        for (body, mass) in [(a, masses[0]), (b, masses[1])] {
+            let (x, v) = (lab.position(body), lab.velocity(body));
+            assert!(x.is_finite() && v.is_finite(), "not finite");
+            energy += 0.5 * f64::from(mass) * f64::from(v.length_squared());
+            farthest = farthest.max(x.length());
+        }
+        let d = f64::from((lab.position(b) - lab.position(a)).length() - rest);
+        most = most.max(energy + 0.5 * f64::from(k) * d * d);
+    }
+    Outcome {
+        growth: most / start,
+        farthest,
+    }
+}
+
+/// Stiffness for a phase ω·dt of the pair.
+fn stiffness(masses: [f32; 2], phase: f32) -> f32 {
+    let m = masses[0] * masses[1] / (masses[0] + masses[1]);
+    m * (phase / DT).powi(2)
+}
+
+#[test]
+fn phase_of_a_hundred_per_step() {
+    let masses = [1.0, 1.0];
+    let k = stiffness(masses, 100.0);
+    // Stretched, kicked across, kicked along.
+    for (apart, kick) in [
+        (Vec3::X * 1.001, Vec3::ZERO),
+        (Vec3::X, Vec3::Y),
+        (Vec3::X, Vec3::X),
+    ] {
+        let o = run(masses, k, 0.0, 1.0, apart, kick);
+        println!(
+            "ω·dt 100, apart {apart} kick {kick}: energy ≤ {:.4} of the first",
+            o.growth
+        );
+        assert!(o.growth <= 1.02, "{apart} {kick}: {}", o.growth);
+    }
+}
+
+#[test]
+fn masses_one_to_a_million() {
+    for phase in [0.1, 1.0, 10.0] {
+        let masses = [1e3, 1e-3];
+        let o = run(
+            masses,
+            stiffness(masses, phase),
+            0.0,
+            1.0,
+            Vec3::X * 1.1,
+            Vec3::ZERO,
+        );
+        println!(
+            "masses 1 : 1e6, ω·dt {phase}: energy ≤ {:.4} of the first",
+            o.growth
+        );
+        assert!(
+            o.growth <= 1.02 && o.farthest < 3.0,
+            "{phase}: {}",
+            o.growth
+        );
+    }
+}
+
+#[test]
+fn damping_of_a_thousand_per_step() {
+    let c = 1000.0 / DT;
+    for k in [0.0, 10.0, 1e6] {
+        let o = run(
+            [1.0, 1.0],
+            k,
+            c,
+            1.0,
+            Vec3::X * 1.2,
+            Vec3::new(1.0, 2.0, 0.0),
+        );
+        println!("c·dt/m 1000, k {k}: energy ≤ {:.4} of the first", o.growth);
+        assert!(o.growth <= 1.02, "{k}: {}", o.growth);
+    }
+}
+
+#[test]
+fn rest_length_zero() {
+    for (phase, c) in [
+        (0.1, 0.0),
+        (1.0, 0.0),
+        (2.0, 5.0),
+        (100.0, 0.0),
+        (100.0, 50.0),
+    ] {
+        let masses = [1.0, 2.0];
+        let k = stiffness(masses, phase);
+        let o = run(masses, k, c, 0.0, Vec3::X * 0.5, Vec3::new(0.1, 0.7, 0.2));
+        println!(
+            "rest length 0, ω·dt {phase} c {c}: energy ≤ {:.4} of the first",
+            o.growth
+        );
+        assert!(o.growth <= 1.02, "{phase} {c}: {}", o.growth);
+    }
+}
+
+#[test]
+fn straight_through_the_centre_of_a_long_spring() {
+    // Squeezed through zero length, where its force turns round in an instant. No fixed step resolves
+    // that; it must not gain by it.
+    for phase in [0.1, 0.3, 1.0] {
+        let masses = [1.0, 1.0];
+        let k = stiffness(masses, phase);
+        let o = run(
+            masses,
+            k,
+            0.0,
+            1.0,
+            Vec3::X,
+            Vec3::X * -2.5 * phase / DT * 2.0_f32.sqrt(),
+        );
+        println!(
+            "through the centre, ω·dt {phase}: energy ≤ {:.4} of the first",
+            o.growth
+        );
+        assert!(o.growth <= 1.05, "{phase}: {}", o.growth);
+    }
+}
+
+#[test]
+fn ends_coincide() {
+    for phase in [0.1, 1.0, 100.0] {
+        let masses = [1.0, 1.0];
+        let o = run(
+            masses,
+            stiffness(masses, phase),
+            1.0,
+            0.0,
+            Vec3::ZERO,
+            Vec3::Y,
+        );
+        println!(
+            "ends coincide, rest length 0, ω·dt {phase}: energy ≤ {:.4}",
+            o.growth
+        );
+        assert!(o.growth <= 1.02, "{phase}: {}", o.growth);
+    }
+}
