@@ -29,6 +29,9 @@ pub struct SpringLoad {
     /// Which elements load the body; a change wakes it.
     #[reflect(ignore)]
     pub(super) signature: u64,
+    /// The user's share changed since the last step.
+    #[reflect(ignore)]
+    pub(super) disturbed: bool,
     /// We gave the body a second solver iteration.
     #[reflect(ignore)]
     pub(super) raised_iterations: bool,
@@ -42,6 +45,7 @@ impl SpringLoad {
             mirrored: user,
             before: None,
             signature: 0,
+            disturbed: true,
             raised_iterations: false,
         }
     }
@@ -51,9 +55,11 @@ impl SpringLoad {
         if !changed {
             return;
         }
-        let now = *component;
+        let (now, before) = (*component, self.user);
         take_in(&mut self.user.force, now.force, self.mirrored.force);
         take_in(&mut self.user.torque, now.torque, self.mirrored.torque);
+        // The engine wakes a body whose sum changes; ours must wake when the user's share does.
+        self.disturbed |= self.user != before;
     }
 
     /// Puts both shares into the engine, and into the component without marking it changed: a change

@@ -1,8 +1,7 @@
 //! Wrong set-ups are told in one message that says what to change.
 
 use crate::plugin::CoiloverSettings;
-use bevy::app::DynEq;
-use bevy::ecs::schedule::Schedules;
+use bevy::ecs::schedule::{ScheduleLabel, Schedules};
 use bevy::prelude::*;
 use bevy_rapier3d::plugin::systems;
 use bevy_rapier3d::prelude::*;
@@ -62,7 +61,7 @@ pub(crate) fn check_timestep(
     fixed: Option<Res<Time<Fixed>>>,
     mut watched: ResMut<Watched>,
 ) {
-    let Some(fixed) = fixed.filter(|_| settings.schedule.dyn_eq(&FixedUpdate as &dyn DynEq)) else {
+    let Some(fixed) = fixed.filter(|_| settings.schedule == FixedUpdate.intern()) else {
         return;
     };
     let tick = fixed.timestep().as_secs_f32();

@@ -5,6 +5,7 @@
 //! timers set back, and one that is disturbed is woken as a whole.
 
 use super::forces::SpringLoad;
+use crate::dynamics::body::Body;
 use bevy_rapier3d::rapier::dynamics::RigidBody as RapierBody;
 
 /// Speed (m/s, rad/s; times the engine's length unit) that counts as rest, for the present velocity
@@ -46,6 +47,13 @@ pub(super) fn is_restless(
         (angular - angular_before).length(),
         REST + noise,
     ))
+}
+
+/// Whether a step would set a sleeping body moving: an acceleration that within a second is not rest.
+pub(super) fn is_set_moving(start: &Body, end: &Body, time: f64, length_unit: f32) -> bool {
+    let rest = f64::from(REST) * time;
+    (end.velocity - start.velocity).length() > rest * f64::from(length_unit)
+        || (end.angular_velocity() - start.angular_velocity()).length() > rest
 }
 
 /// Sets the engine's sleep timer back.

@@ -4,7 +4,7 @@ use super::body::{Engine, deliver, is_movable, point_after, point_of, read};
 use super::check::Fault;
 use super::forces::{SpringLoad, release};
 use super::scene::{ElementRow, Held, Scene};
-use super::sleep::{is_restless, keep_awake};
+use super::sleep::{is_restless, is_set_moving, keep_awake};
 use super::timestep::Plan;
 use crate::dynamics::body::Body;
 use crate::dynamics::element::{Element, End};
@@ -14,6 +14,7 @@ use bevy::ecs::entity_disabling::Disabled;
 use bevy::ecs::query::Allow;
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
+use bevy_rapier3d::rapier::dynamics::RigidBody as RapierBody;
 
 /// What of a Rapier context the step needs.
 type ContextParts<'a> = (
@@ -209,6 +210,9 @@ impl Step<'_> {
             component.advance(self.plan.time, self.settings.accuracy());
         }
         let sound = sound && component.bodies.iter().all(Body::is_finite);
+        if sound {
+            self.wake_the_moved(scene, group, &start, &component.bodies, set);
+        }
         for (slot, b) in group.bodies.iter().enumerate() {
             let row = scene.bodies[*b];
             let (Some(body), Ok((_, mut load, mut force, ..))) =
@@ -279,6 +283,31 @@ impl Step<'_> {
         }
     }
 
+    /// A sleeping body is no wall: where the step would set it moving, it and the others wake.
+    fn wake_the_moved(
+        &self,
+        scene: &Scene,
+        group: &Group,
+        start: &[Body],
+        end: &[Body],
+        set: &mut RapierRigidBodySet,
+    ) {
+        let bodies = || group.bodies.iter().map(|b| scene.bodies[*b].handle);
+        let moved = bodies()
+            .zip(start.iter().zip(end))
+            .any(|(handle, (start, end))| {
+                set.bodies.get(handle).is_some_and(RapierBody::is_sleeping)
+                    && is_set_moving(start, end, self.plan.time, self.engine.length_unit)
+            });
+        if moved {
+            for handle in bodies() {
+                if let Some(body) = set.bodies.get_mut(handle) {
+                    body.wake_up(true);
+                }
+            }
+        }
+    }
+
     /// Wakes, keeps awake or lets sleep; says whether there is anything to do.
     fn is_awake(
         &self,
@@ -306,7 +335,8 @@ impl Step<'_> {
             else {
                 continue;
             };
-            disturbed |= load.signature != row.signature;
+            disturbed |= load.disturbed || load.signature != row.signature;
+            load.disturbed = false;
             load.signature = row.signature;
             if !body.is_sleeping() && is_movable(body) {
                 all_asleep = false;

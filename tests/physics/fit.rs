@@ -3,7 +3,6 @@
 /// y ≈ offset + cosine·cos ωt + sine·sin ωt.
 #[derive(Clone, Copy, Debug)]
 pub struct Sine {
-    pub offset: f64,
     pub cosine: f64,
     pub sine: f64,
     /// Sum of squared residuals.
@@ -46,7 +45,6 @@ impl Sine {
             })
             .sum();
         Self {
-            offset,
             cosine,
             sine,
             residual,

@@ -96,10 +96,7 @@ impl Lab {
     pub fn prime(&mut self) {
         self.app.finish();
         self.app.cleanup();
-        // Waking worker threads costs ten times what the small systems of a lab do.
-        for (_, schedule) in self.app.world_mut().resource_mut::<Schedules>().iter_mut() {
-            schedule.set_executor(SingleThreadedExecutor::new());
-        }
+        single_threaded(&mut self.app);
         self.app.update();
     }
 
@@ -176,6 +173,15 @@ impl Lab {
     }
 }
 
+/// Waking worker threads costs ten times what the small systems of a lab do; and messages are then told
+/// on the test's own thread.
+pub fn single_threaded(app: &mut App) {
+    let mut schedules = app.world_mut().resource_mut::<Schedules>();
+    for (_, schedule) in schedules.iter_mut() {
+        schedule.set_executor(SingleThreadedExecutor::new());
+    }
+}
+
 /// A dynamic body without collider: its mass, and a principal inertia of 0.4 kg m² per kg.
 pub fn body(mass: f32, at: Vec3) -> impl Bundle {
     brick(mass, Vec3::splat(0.4 * mass), at)
@@ -206,4 +212,14 @@ pub fn reference(text: &str) -> Vec<Vec<f64>> {
                 .collect()
         })
         .collect()
+}
+
+impl Lab {
+    /// Gives a body a force of the user's.
+    pub fn spawn_force(&mut self, body: Entity, force: Vec3) {
+        self.app
+            .world_mut()
+            .entity_mut(body)
+            .insert(ExternalForce { force, ..default() });
+    }
 }

@@ -4,10 +4,18 @@ mod fit;
 mod harness;
 
 mod adams;
+mod as_data;
+mod bad_input;
 mod decay;
 mod elastic_pendulum;
+mod ends;
+mod engine_settings;
 mod free_fall;
 mod hard_cases;
+mod messages;
 mod natural_frequency;
+mod repeatability;
+mod sleeping;
 mod spinning_pair;
 mod static_sag;
+mod user_force;

@@ -1,0 +1,105 @@
+//! Are elements plain data: reflected, mapped between worlds, written in scenes?
+
+use crate::harness::*;
+use bevy::ecs::entity::EntityHashMap;
+use bevy::ecs::reflect::AppTypeRegistry;
+use bevy::prelude::*;
+use bevy_coilover::prelude::*;
+use bevy_rapier3d::prelude::*;
+
+#[test]
+fn every_public_component_is_in_the_type_registry() {
+    let lab = Lab::new();
+    let registry = lab.app.world().resource::<AppTypeRegistry>().read();
+    for name in [
+        "Spring",
+        "Damper",
+        "SpringDamper",
+        "Anchors",
+        "SpringReadout",
+        "SpringLoad",
+        "SpringFault",
+    ] {
+        let registration = registry.get_with_short_type_path(name);
+        let registration = registration.unwrap_or_else(|| panic!("{name} is registered"));
+        assert!(registration.data::<ReflectComponent>().is_some(), "{name}");
+    }
+}
+
+#[test]
+fn a_clone_of_both_ends_and_element_points_at_the_clones() {
+    let (a, b, c, d) = {
+        let mut world = World::new();
+        (
+            world.spawn_empty().id(),
+            world.spawn_empty().id(),
+            world.spawn_empty().id(),
+            world.spawn_empty().id(),
+        )
+    };
+    let mut map = EntityHashMap::from_iter([(a, c), (b, d)]);
+    let mut spring = Spring::new(a, b);
+    Component::map_entities(&mut spring, &mut map);
+    assert_eq!((spring.body_a, spring.body_b), (c, d));
+    let mut damper = Damper::new(a, b);
+    Component::map_entities(&mut damper, &mut map);
+    assert_eq!((damper.body_a, damper.body_b), (c, d));
+    let mut pair = SpringDamper::new(a, b);
+    Component::map_entities(&mut pair, &mut map);
+    assert_eq!((pair.body_a, pair.body_b), (c, d));
+}
+
+#[test]
+fn a_scene_macro_names_the_ends() {
+    let mut lab = Lab::without_plugin(Engine::default());
+    lab.app.add_plugins((
+        CoiloverPlugin::default(),
+        bevy::asset::AssetPlugin::default(),
+        bevy::scene::ScenePlugin,
+    ));
+    lab.prime();
+    fn rig() -> impl Scene {
+        bsn! {
+            Children [
+                #Hook Transform { translation: Vec3 { x: 0.0, y: 2.0, z: 0.0 } },
+                #Weight Transform bevy::scene::template_value(RigidBody::Dynamic) bevy::scene::template_value(AdditionalMassProperties::Mass(1.0)),
+                SpringDamper { body_a: #Hook, body_b: #Weight, stiffness: 100.0, damping: 1.0 },
+            ]
+        }
+    }
+    lab.app
+        .world_mut()
+        .spawn_scene(rig())
+        .expect("the scene spawns");
+    lab.run(0.2);
+    let mut elements = lab
+        .app
+        .world_mut()
+        .query::<(&SpringDamper, &SpringReadout)>();
+    let (pair, readout) = elements.single(lab.app.world()).expect("one element");
+    assert_eq!(pair.rest_length, Some(2.0));
+    assert!(readout.length > 2.01, "the weight hangs on it: {readout:?}");
+    let name = |e: Entity| lab.app.world().get::<Name>(e).map(ToString::to_string);
+    assert_eq!(name(pair.body_a).as_deref(), Some("Hook"));
+    assert_eq!(name(pair.body_b).as_deref(), Some("Weight"));
+}
+
+#[test]
+fn builders_work_in_constants() {
+    const SPRING: Spring = Spring::new(Entity::PLACEHOLDER, Entity::PLACEHOLDER)
+        .with_stiffness(3.0)
+        .with_rest_length(0.5);
+    const DAMPER: Damper = Damper::new(Entity::PLACEHOLDER, Entity::PLACEHOLDER).with_damping(2.0);
+    const PAIR: SpringDamper = SpringDamper::new(Entity::PLACEHOLDER, Entity::PLACEHOLDER)
+        .with_stiffness(1.5)
+        .with_damping(0.25)
+        .with_rest_length(2.0);
+    assert_eq!(
+        (SPRING.stiffness, SPRING.rest_length, DAMPER.damping),
+        (3.0, Some(0.5), 2.0)
+    );
+    assert_eq!(
+        (PAIR.stiffness, PAIR.damping, PAIR.rest_length),
+        (1.5, 0.25, Some(2.0))
+    );
+}

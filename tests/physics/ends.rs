@@ -1,0 +1,210 @@
+//! What can an element be held by?
+
+use crate::harness::*;
+use bevy::prelude::*;
+use bevy_coilover::prelude::*;
+use bevy_rapier3d::prelude::*;
+
+const K: f32 = 200.0;
+const C: f32 = 20.0;
+
+/// A 2 kg weight below an end, after it has come to rest; the end stands at the origin.
+fn sag(lab: &mut Lab, end: Entity) -> f32 {
+    let weight = lab.body(2.0, Vec3::NEG_Y);
+    lab.spawn(
+        SpringDamper::new(end, weight)
+            .with_stiffness(K)
+            .with_damping(C)
+            .with_rest_length(1.0),
+    );
+    lab.run(10.0);
+    -1.0 - lab.position(weight).y
+}
+
+const SAG: f32 = 2.0 * 9.81 / K;
+
+#[test]
+fn fixed_and_kinematic_bodies_and_plain_entities_hold_alike() {
+    for kind in 0..4 {
+        let mut lab = Lab::new();
+        let end = match kind {
+            0 => lab.spawn((RigidBody::Fixed, Transform::default())),
+            1 => lab.spawn((RigidBody::KinematicPositionBased, Transform::default())),
+            2 => lab.spawn((RigidBody::KinematicVelocityBased, Transform::default())),
+            _ => lab.point(Vec3::ZERO),
+        };
+        let sag = sag(&mut lab, end);
+        assert!(
+            (sag - SAG).abs() < 5e-5 * SAG.max(0.1),
+            "kind {kind}: {sag} against {SAG}"
+        );
+    }
+}
+
+/// An end that moves up and down at a steady rate: what the damper transmits is c times that rate.
+#[test]
+fn a_moving_end_drags_through_the_damper_whatever_it_is() {
+    for kind in 0..3 {
+        let mut lab = Lab::weightless();
+        let end = match kind {
+            0 => lab.spawn((RigidBody::KinematicPositionBased, Transform::default())),
+            1 => lab.spawn((
+                RigidBody::KinematicVelocityBased,
+                Transform::default(),
+                Velocity::linear(Vec3::NEG_X * 0.6),
+            )),
+            _ => lab.point(Vec3::ZERO),
+        };
+        let body = lab.body(2.0, Vec3::X);
+        let element = lab.spawn(Damper::new(end, body).with_damping(4.0));
+        lab.tick();
+        let start = lab.velocity(body).x;
+        for i in 1..=60 {
+            if kind != 1 {
+                lab.get_mut::<Transform>(end).translation.x = -0.6 * DT * i as f32;
+            }
+            lab.tick();
+        }
+        // m v' = c (v_end − v): the body takes up the end's speed exponentially.
+        let t = if kind == 1 { 61.0 } else { 60.0 } * DT;
+        let wanted = -0.6 * (1.0 - (-4.0 / 2.0 * t).exp());
+        let v = lab.velocity(body).x;
+        assert!(
+            (v - wanted).abs() < 2e-4,
+            "kind {kind} from {start}: {v} against {wanted}"
+        );
+        let readout = lab.readout(element);
+        assert!((readout.rate - (v + 0.6)).abs() < 1e-4, "{readout:?}");
+        assert!((readout.damper_force - 4.0 * readout.rate).abs() < 1e-4);
+        assert!((readout.dissipated_power - 4.0 * readout.rate * readout.rate).abs() < 1e-4);
+    }
+}
+
+/// An end below a body in the hierarchy moves with that body and loads it, torque included.
+#[test]
+fn a_child_of_a_body_is_the_same_as_an_anchor_on_it() {
+    // Sums that f32 holds exactly, so that both are the very same point.
+    let arm = Vec3::new(0.375, 0.125, -0.25);
+    let run = |child: bool| {
+        let mut lab = Lab::weightless();
+        let hook = lab.point(Vec3::ZERO);
+        let body = lab.spawn(brick(1.0, Vec3::new(0.1, 0.2, 0.3), Vec3::X));
+        let spring = |end| {
+            Spring::new(hook, end)
+                .with_stiffness(50.0)
+                .with_rest_length(0.8)
+        };
+        if child {
+            let lug = lab.spawn((Transform::from_translation(Vec3::X * 0.125), ChildOf(body)));
+            let eye = lab.spawn((
+                Transform::from_translation(arm - Vec3::X * 0.125),
+                ChildOf(lug),
+            ));
+            lab.spawn(spring(eye));
+        } else {
+            lab.spawn((spring(body), Anchors::new(Vec3::ZERO, arm)));
+        }
+        lab.run(2.0);
+        (*lab.get::<Transform>(body), *lab.get::<Velocity>(body))
+    };
+    let ((a, va), (b, vb)) = (run(true), run(false));
+    let apart = a.translation.distance(b.translation);
+    assert!(apart < 1e-5, "{apart}");
+    assert!(a.rotation.angle_between(b.rotation) < 1e-3);
+    assert!(va.angular.distance(vb.angular) < 1e-4 && va.angular.length() > 0.1);
+}
+
+/// An anchor is where a child with that translation would stand, so scale and parents count.
+#[test]
+fn scaled_and_nested_parents_place_the_anchor() {
+    let mut lab = Lab::weightless();
+    let root = lab.spawn(
+        Transform::from_xyz(1.0, 2.0, 3.0)
+            .with_rotation(Quat::from_rotation_y(0.7))
+            .with_scale(Vec3::splat(2.0)),
+    );
+    let end = lab.spawn((
+        Transform::from_xyz(0.5, 0.0, 0.0).with_rotation(Quat::from_rotation_z(0.4)),
+        ChildOf(root),
+    ));
+    let parent = lab.spawn(Transform::from_xyz(0.0, -1.0, 0.0).with_scale(Vec3::splat(3.0)));
+    let body = lab.spawn((
+        RigidBody::Dynamic,
+        AdditionalMassProperties::Mass(1.0),
+        Transform::from_xyz(0.5, 0.0, 0.0).with_scale(Vec3::new(1.0, 2.0, 0.5)),
+        ChildOf(parent),
+    ));
+    let element = lab.spawn((
+        Spring::new(end, body).with_stiffness(0.0),
+        Anchors::new(Vec3::new(0.1, 0.2, 0.3), Vec3::new(0.2, 0.1, -0.4)),
+    ));
+    lab.tick();
+    let place =
+        |lab: &Lab, e: Entity, anchor: Vec3| lab.get::<GlobalTransform>(e).transform_point(anchor);
+    let a = place(&lab, end, Vec3::new(0.1, 0.2, 0.3));
+    let b = place(&lab, body, Vec3::new(0.2, 0.1, -0.4));
+    assert!((lab.readout(element).length - a.distance(b)).abs() < 1e-5);
+    assert_eq!(
+        lab.get::<Spring>(element).rest_length,
+        Some(lab.readout(element).length)
+    );
+}
+
+#[test]
+fn rest_length_none_is_the_length_at_the_first_step_and_is_written_back() {
+    let mut lab = Lab::weightless();
+    let hook = lab.point(Vec3::ZERO);
+    let body = lab.body(1.0, Vec3::new(0.0, 3.0, 4.0));
+    let element = lab.spawn(Spring::new(hook, body).with_stiffness(100.0));
+    lab.run(1.0);
+    assert_eq!(lab.get::<Spring>(element).rest_length, Some(5.0));
+    assert!(lab.velocity(body).length() < 1e-6);
+}
+
+/// The first fixed tick after spawning counts, whether colliders give the mass or not.
+#[test]
+fn an_element_acts_from_the_first_tick() {
+    for collider in [false, true] {
+        let mut lab = Lab::weightless();
+        let hook = lab.point(Vec3::ZERO);
+        let body = if collider {
+            lab.spawn((
+                RigidBody::Dynamic,
+                Transform::from_xyz(2.0, 0.0, 0.0),
+                Velocity::default(),
+                Collider::cuboid(0.5, 0.5, 0.5),
+                ColliderMassProperties::Mass(1.0),
+            ))
+        } else {
+            lab.body(1.0, Vec3::X * 2.0)
+        };
+        lab.spawn(
+            Spring::new(hook, body)
+                .with_stiffness(36.0)
+                .with_rest_length(1.0),
+        );
+        lab.tick();
+        let wanted = 1.0 + (6.0 * f64::from(DT)).cos();
+        let x = f64::from(lab.position(body).x);
+        assert!(
+            (x - wanted).abs() < 1e-6,
+            "collider {collider}: {x} against {wanted}"
+        );
+    }
+}
+
+#[test]
+fn both_ends_on_one_body_do_nothing_to_it() {
+    let mut lab = Lab::weightless();
+    let body = lab.body(1.0, Vec3::ZERO);
+    let a = lab.spawn((Transform::from_xyz(0.5, 0.1, 0.0), ChildOf(body)));
+    let b = lab.spawn((Transform::from_xyz(-0.4, 0.0, 0.3), ChildOf(body)));
+    lab.spawn(
+        SpringDamper::new(a, b)
+            .with_stiffness(1e4)
+            .with_damping(10.0)
+            .with_rest_length(0.1),
+    );
+    lab.run(1.0);
+    assert!(lab.position(body).length() < 1e-6 && lab.velocity(body).length() < 1e-6);
+}

@@ -1,0 +1,161 @@
+//! Does a wrong set-up say what to change?
+
+use crate::harness::*;
+use bevy::prelude::*;
+use bevy_coilover::prelude::*;
+use bevy_rapier3d::prelude::*;
+use std::cell::RefCell;
+
+thread_local! {
+    static MESSAGES: RefCell<Vec<String>> = const { RefCell::new(Vec::new()) };
+}
+
+struct Collector;
+
+impl log::Log for Collector {
+    fn enabled(&self, metadata: &log::Metadata) -> bool {
+        metadata.level() <= log::Level::Warn
+    }
+
+    fn log(&self, record: &log::Record) {
+        if self.enabled(record.metadata()) && record.target().starts_with("bevy_coilover") {
+            MESSAGES.with_borrow_mut(|m| m.push(record.args().to_string()));
+        }
+    }
+
+    fn flush(&self) {}
+}
+
+/// What the crate has told on this thread; labs run on the test's own thread.
+pub struct Log;
+
+impl Log {
+    pub fn capture() -> Self {
+        // The first test installs it; the others find it there.
+        let _ = log::set_logger(&Collector);
+        log::set_max_level(log::LevelFilter::Warn);
+        MESSAGES.take();
+        Self
+    }
+
+    pub fn take(&self) -> Vec<String> {
+        MESSAGES.take()
+    }
+}
+
+fn pull(app: &mut App) -> Entity {
+    let hook = app.world_mut().spawn(Transform::default()).id();
+    let body = app.world_mut().spawn(body(1.0, Vec3::X * 2.0)).id();
+    app.world_mut().spawn(
+        Spring::new(hook, body)
+            .with_stiffness(10.0)
+            .with_rest_length(1.0),
+    );
+    body
+}
+
+#[test]
+fn a_sound_setup_says_nothing() {
+    let log = Log::capture();
+    let mut lab = Lab::new();
+    pull(&mut lab.app);
+    lab.run(0.2);
+    assert_eq!(log.take(), Vec::<String>::new());
+}
+
+#[test]
+fn without_rapier() {
+    let log = Log::capture();
+    let mut app = App::new();
+    app.add_plugins((MinimalPlugins, TransformPlugin, CoiloverPlugin::default()));
+    pull(&mut app);
+    single_threaded(&mut app);
+    for _ in 0..3 {
+        app.update();
+    }
+    let told = log.take();
+    assert_eq!(told.len(), 1, "{told:?}");
+    assert!(
+        told[0].contains("RapierPhysicsPlugin is missing") && told[0].contains("in_fixed_schedule")
+    );
+}
+
+#[test]
+fn with_rapier_in_another_schedule() {
+    let log = Log::capture();
+    let mut app = App::new();
+    app.add_plugins((
+        MinimalPlugins,
+        TransformPlugin,
+        RapierPhysicsPlugin::<NoUserData>::default(),
+        CoiloverPlugin::default(),
+    ));
+    let body = pull(&mut app);
+    single_threaded(&mut app);
+    for _ in 0..5 {
+        app.update();
+    }
+    let told = log.take();
+    assert_eq!(told.len(), 1, "{told:?}");
+    assert!(told[0].contains("FixedUpdate") && told[0].contains("CoiloverPlugin::new"));
+    // And nothing is heaped up on the body meanwhile.
+    assert!(app.world().get::<SpringLoad>(body).is_none());
+}
+
+#[test]
+fn in_rapiers_own_schedule_it_works() {
+    let log = Log::capture();
+    let mut app = App::new();
+    app.add_plugins((
+        MinimalPlugins,
+        TransformPlugin,
+        RapierPhysicsPlugin::<NoUserData>::default(),
+        CoiloverPlugin::new(PostUpdate),
+    ))
+    .insert_resource(TimestepMode::Fixed {
+        dt: DT,
+        substeps: 1,
+    });
+    let body = pull(&mut app);
+    single_threaded(&mut app);
+    for _ in 0..30 {
+        app.update();
+    }
+    assert_eq!(log.take(), Vec::<String>::new());
+    let x = app
+        .world()
+        .get::<Transform>(body)
+        .map_or(f32::NAN, |t| t.translation.x);
+    assert!(x < 1.9, "{x}");
+}
+
+#[test]
+fn with_a_variable_timestep_in_the_fixed_schedule() {
+    let log = Log::capture();
+    let mut lab = Lab::without_plugin(Engine::default());
+    lab.app
+        .add_plugins(CoiloverPlugin::default())
+        .insert_resource(TimestepMode::default());
+    lab.prime();
+    lab.run(0.2);
+    let told = log.take();
+    assert_eq!(told.len(), 1, "{told:?}");
+    assert!(told[0].contains("Variable") && told[0].contains("TimestepMode::Fixed"));
+}
+
+#[test]
+fn with_an_engine_step_that_is_not_the_tick() {
+    let log = Log::capture();
+    let mut lab = Lab::without_plugin(Engine::default());
+    lab.app
+        .add_plugins(CoiloverPlugin::default())
+        .insert_resource(TimestepMode::Fixed {
+            dt: 1.0 / 30.0,
+            substeps: 1,
+        });
+    lab.prime();
+    lab.run(0.2);
+    let told = log.take();
+    assert_eq!(told.len(), 1, "{told:?}");
+    assert!(told[0].contains("2.00 times as fast"));
+}

@@ -1,0 +1,102 @@
+//! Is a run the same run twice, however the ticks fall into frames?
+
+use crate::harness::*;
+use bevy::prelude::*;
+use bevy::time::TimeUpdateStrategy;
+use bevy_coilover::prelude::*;
+use bevy_rapier3d::prelude::*;
+
+/// A bit of everything: a pendulum, a spinning pair held off-centre, a chain, a child as end.
+fn populate(lab: &mut Lab) -> Vec<Entity> {
+    let hook = lab.point(Vec3::new(0.0, 2.0, 0.0));
+    let weight = lab.body(1.0, Vec3::new(1.0, 2.0, 0.0));
+    lab.spawn(
+        SpringDamper::new(hook, weight)
+            .with_stiffness(300.0)
+            .with_damping(0.5),
+    );
+    let a = lab.spawn(brick(
+        1.0,
+        Vec3::new(0.1, 0.2, 0.3),
+        Vec3::new(5.0, 0.0, 0.0),
+    ));
+    let b = lab.spawn(brick(
+        2.0,
+        Vec3::new(0.2, 0.5, 0.3),
+        Vec3::new(6.0, 0.5, 0.2),
+    ));
+    lab.get_mut::<Velocity>(a).angular = Vec3::new(1.0, 2.0, 3.0);
+    let ear = lab.spawn((Transform::from_xyz(0.2, 0.1, 0.0), ChildOf(b)));
+    lab.spawn((
+        Spring::new(a, ear)
+            .with_stiffness(80.0)
+            .with_rest_length(0.7),
+        Anchors::new(Vec3::new(0.1, 0.2, 0.0), Vec3::ZERO),
+    ));
+    let mut last = hook;
+    let mut bodies = vec![weight, a, b];
+    for i in 1..=4 {
+        let next = lab.body(0.3, Vec3::new(0.3 * i as f32, 2.0, 1.0));
+        lab.spawn(
+            SpringDamper::new(last, next)
+                .with_stiffness(200.0)
+                .with_damping(0.1),
+        );
+        last = next;
+        bodies.push(next);
+    }
+    bodies
+}
+
+fn state(lab: &Lab, bodies: &[Entity]) -> Vec<u32> {
+    bodies
+        .iter()
+        .flat_map(|b| {
+            let t = lab.get::<Transform>(*b);
+            let v = lab.get::<Velocity>(*b);
+            let mut all = t.translation.to_array().to_vec();
+            all.extend(t.rotation.to_array());
+            all.extend(v.linear.to_array());
+            all.extend(v.angular.to_array());
+            all.into_iter().map(f32::to_bits).collect::<Vec<_>>()
+        })
+        .collect()
+}
+
+/// State after 240 ticks, so many in each frame.
+fn run(ticks_per_frame: u32) -> Vec<u32> {
+    let mut lab = Lab::new();
+    let bodies = populate(&mut lab);
+    let tick = lab.app.world().resource::<Time<Fixed>>().timestep();
+    lab.app
+        .insert_resource(TimeUpdateStrategy::ManualDuration(tick * ticks_per_frame));
+    for _ in 0..240 / ticks_per_frame {
+        lab.app.update();
+    }
+    state(&lab, &bodies)
+}
+
+#[test]
+fn two_runs_are_bitwise_equal() {
+    assert_eq!(run(1), run(1));
+}
+
+#[test]
+fn four_ticks_in_a_frame_are_four_frames_of_a_tick() {
+    assert_eq!(run(1), run(4));
+}
+
+#[test]
+fn threads_change_nothing() {
+    // The lab's schedules are single-threaded; here they are as an app has them.
+    let mut lab = Lab::without_plugin(Engine::default());
+    lab.app.add_plugins(CoiloverPlugin::default());
+    lab.app.finish();
+    lab.app.cleanup();
+    lab.app.update();
+    let bodies = populate(&mut lab);
+    for _ in 0..240 {
+        lab.app.update();
+    }
+    assert_eq!(state(&lab, &bodies), run(1));
+}
