@@ -7,16 +7,44 @@ mod element;
 mod engine;
 mod plugin;
 mod readout;
+#[cfg(feature = "visual")]
+mod visual;
 
 pub use element::{Anchors, Damper, Spring, SpringDamper, SpringFault};
 pub use engine::SpringLoad;
 pub use plugin::{CoiloverPlugin, CoiloverSettings, CoiloverSystems};
 pub use readout::SpringReadout;
+#[cfg(feature = "visual")]
+pub use visual::{Coil, CoiloverVisualPlugin, CoiloverVisualSystems, Telescope, coilover};
+
+use bevy::app::{PluginGroup, PluginGroupBuilder};
+
+/// [`CoiloverPlugin`] in `FixedUpdate`, and with the `visual` feature `CoiloverVisualPlugin`.
+///
+/// ```no_run
+/// # use bevy::prelude::*;
+/// # use bevy_coilover::prelude::*;
+/// # let mut app = App::new();
+/// app.add_plugins(CoiloverPlugins.set(CoiloverPlugin::default().with_microsteps(4)));
+/// ```
+#[derive(Clone, Copy, Debug, Default)]
+pub struct CoiloverPlugins;
+
+impl PluginGroup for CoiloverPlugins {
+    fn build(self) -> PluginGroupBuilder {
+        let group = PluginGroupBuilder::start::<Self>().add(CoiloverPlugin::default());
+        #[cfg(feature = "visual")]
+        let group = group.add(CoiloverVisualPlugin);
+        group
+    }
+}
 
 /// Everything that a game needs.
 pub mod prelude {
     pub use crate::{
-        Anchors, CoiloverPlugin, CoiloverSettings, CoiloverSystems, Damper, Spring, SpringDamper,
-        SpringFault, SpringLoad, SpringReadout,
+        Anchors, CoiloverPlugin, CoiloverPlugins, CoiloverSettings, CoiloverSystems, Damper,
+        Spring, SpringDamper, SpringFault, SpringLoad, SpringReadout,
     };
+    #[cfg(feature = "visual")]
+    pub use crate::{Coil, CoiloverVisualPlugin, CoiloverVisualSystems, Telescope, coilover};
 }

@@ -1,0 +1,112 @@
+//! Light, ground, camera, and simple solids for bodies.
+
+use bevy::camera::RenderTarget;
+use bevy::core_pipeline::tonemapping::Tonemapping;
+use bevy::light::CascadeShadowConfigBuilder;
+use bevy::prelude::*;
+
+/// What a body looks like; ignored where nothing is drawn.
+#[derive(Component, Clone, Copy)]
+#[require(Visibility)]
+pub enum Shape {
+    Cuboid(Vec3, Paint),
+    Ball(f32, Paint),
+    /// Radius and height, about Y.
+    Cylinder(f32, f32, Paint),
+}
+
+#[derive(Clone, Copy)]
+pub enum Paint {
+    Iron,
+    Ivory,
+    Blue,
+    Floor,
+}
+
+impl Paint {
+    fn material(self) -> StandardMaterial {
+        let (color, roughness, metallic) = match self {
+            Paint::Iron => (Color::srgb(0.16, 0.17, 0.19), 0.5, 0.3),
+            Paint::Ivory => (Color::srgb(0.86, 0.83, 0.76), 0.6, 0.0),
+            Paint::Blue => (Color::srgb(0.16, 0.30, 0.44), 0.5, 0.1),
+            Paint::Floor => (Color::srgb(0.36, 0.38, 0.40), 0.95, 0.0),
+        };
+        StandardMaterial {
+            base_color: color,
+            perceptual_roughness: roughness,
+            metallic,
+            ..default()
+        }
+    }
+}
+
+/// Adds what makes a scene visible, seen from `eye`, into a window or an image.
+pub fn dress(app: &mut App, eye: Vec3, target: Vec3, image: Option<RenderTarget>) {
+    app.insert_resource(ClearColor(Color::srgb(0.62, 0.67, 0.72)))
+        .add_systems(PreUpdate, show_shapes)
+        .add_systems(Startup, move |mut commands: Commands| {
+            let mut camera = commands.spawn((
+                Camera3d::default(),
+                Transform::from_translation(eye).looking_at(target, Vec3::Y),
+                Projection::Perspective(PerspectiveProjection {
+                    fov: 0.6,
+                    ..default()
+                }),
+                Tonemapping::AcesFitted,
+                AmbientLight {
+                    color: Color::srgb(0.85, 0.92, 1.0),
+                    brightness: 500.0,
+                    ..default()
+                },
+                Msaa::Sample4,
+            ));
+            if let Some(image) = &image {
+                camera.insert(image.clone());
+            }
+            commands.spawn((
+                DirectionalLight {
+                    illuminance: 9_000.0,
+                    shadow_maps_enabled: true,
+                    ..default()
+                },
+                Transform::from_xyz(3.0, 7.0, 4.0).looking_at(Vec3::ZERO, Vec3::Y),
+                CascadeShadowConfigBuilder {
+                    maximum_distance: 25.0,
+                    first_cascade_far_bound: 10.0,
+                    ..default()
+                }
+                .build(),
+            ));
+            // A second light from the other side lifts the shadows off black.
+            commands.spawn((
+                DirectionalLight {
+                    illuminance: 2_200.0,
+                    color: Color::srgb(0.8, 0.88, 1.0),
+                    ..default()
+                },
+                Transform::from_xyz(-5.0, 3.0, 2.0).looking_at(Vec3::ZERO, Vec3::Y),
+            ));
+        });
+}
+
+fn show_shapes(
+    shapes: Query<(Entity, &Shape), Added<Shape>>,
+    mut meshes: ResMut<Assets<Mesh>>,
+    mut materials: ResMut<Assets<StandardMaterial>>,
+    mut commands: Commands,
+) {
+    for (entity, shape) in &shapes {
+        let (mesh, paint): (Mesh, _) = match *shape {
+            Shape::Cuboid(size, paint) => (Cuboid::from_size(size).into(), paint),
+            Shape::Ball(radius, paint) => (Sphere::new(radius).mesh().uv(48, 24), paint),
+            Shape::Cylinder(radius, height, paint) => (
+                Cylinder::new(radius, height).mesh().resolution(64).build(),
+                paint,
+            ),
+        };
+        commands.entity(entity).insert((
+            Mesh3d(meshes.add(mesh)),
+            MeshMaterial3d(materials.add(paint.material())),
+        ));
+    }
+}

@@ -1,0 +1,105 @@
+//! What the machine can show.
+
+use std::fmt;
+use std::path::PathBuf;
+
+/// Which frames to keep.
+pub enum Film {
+    /// Several through the whole time, numbered, in a folder.
+    Frames(PathBuf),
+    /// The last one.
+    Still(PathBuf),
+}
+
+/// How an example is shown, with the reason for the message.
+pub enum Means {
+    Window,
+    Film {
+        film: Film,
+        adapter: String,
+        why: String,
+    },
+    Headless(String),
+}
+
+impl fmt::Display for Means {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Means::Window => write!(f, "opening a window"),
+            Means::Film { film, adapter, why } => {
+                let place = match film {
+                    Film::Frames(folder) => format!("frames into {}", folder.display()),
+                    Film::Still(file) => format!("a picture into {}", file.display()),
+                };
+                write!(f, "rendering {place} with {adapter}, because {why}")
+            }
+            Means::Headless(why) => write!(f, "read-outs only, because {why}"),
+        }
+    }
+}
+
+impl Means {
+    /// The best that the machine has: window, frames, or read-outs.
+    pub fn find(headless: bool, screenshot: Option<PathBuf>, frames: Option<PathBuf>) -> Self {
+        if headless {
+            return Means::Headless("--headless was given".into());
+        }
+        let asked = screenshot.is_some() || frames.is_some();
+        let film = match (screenshot, frames) {
+            (Some(file), _) => Film::Still(file),
+            (None, Some(folder)) => Film::Frames(folder),
+            (None, None) => Film::Frames("renders".into()),
+        };
+        let no_display = match display() {
+            Ok(()) if !asked => {
+                return match adapter() {
+                    Some(_) => Means::Window,
+                    None => Means::Headless("there is a display but no graphics adapter".into()),
+                };
+            }
+            Ok(()) => "that was asked for".into(),
+            Err(why) => why,
+        };
+        match adapter() {
+            Some(adapter) => Means::Film {
+                film,
+                adapter,
+                why: no_display,
+            },
+            None => Means::Headless(format!(
+                "{no_display}, and there is no Vulkan, Metal or DirectX adapter"
+            )),
+        }
+    }
+}
+
+/// Whether a window can be opened.
+fn display() -> Result<(), String> {
+    if cfg!(not(all(unix, not(target_os = "macos")))) {
+        return Ok(());
+    }
+    let name = std::env::var("DISPLAY").unwrap_or_default();
+    let Some((host, number)) = name.rsplit_once(':') else {
+        return Err("there is no display (DISPLAY is not set; these examples speak X11)".into());
+    };
+    let number = number.split('.').next().unwrap_or_default();
+    #[cfg(unix)]
+    if host.is_empty() {
+        let socket = format!("/tmp/.X11-unix/X{number}");
+        return std::os::unix::net::UnixStream::connect(&socket)
+            .map(drop)
+            .map_err(|e| format!("display {name} does not answer ({e})"));
+    }
+    let _ = (host, number);
+    Ok(())
+}
+
+/// The name of an adapter that can render, software ones included.
+fn adapter() -> Option<String> {
+    let instance = wgpu::Instance::default();
+    let adapters = bevy::tasks::block_on(instance.enumerate_adapters(wgpu::Backends::PRIMARY));
+    adapters.first().map(|adapter| {
+        let info = adapter.get_info();
+        format!("{} ({})", info.name, info.backend)
+    })
+}
