@@ -198,7 +198,7 @@ mod tests {
 
     #[test]
     fn coefficients_stay_finite_and_bounded_at_any_stiffness() {
-        for phase in [0.0_f64, 1e-9, 0.5, 2.6, 3.1, 3.2, 6.2832, 100.0, 1e6] {
+        for phase in [0.0_f64, 1e-9, 0.5, 2.6, 3.1, 3.2, 6.3, 100.0, 1e6] {
             for g in [0.0, 1e-9, 0.1, 1.0, 30.0, 1e3, 1e9] {
                 let p = Poles::new(phase * phase, g);
                 for value in [p.restoring, p.loss, p.speed, p.skew] {
@@ -213,7 +213,7 @@ mod tests {
 
     #[test]
     fn energy_is_kept_where_the_phase_is_no_longer_resolved() {
-        for phase in [2.6_f64, 6.2832, 37.0, 100.0, 1e4] {
+        for phase in [2.6_f64, 6.3, 37.0, 100.0, 1e4] {
             let z = phase * phase;
             let (mut y, mut v) = (0.3 / phase, 1.0);
             let energy = |y: f64, v: f64| z * y * y + v * v;

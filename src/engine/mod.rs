@@ -6,6 +6,7 @@ mod body;
 mod check;
 mod ends;
 mod forces;
+mod group;
 mod measure;
 mod memory;
 mod scene;

@@ -219,10 +219,10 @@ fn find(
             continue;
         }
         let fresh = body.mass_properties().local_mprops.inv_mass == 0.0;
-        if fresh || mass_modified.contains(&entity) {
-            if let Some(body) = set.bodies.get_mut(handle) {
-                body.recompute_mass_properties_from_colliders(&colliders.colliders);
-            }
+        if (fresh || mass_modified.contains(&entity))
+            && let Some(body) = set.bodies.get_mut(handle)
+        {
+            body.recompute_mass_properties_from_colliders(&colliders.colliders);
         }
         let body = set.bodies.get(handle).ok_or(missing)?;
         if body.mass_properties().local_mprops.inv_mass == 0.0 {

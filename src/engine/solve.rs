@@ -3,6 +3,7 @@
 use super::body::{Engine, deliver, is_movable, point_after, point_of, read};
 use super::check::Fault;
 use super::forces::{SpringLoad, release};
+use super::group::{Group, groups};
 use super::scene::{ElementRow, Held, Scene};
 use super::sleep::{is_restless, is_set_moving, keep_awake};
 use super::timestep::Plan;
@@ -38,13 +39,6 @@ type Loads<'w, 's> = Query<
     Allow<Disabled>,
 >;
 
-/// Elements of one component, by index into the scene.
-#[derive(Default)]
-struct Group {
-    elements: Vec<usize>,
-    bodies: Vec<usize>,
-}
-
 /// Computes and delivers every element's force for the coming engine step.
 pub(crate) fn solve(
     mut scene: ResMut<Scene>,
@@ -75,7 +69,7 @@ pub(crate) fn solve(
 
     scene.time = 0.0;
     let mut slots = vec![usize::MAX; scene.bodies.len()];
-    for group in components(scene) {
+    for group in groups(scene) {
         let Some(context) = group.bodies.first().map(|b| scene.bodies[*b].context) else {
             continue;
         };
@@ -115,47 +109,6 @@ pub(crate) fn solve(
             }
         }
     }
-}
-
-/// Elements that share bodies, directly or through others.
-fn components(scene: &Scene) -> Vec<Group> {
-    let mut parent: Vec<usize> = (0..scene.bodies.len()).collect();
-    fn root(parent: &mut [usize], mut at: usize) -> usize {
-        while parent[at] != at {
-            parent[at] = parent[parent[at]];
-            at = parent[at];
-        }
-        at
-    }
-    let movable = |row: &ElementRow| {
-        row.held.map(|held| match held {
-            Held::Body { movable, .. } => movable,
-            Held::Path { .. } => None,
-        })
-    };
-    for row in &scene.elements {
-        if let [Some(a), Some(b)] = movable(row) {
-            let (a, b) = (root(&mut parent, a), root(&mut parent, b));
-            parent[a.max(b)] = a.min(b);
-        }
-    }
-    let mut groups: Vec<Group> = Vec::new();
-    let mut group_of = vec![usize::MAX; scene.bodies.len()];
-    for body in 0..scene.bodies.len() {
-        let r = root(&mut parent, body);
-        if group_of[r] == usize::MAX {
-            group_of[r] = groups.len();
-            groups.push(Group::default());
-        }
-        groups[group_of[r]].bodies.push(body);
-    }
-    for (i, row) in scene.elements.iter().enumerate() {
-        if let Some(body) = movable(row).into_iter().flatten().next() {
-            let r = root(&mut parent, body);
-            groups[group_of[r]].elements.push(i);
-        }
-    }
-    groups
 }
 
 /// What holds for every component of a context in this step.

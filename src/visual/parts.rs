@@ -129,7 +129,9 @@ pub(super) fn build_coils(
             continue;
         }
         // Wound at its rest length, where the wire is to look round; a guess until that is known.
-        let rest = spring.map_or(pair.map_or(None, |p| p.rest_length), |s| s.rest_length);
+        let rest = spring
+            .and_then(|s| s.rest_length)
+            .or_else(|| pair.and_then(|p| p.rest_length));
         let length = rest.filter(|l| *l > 0.0).unwrap_or(7.0 * coil.radius);
         let key = [coil.radius, coil.wire_radius, coil.turns, length].map(f32::to_bits);
         let mesh = shapes

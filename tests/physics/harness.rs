@@ -50,13 +50,6 @@ impl Lab {
         )
     }
 
-    pub fn microsteps(n: u32) -> Self {
-        Self::with(
-            CoiloverPlugin::default().with_microsteps(n),
-            Engine::default(),
-        )
-    }
-
     pub fn with(plugin: CoiloverPlugin, engine: Engine) -> Self {
         let mut lab = Self::without_plugin(engine);
         lab.app.add_plugins(plugin);
@@ -166,10 +159,6 @@ impl Lab {
 
     pub fn is_sleeping(&self, entity: Entity) -> bool {
         self.get::<Sleeping>(entity).sleeping
-    }
-
-    pub fn commands(&mut self) -> bevy::ecs::system::Commands<'_, '_> {
-        self.app.world_mut().commands()
     }
 }
 

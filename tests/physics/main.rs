@@ -19,3 +19,5 @@ mod sleeping;
 mod spinning_pair;
 mod static_sag;
 mod user_force;
+#[cfg(feature = "visual")]
+mod visual_data;
