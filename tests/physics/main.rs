@@ -4,6 +4,7 @@ mod fit;
 mod harness;
 
 mod adams;
+mod against_rapier;
 mod as_data;
 mod bad_input;
 mod decay;
