@@ -37,6 +37,11 @@ pub(crate) struct Body {
     pub acceleration: DVec3,
     /// The user's torque.
     pub torque: DVec3,
+    /// How much of a free body's motion contacts and joints leave it: 1 free, 0 held. Already in
+    /// `inverse_mass` and `acceleration`.
+    pub mobility: f64,
+    /// What elements have given it so far in this step: impulse (N s) and angular impulse (N m s).
+    pub given: (DVec3, DVec3),
 }
 
 /// exp of a rotation vector.
@@ -52,7 +57,7 @@ impl Body {
         }
         let inverse = DVec3::select(
             self.inertia.cmpgt(DVec3::ZERO),
-            self.inertia.recip(),
+            self.mobility * self.inertia.recip(),
             DVec3::ZERO,
         );
         let mut world = if inverse.x == inverse.y && inverse.y == inverse.z {
@@ -133,11 +138,14 @@ impl Body {
 
     /// An impulse (N s) at `arm` from the centre of mass, with the inverse inertia at hand.
     pub(crate) fn apply(&mut self, impulse: DVec3, arm: DVec3, inverse_inertia: DMat3) {
+        let angular = arm.cross(impulse);
+        self.given.0 += impulse;
+        self.given.1 += angular;
         self.velocity += self.inverse_mass * impulse;
-        self.apply_angular(arm.cross(impulse), inverse_inertia);
+        self.apply_angular(angular, inverse_inertia);
     }
 
-    pub(crate) fn apply_angular(&mut self, impulse: DVec3, inverse_inertia: DMat3) {
+    fn apply_angular(&mut self, impulse: DVec3, inverse_inertia: DMat3) {
         match &mut self.spin {
             Spin::Still => {}
             Spin::Free { momentum } => *momentum += impulse,

@@ -254,7 +254,7 @@ impl Line {
     }
 
     /// An impulse on end B and its opposite on end A.
-    fn impulse(&self, bodies: &mut [Body], impulse: DVec3) {
+    pub(crate) fn impulse(&self, bodies: &mut [Body], impulse: DVec3) {
         for (hold, sign) in self.holds.iter().zip([-1.0, 1.0]) {
             if let Some(index) = hold.body {
                 bodies[index].apply(sign * impulse, hold.arm, hold.inverse_inertia);

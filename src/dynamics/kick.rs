@@ -26,14 +26,17 @@ pub(crate) fn kick(element: &Element, bodies: &mut [Body], step: f64) {
     let Some(line) = element.line(bodies) else {
         return external(bodies, step);
     };
-    if line.inverse_mass <= 0.0 {
-        return external(bodies, step);
-    }
+
     let poles = poles(element, &line, step);
     let before = line.motion(element, bodies, step);
     let rate = line.backward_rate(&before, step);
     let impulse = |outside: f64, drifted: f64| {
         let unanswered = unanswered(element, &line, line.length - drifted, outside);
+        if line.inverse_mass <= 0.0 {
+            // Both ends are held: nothing moves for it, but what holds them feels the force.
+            let stretch = line.length - drifted - element.rest_length;
+            return -step * (element.stiffness * stretch + element.damping * rate);
+        }
         let total = -poles.restoring * unanswered - poles.loss / step * rate;
         step * (total - outside) / line.inverse_mass
     };

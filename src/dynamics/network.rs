@@ -23,23 +23,82 @@ const RESOLVED: f64 = 4.0;
 /// How strongly.
 const UNRESOLVED_DAMPING: f64 = 0.1;
 
-/// The coupled kick of a component.
+/// The coupled kick of a component: where each body's unknown accelerations stand.
 pub(crate) struct Network {
     /// First unknown of each body, and how many it has: 3, or 6 where it turns.
     slots: Vec<(usize, usize)>,
     size: usize,
 }
 
-/// One element's line, if it acts in this kick.
-struct Row {
-    line: Line,
-    before: Motion,
-    /// Tension at the drifted positions, N.
-    tension: f64,
-    rate: f64,
+/// One direction in which an element pulls its ends together: along its line, or across it.
+struct Strut {
+    /// Index of the line it belongs to.
+    line: usize,
+    direction: DVec3,
+    /// Row of the Jacobian: linear and angular part at each end's body.
+    row: [(Option<usize>, DVec3, DVec3); 2],
+    /// Force before the solve, N.
+    load: f64,
+    /// What the turning of the line adds to it, N per m/s².
+    turning: f64,
+    /// What the relative acceleration adds to it, N per m/s².
+    weight: f64,
 }
 
-/// Linear and angular parts of one direction at both ends: the row of its Jacobian.
+/// How implicit the kick is.
+#[derive(Clone, Copy)]
+struct Blend {
+    theta: f64,
+    eta: f64,
+    step: f64,
+}
+
+impl Blend {
+    fn new(z_max: f64, step: f64) -> Self {
+        Self {
+            theta: placement(z_max),
+            eta: if z_max > RESOLVED {
+                UNRESOLVED_DAMPING
+            } else {
+                0.0
+            },
+            step,
+        }
+    }
+
+    /// The struts of one element on its line.
+    fn struts(&self, element: &Element, line: &Line, before: &Motion, index: usize) -> Vec<Strut> {
+        let (h, h2) = (self.step, self.step * self.step);
+        let (k, c) = (element.stiffness, element.damping);
+        let rate = line.backward_rate(before, h);
+        let tension = k * (line.length - element.rest_length) + c * rate;
+        let implicit = (self.theta + self.eta) * h2;
+        let mut struts = vec![Strut {
+            line: index,
+            direction: line.direction,
+            row: jacobian(line, line.direction),
+            load: tension + self.eta * h * k * rate,
+            // The half drift counted h²/8 of the turning as stretch already.
+            turning: (self.theta * h2 - h2 / 8.0) * k + 0.5 * h * c,
+            weight: implicit * k + 0.5 * h * c,
+        }];
+        let across = across(element, line, tension);
+        if across > 0.0 {
+            let (t1, t2) = line.direction.any_orthonormal_pair();
+            struts.extend([t1, t2].map(|t| Strut {
+                line: index,
+                direction: t,
+                row: jacobian(line, t),
+                load: self.eta * h * across * before.lateral.dot(t),
+                turning: 0.0,
+                weight: implicit * across,
+            }));
+        }
+        struts
+    }
+}
+
+/// Linear and angular parts of one direction at both ends.
 fn jacobian(line: &Line, direction: DVec3) -> [(Option<usize>, DVec3, DVec3); 2] {
     let [a, b] = &line.holds;
     [
@@ -81,91 +140,26 @@ impl Network {
         Self { slots, size }
     }
 
-    /// Adds the outer product of a row with itself, weighted.
-    fn add(
-        &self,
-        matrix: &mut DMatrix<f64>,
-        row: &[(Option<usize>, DVec3, DVec3); 2],
-        weight: f64,
-    ) {
-        for (body_i, linear_i, angular_i) in row {
-            for (body_j, linear_j, angular_j) in row {
-                let (Some(i), Some(j)) = (body_i, body_j) else {
-                    continue;
-                };
-                let ((at_i, count_i), (at_j, count_j)) = (self.slots[*i], self.slots[*j]);
-                let entry = |linear: DVec3, angular: DVec3, k: usize| {
-                    if k < 3 { linear[k] } else { angular[k - 3] }
-                };
-                for r in 0..count_i {
-                    for c in 0..count_j {
-                        matrix[(at_i + r, at_j + c)] += weight
-                            * entry(*linear_i, *angular_i, r)
-                            * entry(*linear_j, *angular_j, c);
-                    }
-                }
-            }
-        }
-    }
-
-    /// Adds a generalised force along a row.
-    fn load(&self, right: &mut DVector<f64>, row: &[(Option<usize>, DVec3, DVec3); 2], force: f64) {
-        for (body, linear, angular) in row {
-            let Some(body) = body else { continue };
-            let (at, count) = self.slots[*body];
-            for k in 0..3 {
-                right[at + k] += force * linear[k];
-                if count == 6 {
-                    right[at + 3 + k] += force * angular[k];
-                }
-            }
-        }
-    }
-
     /// The kick at the half drift: all elements and outside forces together.
     pub(crate) fn kick(elements: &[Element], bodies: &mut [Body], step: f64) {
-        let z_max = Self::stiffest(elements, bodies, step);
-        let theta = placement(z_max);
-        let eta = if z_max > RESOLVED {
-            UNRESOLVED_DAMPING
-        } else {
-            0.0
-        };
+        let blend = Blend::new(Self::stiffest(elements, bodies, step), step);
         let network = Self::new(bodies);
-        let h2 = step * step;
+        let lines: Vec<(&Element, Line, Motion)> = elements
+            .iter()
+            .filter_map(|element| {
+                let line = element.line(bodies)?;
+                Some((element, line, line.motion(element, bodies, step)))
+            })
+            .collect();
+        let struts: Vec<Strut> = lines
+            .iter()
+            .enumerate()
+            .flat_map(|(i, (element, line, before))| blend.struts(element, line, before, i))
+            .collect();
 
         let mut matrix = DMatrix::zeros(network.size, network.size);
-        let mut rows = Vec::with_capacity(elements.len());
-        for element in elements {
-            let Some(line) = element.line(bodies) else {
-                continue;
-            };
-            let before = line.motion(element, bodies, step);
-            let rate = line.backward_rate(&before, step);
-            let tension =
-                element.stiffness * (line.length - element.rest_length) + element.damping * rate;
-            let axial = (theta + eta) * h2 * element.stiffness + 0.5 * step * element.damping;
-            network.add(&mut matrix, &jacobian(&line, line.direction), axial);
-            let across = across(element, &line, tension);
-            if across > 0.0 {
-                let (t1, t2) = line.direction.any_orthonormal_pair();
-                for t in [t1, t2] {
-                    network.add(
-                        &mut matrix,
-                        &jacobian(&line, t),
-                        (theta + eta) * h2 * across,
-                    );
-                }
-            }
-            rows.push((
-                *element,
-                Row {
-                    line,
-                    before,
-                    tension,
-                    rate,
-                },
-            ));
+        for strut in &struts {
+            network.add(&mut matrix, strut);
         }
         network.add_inertia(&mut matrix, bodies);
         let Some(factor) = matrix.cholesky() else {
@@ -173,46 +167,84 @@ impl Network {
             return kick::external(bodies, step);
         };
 
-        let solve = |turning: &dyn Fn(usize) -> f64| {
-            let drift = h2 / 8.0;
+        let solve = |turning: &[f64]| {
             let mut right = network.outside(bodies);
-            for (i, (element, row)) in rows.iter().enumerate() {
-                let k = element.stiffness;
-                let tension = row.tension
-                    + eta * step * k * row.rate
-                    + ((theta * h2 - drift) * k + 0.5 * step * element.damping) * turning(i);
-                network.load(
-                    &mut right,
-                    &jacobian(&row.line, row.line.direction),
-                    -tension,
-                );
-                if eta > 0.0 {
-                    let force = eta * step * across(element, &row.line, row.tension);
-                    for (t, along) in [
-                        (DVec3::X, row.before.lateral.x),
-                        (DVec3::Y, row.before.lateral.y),
-                        (DVec3::Z, row.before.lateral.z),
-                    ] {
-                        network.load(&mut right, &jacobian(&row.line, t), -force * along);
-                    }
-                }
+            for strut in &struts {
+                network.load(&mut right, strut, turning[strut.line]);
             }
             network.clear_locked(&mut right, bodies);
             factor.solve(&right)
         };
-        let first = solve(&|i| rows[i].1.before.turning + rows[i].1.before.arms);
+        let act = |bodies: &mut [Body], acceleration: &DVector<f64>, turning: &[f64]| {
+            for strut in &struts {
+                let force = strut.load
+                    + strut.turning * turning[strut.line]
+                    + strut.weight * network.along(acceleration, strut);
+                let pull = -step * force * strut.direction;
+                lines[strut.line].1.impulse(bodies, pull);
+            }
+            kick::external(bodies, step);
+        };
+        let first: Vec<f64> = lines.iter().map(|(.., m)| m.turning + m.arms).collect();
         let mut trial = bodies.to_vec();
-        network.apply(&mut trial, &first, step);
+        act(&mut trial, &solve(&first), &first);
         // The mean of before and after the kick keeps the step its own mirror image in time.
-        let mean: Vec<f64> = rows
+        let mean: Vec<f64> = lines
             .iter()
-            .map(|(element, row)| {
-                let after = row.line.motion(element, &trial, step);
-                0.5 * (row.before.turning + row.before.arms + after.turning + after.arms)
+            .zip(&first)
+            .map(|((element, line, _), before)| {
+                let after = line.motion(element, &trial, step);
+                0.5 * (before + after.turning + after.arms)
             })
             .collect();
-        let acceleration = solve(&|i| mean[i]);
-        network.apply(bodies, &acceleration, step);
+        act(bodies, &solve(&mean), &mean);
+    }
+
+    /// Linear and angular unknowns of a body; none of the latter where it does not turn.
+    fn parts(&self, body: usize) -> impl Iterator<Item = (usize, usize)> {
+        let (at, count) = self.slots[body];
+        (0..count).map(move |k| (k, at + k))
+    }
+
+    /// Adds the outer product of a strut's row with itself.
+    fn add(&self, matrix: &mut DMatrix<f64>, strut: &Strut) {
+        for (body_i, linear_i, angular_i) in &strut.row {
+            for (body_j, linear_j, angular_j) in &strut.row {
+                let (Some(i), Some(j)) = (body_i, body_j) else {
+                    continue;
+                };
+                for (k, r) in self.parts(*i) {
+                    for (l, c) in self.parts(*j) {
+                        matrix[(r, c)] += strut.weight
+                            * entry(*linear_i, *angular_i, k)
+                            * entry(*linear_j, *angular_j, l);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Subtracts a strut's force before the solve from the right side.
+    fn load(&self, right: &mut DVector<f64>, strut: &Strut, turning: f64) {
+        let force = strut.load + strut.turning * turning;
+        for (body, linear, angular) in &strut.row {
+            let Some(body) = body else { continue };
+            for (k, r) in self.parts(*body) {
+                right[r] -= force * entry(*linear, *angular, k);
+            }
+        }
+    }
+
+    /// Relative acceleration of a strut's ends along it.
+    fn along(&self, acceleration: &DVector<f64>, strut: &Strut) -> f64 {
+        let mut sum = 0.0;
+        for (body, linear, angular) in &strut.row {
+            let Some(body) = body else { continue };
+            for (k, r) in self.parts(*body) {
+                sum += acceleration[r] * entry(*linear, *angular, k);
+            }
+        }
+        sum
     }
 
     /// Mass and inertia on the diagonal blocks; locked axes become unit rows of their own.
@@ -280,19 +312,11 @@ impl Network {
         }
         right
     }
+}
 
-    fn apply(&self, bodies: &mut [Body], acceleration: &DVector<f64>, step: f64) {
-        for (body, (at, count)) in bodies.iter_mut().zip(&self.slots) {
-            let part = |at: usize| {
-                DVec3::new(acceleration[at], acceleration[at + 1], acceleration[at + 2])
-            };
-            body.velocity += step * part(*at);
-            if *count == 6 {
-                let velocity = body.angular_velocity() + step * part(at + 3);
-                body.set_angular_velocity(velocity);
-            }
-        }
-    }
+/// Component k of six.
+fn entry(linear: DVec3, angular: DVec3, k: usize) -> f64 {
+    if k < 3 { linear[k] } else { angular[k - 3] }
 }
 
 /// Stiffness across the line: a spring in tension pulls a displaced end back.

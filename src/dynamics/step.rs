@@ -4,6 +4,7 @@ use super::body::{Body, Spin, turn};
 use super::element::Element;
 use super::kick::{self, Map};
 use super::network::Network;
+use bevy::math::DVec3;
 
 /// Phase per coarse step up to which the fourth-order combination converges.
 const EXTRAPOLATION_LIMIT: f64 = 1.5;
@@ -50,6 +51,25 @@ impl Component {
                 _ => {}
             }
         }
+    }
+
+    /// The force (N) of all elements on a body as they stand.
+    pub(crate) fn force_on(&self, body: usize) -> DVec3 {
+        let mut sum = DVec3::ZERO;
+        for element in &self.elements {
+            let Some(line) = element.line(&self.bodies) else {
+                continue;
+            };
+            let rate = line.motion(element, &self.bodies, 0.0).axial;
+            let stretch = line.length - element.rest_length;
+            let tension = element.stiffness * stretch + element.damping * rate;
+            for (hold, sign) in line.holds.iter().zip([1.0, -1.0]) {
+                if hold.body == Some(body) {
+                    sum += sign * tension * line.direction;
+                }
+            }
+        }
+        sum
     }
 
     fn resolved(&self, step: f64) -> bool {

@@ -20,6 +20,8 @@ fn point(mass: f64, position: DVec3, gravity: DVec3) -> Body {
         rotation_locked: [false; 3],
         acceleration: gravity,
         torque: DVec3::ZERO,
+        mobility: 1.0,
+        given: (DVec3::ZERO, DVec3::ZERO),
     }
 }
 

@@ -1,15 +1,14 @@
 //! A Rapier body as the integrator's body, and the way back.
 
-use super::timestep::Plan;
 use crate::dynamics::body::{Body, Spin, turn};
-use crate::dynamics::delivery::{Delivery, force_for, torque_for};
+use crate::dynamics::delivery::{Delivery, Schedule, force_for, torque_for};
 use bevy::math::DVec3;
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::ExternalForce;
 use bevy_rapier3d::rapier::dynamics::{LockedAxes, RigidBody as RapierBody, RigidBodyType};
 
 /// Rapier turns no body further in one pipeline step (`MAX_ROTATION` in its solver), rad.
-const FASTEST_TURN: f64 = std::f64::consts::FRAC_PI_4;
+pub(super) const FARTHEST_TURN: f64 = std::f64::consts::FRAC_PI_4;
 
 /// What the engine's settings mean for a delivery.
 #[derive(Clone, Copy, Debug)]
@@ -18,6 +17,8 @@ pub(super) struct Engine {
     pub iterations: usize,
     /// Its cap on speeds, m/s.
     pub fastest: f64,
+    /// Its cap on turning in one call, rad.
+    pub farthest_turn: f64,
     pub length_unit: f32,
     pub gravity: Vec3,
 }
@@ -101,6 +102,8 @@ pub(super) fn read(body: &RapierBody, gravity: Vec3, user: &ExternalForce, turns
         acceleration: moves * gravity.as_dvec3() * f64::from(body.gravity_scale())
             + inverse_mass * user.force.as_dvec3(),
         torque: user.torque.as_dvec3(),
+        mobility: 1.0,
+        given: (DVec3::ZERO, DVec3::ZERO),
     };
     if turns {
         if rotation_locked == [false; 3] {
@@ -123,11 +126,10 @@ pub(super) fn deliver(
     body: &mut RapierBody,
     start: &Body,
     end: &Body,
-    plan: &Plan,
+    schedule: &Schedule,
     engine: &Engine,
     takes_impulses: bool,
 ) -> ExternalForce {
-    let schedule = plan.schedule(engine.iterations + body.additional_solver_iterations());
     let time = schedule.time;
     let linear = if takes_impulses {
         let planned = schedule.capped(
@@ -156,7 +158,7 @@ pub(super) fn deliver(
             let cap = if body.is_fast_rotation_allowed() {
                 f64::INFINITY
             } else {
-                FASTEST_TURN * f64::from(plan.pipeline_steps) / time
+                engine.farthest_turn / time
             };
             schedule.capped(planned, spin, turned, cap)
         } else {

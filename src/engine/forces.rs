@@ -1,5 +1,6 @@
 //! One `ExternalForce` per body, two owners: the user's share and ours, kept apart.
 
+use super::held::{Expected, Support};
 use bevy::ecs::entity_disabling::Disabled;
 use bevy::ecs::query::Allow;
 use bevy::prelude::*;
@@ -13,8 +14,8 @@ use bevy_rapier3d::rapier::dynamics::RigidBody as RapierBody;
 ///
 /// The share of the elements is the force delivered, not the springs' own: together with an impulse
 /// at the start of the step it makes the engine's few substeps end where the springs take the body.
-#[derive(Component, Reflect, Clone, Debug, PartialEq)]
-#[reflect(Component, Debug, PartialEq, Clone)]
+#[derive(Component, Reflect, Clone, Debug)]
+#[reflect(Component, Debug, Clone)]
 pub struct SpringLoad {
     /// Force (N) and torque (N m) delivered by elements over the last step, world frame.
     pub elements: ExternalForce,
@@ -26,6 +27,15 @@ pub struct SpringLoad {
     /// Velocities one step ago, to tell rest from a turning point.
     #[reflect(ignore)]
     pub(super) before: Option<(Vec3, Vec3)>,
+    /// How much of a free body's motion contacts and joints leave it; see [`super::held`].
+    #[reflect(ignore)]
+    pub(super) mobility: f64,
+    /// What keeps the body from moving freely.
+    #[reflect(ignore)]
+    pub(super) support: Support,
+    /// What the coming step is to do.
+    #[reflect(ignore)]
+    pub(super) expected: Option<Expected>,
     /// Which elements load the body; a change wakes it.
     #[reflect(ignore)]
     pub(super) signature: u64,
@@ -44,6 +54,9 @@ impl SpringLoad {
             user,
             mirrored: user,
             before: None,
+            mobility: 1.0,
+            support: Support::Unknown,
+            expected: None,
             signature: 0,
             disturbed: true,
             raised_iterations: false,

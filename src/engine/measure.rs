@@ -1,6 +1,8 @@
 //! After the engine's step: what each element shows.
 
 use super::body::point_of;
+use super::forces::SpringLoad;
+use super::held::observe;
 use super::memory::ElementMemory;
 use super::scene::{ElementRow, Held, Scene, report};
 use crate::element::{Spring, SpringDamper};
@@ -19,11 +21,25 @@ pub(crate) fn measure(
         Option<&mut Spring>,
         Option<&mut SpringDamper>,
     )>,
+    contexts: Query<(&RapierContextSimulation, &RapierContextJoints)>,
+    mut loads: Query<&mut SpringLoad>,
     mut commands: Commands,
 ) {
     let scene = &mut *scene;
     if scene.time <= 0.0 {
         return;
+    }
+    for row in &scene.bodies {
+        let (Ok(set), Ok((simulation, joints)), Ok(mut load)) = (
+            sets.get(row.context),
+            contexts.get(row.context),
+            loads.get_mut(row.entity),
+        ) else {
+            continue;
+        };
+        if let Some(body) = set.bodies.get(row.handle) {
+            observe(&mut load, row.handle, body, simulation, joints);
+        }
     }
     for row in &scene.elements {
         let Ok((mut readout, mut memory, spring, pair)) = elements.get_mut(row.entity) else {

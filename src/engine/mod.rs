@@ -7,6 +7,7 @@ mod check;
 mod ends;
 mod forces;
 mod group;
+mod held;
 mod measure;
 mod memory;
 mod scene;

@@ -1,9 +1,10 @@
 //! The step: components, integration, delivery.
 
-use super::body::{Engine, deliver, is_movable, point_after, point_of, read};
+use super::body::{Engine, FARTHEST_TURN, deliver, is_movable, point_after, point_of, read};
 use super::check::Fault;
 use super::forces::{SpringLoad, release};
 use super::group::{Group, groups};
+use super::held::{self, Expected, Support};
 use super::scene::{ElementRow, Held, Scene};
 use super::sleep::{is_restless, is_set_moving, keep_awake};
 use super::timestep::Plan;
@@ -15,11 +16,13 @@ use bevy::ecs::entity_disabling::Disabled;
 use bevy::ecs::query::Allow;
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
-use bevy_rapier3d::rapier::dynamics::RigidBody as RapierBody;
+use bevy_rapier3d::rapier::dynamics::{RigidBody as RapierBody, RigidBodyHandle};
+use bevy_rapier3d::rapier::geometry::ColliderSet;
 
 /// What of a Rapier context the step needs.
 type ContextParts<'a> = (
     &'a RapierContextSimulation,
+    &'a RapierContextColliders,
     &'a RapierContextJoints,
     &'a RapierConfiguration,
     &'a SimulationToRenderTime,
@@ -73,7 +76,7 @@ pub(crate) fn solve(
         let Some(context) = group.bodies.first().map(|b| scene.bodies[*b].context) else {
             continue;
         };
-        let Ok((simulation, joints, configuration, lag)) = contexts.get(context) else {
+        let Ok((simulation, colliders, joints, configuration, lag)) = contexts.get(context) else {
             continue;
         };
         let plan = Plan::new(*mode, time.delta_secs(), lag.diff);
@@ -93,17 +96,19 @@ pub(crate) fn solve(
             engine: Engine {
                 iterations: parameters.num_solver_iterations,
                 fastest: f64::from(parameters.max_linear_velocity()),
+                farthest_turn: FARTHEST_TURN * f64::from(plan.pipeline_steps),
                 length_unit: parameters.length_unit,
                 gravity: configuration.gravity,
             },
             joints,
+            colliders: &colliders.colliders,
             settings: &settings,
         };
         step.run(scene, &group, &slots, &mut set, &mut loads);
     }
     // Without a movable body nothing is stepped, but the readouts still want the time.
     if scene.time == 0.0 {
-        for (_, _, configuration, lag) in &contexts {
+        for (.., configuration, lag) in &contexts {
             if configuration.physics_pipeline_active {
                 scene.time = Plan::new(*mode, time.delta_secs(), lag.diff).time;
             }
@@ -116,6 +121,7 @@ struct Step<'a> {
     plan: Plan,
     engine: Engine,
     joints: &'a RapierContextJoints,
+    colliders: &'a ColliderSet,
     settings: &'a CoiloverSettings,
 }
 
@@ -129,6 +135,7 @@ impl Step<'_> {
         loads: &mut Loads,
     ) {
         let mut component = Component::default();
+        let mut start = Vec::with_capacity(group.bodies.len());
         for b in &group.bodies {
             let row = scene.bodies[*b];
             let user = loads
@@ -138,9 +145,9 @@ impl Step<'_> {
             let Some(body) = set.bodies.get(row.handle) else {
                 return;
             };
-            component
-                .bodies
-                .push(read(body, self.engine.gravity, &user, row.turns));
+            let free = read(body, self.engine.gravity, &user, row.turns);
+            component.bodies.push(free);
+            start.push(free);
         }
         let sound = component.bodies.iter().all(Body::is_finite);
         let mut disturbed = false;
@@ -158,7 +165,22 @@ impl Step<'_> {
         if !self.is_awake(scene, group, &component, set, loads, disturbed) {
             return;
         }
-        let start = component.bodies.clone();
+        for (slot, b) in group.bodies.iter().enumerate() {
+            let row = scene.bodies[*b];
+            if let (Some(body), Ok((_, load, ..))) =
+                (set.bodies.get(row.handle), loads.get(row.entity))
+            {
+                let support = match load.support {
+                    Support::Unknown => held::touching(body, &set.bodies, self.colliders),
+                    known => known,
+                };
+                if support != Support::None {
+                    let force = component.force_on(slot);
+                    let mobility = held::mobility(load, support, &start[slot], force);
+                    component.bodies[slot] = held::held(&start[slot], mobility);
+                }
+            }
+        }
         if sound && !component.elements.is_empty() {
             component.advance(self.plan.time, self.settings.accuracy());
         }
@@ -179,21 +201,12 @@ impl Step<'_> {
             }
             let mut share = ExternalForce::default();
             if sound && !component.elements.is_empty() {
-                let multibody = self.joints.multibody_joints.rigid_body_link(row.handle);
-                if self.engine.iterations * self.plan.pipeline_steps as usize == 1
-                    && body.additional_solver_iterations() == 0
-                {
-                    // One substep has room for a force or an impulse, not for both.
-                    body.set_additional_solver_iterations(1);
-                    load.raised_iterations = true;
-                }
-                share = deliver(
+                share = self.deliver(
+                    row.handle,
                     body,
                     &start[slot],
                     &component.bodies[slot],
-                    &self.plan,
-                    &self.engine,
-                    multibody.is_none(),
+                    &mut load,
                 );
             }
             load.write(share, body, force.as_mut());
@@ -207,6 +220,34 @@ impl Step<'_> {
                 .collect::<Vec<_>>(),
         ) {
             scene.elements[e].direction = element.direction;
+        }
+    }
+
+    /// Sets a body's velocities and returns the force of its elements.
+    fn deliver(
+        &self,
+        handle: RigidBodyHandle,
+        body: &mut RapierBody,
+        start: &Body,
+        end: &Body,
+        load: &mut SpringLoad,
+    ) -> ExternalForce {
+        let multibody = self.joints.multibody_joints.rigid_body_link(handle);
+        let takes_impulses = multibody.is_none();
+        if self.engine.iterations * self.plan.pipeline_steps as usize == 1
+            && body.additional_solver_iterations() == 0
+        {
+            // One substep has room for a force or an impulse, not for both.
+            body.set_additional_solver_iterations(1);
+            load.raised_iterations = true;
+        }
+        let iterations = self.engine.iterations + body.additional_solver_iterations();
+        let schedule = self.plan.schedule(iterations);
+        load.expected = Some(Expected::new(start, end, self.plan.time));
+        if end.mobility < 1.0 {
+            held::deliver(body, start, end.given, &schedule, takes_impulses)
+        } else {
+            deliver(body, start, end, &schedule, &self.engine, takes_impulses)
         }
     }
 

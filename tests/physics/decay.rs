@@ -1,27 +1,10 @@
 //! Does a damped spring decay as y″ + 2ζω y′ + ω² y = 0 says?
 
+use crate::fit::exact;
 use crate::harness::*;
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
-
-/// The exact free motion from (y, v), with ω and ζ.
-fn exact(omega: f64, zeta: f64, y: f64, v: f64, t: f64) -> f64 {
-    let gamma = zeta * omega;
-    let square = omega * omega - gamma * gamma;
-    if square.abs() < 1e-9 * omega * omega {
-        return (-gamma * t).exp() * (y + (v + gamma * y) * t);
-    }
-    if square > 0.0 {
-        let w = square.sqrt();
-        (-gamma * t).exp() * (y * (w * t).cos() + (v + gamma * y) / w * (w * t).sin())
-    } else {
-        let r = (-square).sqrt();
-        let (slow, fast) = (-(omega * omega) / (gamma + r), -gamma - r);
-        let a = (v - fast * y) / (slow - fast);
-        a * (slow * t).exp() + (y - a) * (fast * t).exp()
-    }
-}
 
 struct Case {
     phase: f64,

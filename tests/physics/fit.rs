@@ -1,4 +1,4 @@
-//! Least-squares fits of what a lab measured.
+//! Least-squares fits of what a lab measured, and the exact damped oscillator.
 
 /// y ≈ offset + cosine·cos ωt + sine·sin ωt.
 #[derive(Clone, Copy, Debug)]
@@ -65,4 +65,22 @@ pub fn frequency(samples: &[(f64, f64)], guess: f64) -> f64 {
         }
     }
     0.5 * (low + high)
+}
+
+/// The exact free motion from (y, v), with ω and ζ.
+pub fn exact(omega: f64, zeta: f64, y: f64, v: f64, t: f64) -> f64 {
+    let gamma = zeta * omega;
+    let square = omega * omega - gamma * gamma;
+    if square.abs() < 1e-9 * omega * omega {
+        return (-gamma * t).exp() * (y + (v + gamma * y) * t);
+    }
+    if square > 0.0 {
+        let w = square.sqrt();
+        (-gamma * t).exp() * (y * (w * t).cos() + (v + gamma * y) / w * (w * t).sin())
+    } else {
+        let r = (-square).sqrt();
+        let (slow, fast) = (-(omega * omega) / (gamma + r), -gamma - r);
+        let a = (v - fast * y) / (slow - fast);
+        a * (slow * t).exp() + (y - a) * (fast * t).exp()
+    }
 }

@@ -1,0 +1,257 @@
+//! Ends that contacts or joints hold: how much of a free body's motion is left to them.
+//!
+//! A step that believes an end free, when the ground holds it, makes a spring far too soft: it eases the
+//! force for a motion that never comes. So after every step the velocity that the elements' load should
+//! have given a free body is compared with what it got; the ratio along that load is the body's mobility,
+//! by which its inverse mass is scaled in the next step. Bodies that touch nothing and have no joint are
+//! free by definition, and are never measured.
+
+use super::forces::SpringLoad;
+use crate::dynamics::body::{Body, Spin};
+use crate::dynamics::delivery::Schedule;
+use bevy::math::DVec3;
+use bevy_rapier3d::parry;
+use bevy_rapier3d::parry::bounding_volume::BoundingVolume;
+use bevy_rapier3d::prelude::{ExternalForce, RapierContextJoints, RapierContextSimulation};
+use bevy_rapier3d::rapier::dynamics::{RigidBody as RapierBody, RigidBodyHandle, RigidBodySet};
+use bevy_rapier3d::rapier::geometry::ColliderSet;
+
+/// Linear and angular velocity.
+type Twist = (DVec3, DVec3);
+
+/// What a step was to do to a body.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Expected {
+    start: Twist,
+    /// Where the delivery was to lead, if the body is free.
+    ordered: Option<Twist>,
+    /// What the same load does to a free body.
+    free_change: Twist,
+    /// The elements' impulse and angular impulse.
+    given: (DVec3, DVec3),
+    time: f64,
+}
+
+/// Mobility above which a body counts as free.
+const FREE: f64 = 0.999;
+
+impl Expected {
+    /// `free` is the body at the start of the step with its full mass, `end` after it.
+    pub(super) fn new(free: &Body, end: &Body, time: f64) -> Self {
+        let start = (free.velocity, free.angular_velocity());
+        let inverse_inertia = free.inverse_inertia();
+        Self {
+            start,
+            ordered: (end.mobility == 1.0).then(|| (end.velocity, end.angular_velocity())),
+            free_change: (
+                free.inverse_mass * end.given.0 + time * free.acceleration,
+                inverse_inertia * (end.given.1 + time * free.torque),
+            ),
+            given: end.given,
+            time,
+        }
+    }
+
+    /// What the load did, in terms of a free body's velocities before the engine's own damping.
+    fn change(&self, body: &RapierBody) -> Twist {
+        let undamped = |v: DVec3, damping: f32| v * (1.0 + self.time * f64::from(damping));
+        (
+            undamped(body.linvel().as_dvec3(), body.linear_damping()) - self.start.0,
+            undamped(body.angvel().as_dvec3(), body.angular_damping()) - self.start.1,
+        )
+    }
+
+    /// Whether the body went where it was to go: then nothing held it.
+    fn was_met(&self, change: Twist) -> bool {
+        let Some(ordered) = self.ordered else {
+            return false;
+        };
+        let close = |change: DVec3, start: DVec3, ordered: DVec3, free: DVec3| {
+            let rounding = 1e-5 * (start.length() + ordered.length()) + 1e-6;
+            (change - (ordered - start)).length() <= 1e-3 * free.length() + rounding
+        };
+        let angular = self.given.1 == DVec3::ZERO
+            || close(change.1, self.start.1, ordered.1, self.free_change.1);
+        close(change.0, self.start.0, ordered.0, self.free_change.0) && angular
+    }
+
+    /// Share of the free motion along the elements' load that was left; none if the load was too small
+    /// to tell.
+    fn share(&self, change: Twist) -> Option<f64> {
+        let along = |twist: Twist| twist.0.dot(self.given.0) + twist.1.dot(self.given.1);
+        let free = along(self.free_change);
+        let scale = self.given.0.length() * self.free_change.0.length()
+            + self.given.1.length() * self.free_change.1.length();
+        (free.abs() > 0.05 * scale && scale > 0.0).then(|| (along(change) / free).clamp(0.0, 1.0))
+    }
+}
+
+/// What keeps a body from moving freely.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) enum Support {
+    /// Not known yet.
+    #[default]
+    Unknown,
+    /// Nothing.
+    None,
+    /// A joint: it holds both ways.
+    Joint,
+    /// Contacts, which push this way and hold only against the opposite.
+    Contact(DVec3),
+}
+
+/// Takes in what the engine's step did to a body.
+pub(super) fn observe(
+    load: &mut SpringLoad,
+    handle: RigidBodyHandle,
+    body: &RapierBody,
+    simulation: &RapierContextSimulation,
+    joints: &RapierContextJoints,
+) {
+    let Some(expected) = load.expected.take() else {
+        return;
+    };
+    let change = expected.change(body);
+    if expected.was_met(change) {
+        load.support = Support::None;
+        load.mobility = 1.0;
+        return;
+    }
+    load.support = support(handle, body, simulation, joints);
+    if load.support == Support::None {
+        load.mobility = 1.0;
+    } else if let Some(share) = expected.share(change) {
+        load.mobility = if share > FREE { 1.0 } else { share };
+    }
+}
+
+/// Joints, or contacts that pushed in the last step.
+fn support(
+    handle: RigidBodyHandle,
+    body: &RapierBody,
+    simulation: &RapierContextSimulation,
+    joints: &RapierContextJoints,
+) -> Support {
+    let mut attached = joints.impulse_joints.attached_enabled_joints(handle);
+    if joints.multibody_joints.rigid_body_link(handle).is_some() || attached.next().is_some() {
+        return Support::Joint;
+    }
+    let mut push = DVec3::ZERO;
+    for collider in body.colliders() {
+        for pair in simulation.narrow_phase.contact_pairs_with(*collider) {
+            // Normals point from the first collider to the second.
+            let sign = if pair.collider1 == *collider {
+                -1.0
+            } else {
+                1.0
+            };
+            push += sign * pair.total_impulse().as_dvec3();
+        }
+    }
+    push.try_normalize().map_or(Support::None, Support::Contact)
+}
+
+/// For a body that the engine has not stepped yet: whether it stands on something that cannot be moved.
+/// The engine finds contacts only within its step, and a stiff spring must know before the first.
+pub(super) fn touching(
+    body: &RapierBody,
+    bodies: &RigidBodySet,
+    colliders: &ColliderSet,
+) -> Support {
+    let mut push = DVec3::ZERO;
+    for own in body.colliders().iter().filter_map(|c| colliders.get(*c)) {
+        let bounds = own.compute_aabb().loosened(TOUCH);
+        for (_, other) in colliders.iter() {
+            let movable = other
+                .parent()
+                .and_then(|parent| bodies.get(parent))
+                .is_some_and(RapierBody::is_dynamic);
+            if movable
+                || !own.is_enabled()
+                || !other.is_enabled()
+                || own.is_sensor()
+                || other.is_sensor()
+                || !own.collision_groups().test(other.collision_groups())
+                || !bounds.intersects(&other.compute_aabb())
+            {
+                continue;
+            }
+            let contact = parry::query::contact(
+                own.position(),
+                own.shape(),
+                other.position(),
+                other.shape(),
+                TOUCH,
+            );
+            if let Ok(Some(contact)) = contact {
+                push += contact.normal2.as_dvec3();
+            }
+        }
+    }
+    push.try_normalize().map_or(Support::None, Support::Contact)
+}
+
+/// Nearer than this counts as touching before the first step, m.
+const TOUCH: f32 = 0.005;
+
+/// Mobility of a body in the coming step, given the force of its elements as it stands.
+pub(super) fn mobility(load: &SpringLoad, support: Support, free: &Body, force: DVec3) -> f64 {
+    match support {
+        Support::None | Support::Unknown => 1.0,
+        Support::Joint => load.mobility,
+        Support::Contact(push) => {
+            let weight = crate::dynamics::delivery::force_for(free.acceleration, free.inverse_mass);
+            if (force + weight).dot(push) >= 0.0 {
+                // It is being lifted off, and a contact does not pull.
+                1.0
+            } else if load.support == Support::Unknown {
+                0.0
+            } else {
+                load.mobility
+            }
+        }
+    }
+}
+
+/// The body as the integrator is to see it: with so much of its mobility left.
+pub(super) fn held(free: &Body, mobility: f64) -> Body {
+    let mut body = *free;
+    if mobility < 1.0 {
+        if let Spin::Free { .. } = body.spin {
+            body.spin = Spin::Locked {
+                velocity: free.angular_velocity(),
+            };
+        }
+        body.inverse_mass *= mobility;
+        body.acceleration *= mobility;
+        body.mobility = mobility;
+    }
+    body
+}
+
+/// Delivery to a body whose motion is not ours to order: the elements' mean force. An impulse at the
+/// start holds the first of n substeps still, whatever the constraints leave of mass and direction.
+pub(super) fn deliver(
+    body: &mut RapierBody,
+    free: &Body,
+    given: (DVec3, DVec3),
+    schedule: &Schedule,
+    takes_impulses: bool,
+) -> ExternalForce {
+    let n = f64::from(schedule.substeps);
+    let mut share = 1.0 / schedule.time;
+    if takes_impulses && schedule.substeps > 1 {
+        let back = 1.0 / (n - 1.0);
+        let linvel = free.velocity - back * (free.inverse_mass * given.0);
+        body.set_linvel(linvel.as_vec3(), false);
+        if free.spin != Spin::Still {
+            let angvel = free.angular_velocity() - back * (free.inverse_inertia() * given.1);
+            body.set_angvel(angvel.as_vec3(), false);
+        }
+        share *= n * back;
+    }
+    ExternalForce {
+        force: (share * given.0).as_vec3(),
+        torque: (share * given.1).as_vec3(),
+    }
+}
