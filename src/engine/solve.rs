@@ -4,7 +4,7 @@ use super::body::{Engine, FARTHEST_TURN, deliver, is_movable, point_after, point
 use super::check::Fault;
 use super::forces::{SpringLoad, release};
 use super::group::{Group, groups};
-use super::held::{self, Expected, Support};
+use super::held::{self, Expected, Ground, Support};
 use super::scene::{ElementRow, Held, Scene};
 use super::sleep::{is_restless, is_set_moving, keep_awake};
 use super::timestep::Plan;
@@ -71,6 +71,7 @@ pub(crate) fn solve(
     );
 
     scene.time = 0.0;
+    let mut ground = (Entity::PLACEHOLDER, Ground::default());
     let mut slots = vec![usize::MAX; scene.bodies.len()];
     for group in groups(scene) {
         let Some(context) = group.bodies.first().map(|b| scene.bodies[*b].context) else {
@@ -84,6 +85,9 @@ pub(crate) fn solve(
             continue;
         }
         scene.time = plan.time;
+        if ground.0 != context {
+            ground = (context, Ground::default());
+        }
         let Ok(mut set) = sets.get_mut(context) else {
             continue;
         };
@@ -102,6 +106,7 @@ pub(crate) fn solve(
             },
             joints,
             colliders: &colliders.colliders,
+            ground: &ground.1,
             settings: &settings,
         };
         step.run(scene, &group, &slots, &mut set, &mut loads);
@@ -122,6 +127,7 @@ struct Step<'a> {
     engine: Engine,
     joints: &'a RapierContextJoints,
     colliders: &'a ColliderSet,
+    ground: &'a Ground,
     settings: &'a CoiloverSettings,
 }
 
@@ -171,7 +177,7 @@ impl Step<'_> {
                 (set.bodies.get(row.handle), loads.get(row.entity))
             {
                 let support = match load.support {
-                    Support::Unknown => held::touching(body, &set.bodies, self.colliders),
+                    Support::Unknown => self.ground.under(body, &set.bodies, self.colliders),
                     known => known,
                 };
                 if support != Support::None {
