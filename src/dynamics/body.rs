@@ -138,10 +138,13 @@ impl Body {
 
     /// An impulse (N s) at `arm` from the centre of mass, with the inverse inertia at hand.
     pub(crate) fn apply(&mut self, impulse: DVec3, arm: DVec3, inverse_inertia: DMat3) {
-        let angular = arm.cross(impulse);
         self.given.0 += impulse;
-        self.given.1 += angular;
         self.velocity += self.inverse_mass * impulse;
+        if arm == DVec3::ZERO {
+            return;
+        }
+        let angular = arm.cross(impulse);
+        self.given.1 += angular;
         self.apply_angular(angular, inverse_inertia);
     }
 

@@ -47,6 +47,8 @@ pub(crate) struct Motion {
     pub lateral_square: f64,
     /// Velocity across the line.
     pub lateral: DVec3,
+    /// Acceleration across it by outside forces.
+    pub pushed_across: DVec3,
     /// Axial acceleration of the separation by outside forces,
     pub pushed: f64,
     /// by the arms' turning in free flight,
@@ -92,6 +94,15 @@ impl End {
             },
             End::Body { index, arm } => {
                 let body = &bodies[index];
+                if body.spin == Spin::Still && arm == DVec3::ZERO {
+                    return Hold {
+                        body: Some(index),
+                        arm,
+                        inverse_mass: body.inverse_mass,
+                        inverse_inertia: DMat3::ZERO,
+                        position: body.position,
+                    };
+                }
                 let arm = body.rotation * arm;
                 Hold {
                     body: Some(index),
@@ -137,8 +148,18 @@ impl End {
 impl Hold {
     /// Inverse effective mass of this end along a direction.
     pub(crate) fn inverse_mass_along(&self, direction: DVec3) -> f64 {
+        let w = self.inverse_mass;
+        // Not rounded by the direction, so that equal lines have bitwise equal coefficients.
+        let linear = if w.x == w.y && w.y == w.z {
+            w.x
+        } else {
+            (w * direction).dot(direction)
+        };
+        if self.arm == DVec3::ZERO {
+            return linear;
+        }
         let lever = self.arm.cross(direction);
-        (self.inverse_mass * direction).dot(direction) + lever.dot(self.inverse_inertia * lever)
+        linear + lever.dot(self.inverse_inertia * lever)
     }
 }
 
@@ -198,25 +219,51 @@ impl Line {
         let lateral = velocity - axial * self.direction;
         let lateral_square = lateral.length_squared();
         let arms = (b.2 - a.2).dot(self.direction);
-        let turning = if self.isotropic {
-            0.0
-        } else {
-            // |lateral|²/L, bounded where the line turns further than the step can follow.
-            let half = 0.5 * step;
-            let reach = (self.length * self.length + half * half * lateral_square).sqrt();
-            if lateral_square == 0.0 {
-                0.0
-            } else {
-                (2.0 * lateral_square / (self.length.abs() + reach)).copysign(self.length)
-            }
-        };
+        let pushed = b.1 - a.1;
+        let pushed_along = pushed.dot(self.direction);
         Motion {
             axial,
             lateral_square,
             lateral,
-            pushed: (b.1 - a.1).dot(self.direction),
+            pushed_across: pushed - pushed_along * self.direction,
+            pushed: pushed_along,
             arms,
-            turning,
+            turning: self.turning(lateral_square, step),
+        }
+    }
+
+    /// |lateral|²/L, bounded where the line turns further than the step can follow.
+    fn turning(&self, lateral_square: f64, step: f64) -> f64 {
+        if self.isotropic || lateral_square == 0.0 {
+            return 0.0;
+        }
+        let half = 0.5 * step;
+        let reach = (self.length * self.length + half * half * lateral_square).sqrt();
+        (2.0 * lateral_square / (self.length.abs() + reach)).copysign(self.length)
+    }
+
+    /// Whether pushing along the line leaves the motion across it alone: no body turns, or is freer along
+    /// one axis than another.
+    pub(crate) fn is_plain(&self, bodies: &[Body]) -> bool {
+        self.holds.iter().all(|hold| {
+            let w = hold.inverse_mass;
+            w.x == w.y
+                && w.y == w.z
+                && hold
+                    .body
+                    .is_none_or(|index| bodies[index].spin == Spin::Still)
+        })
+    }
+
+    /// The motion after a step's outside forces and any push along the line, for a plain one.
+    pub(crate) fn coasted(&self, before: &Motion, step: f64) -> Motion {
+        let lateral = before.lateral + step * before.pushed_across;
+        let lateral_square = lateral.length_squared();
+        Motion {
+            lateral,
+            lateral_square,
+            turning: self.turning(lateral_square, step),
+            ..*before
         }
     }
 

@@ -8,12 +8,24 @@ use super::body::{Body, Spin};
 use super::element::{Element, Line, Motion};
 use super::poles::{Poles, RESOLVED_PHASE};
 
-/// The poles of an element on this line for a step.
-fn poles(element: &Element, line: &Line, step: f64) -> Poles {
-    Poles::new(
-        element.stiffness * line.inverse_mass * step * step,
-        element.damping * line.inverse_mass * step / 2.0,
-    )
+/// The last coefficients: where no body turns they are the same for every kick of a step.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Memo(Option<(f64, f64, Poles)>);
+
+impl Memo {
+    /// The poles of an element on this line for a step.
+    fn poles(&mut self, element: &Element, line: &Line, step: f64) -> Poles {
+        let z = element.stiffness * line.inverse_mass * step * step;
+        let g = element.damping * line.inverse_mass * step / 2.0;
+        match self.0 {
+            Some((known_z, known_g, poles)) if known_z == z && known_g == g => poles,
+            _ => {
+                let poles = Poles::new(z, g);
+                self.0 = Some((z, g, poles));
+                poles
+            }
+        }
+    }
 }
 
 /// ω²·stretch − a_out for a length.
@@ -22,12 +34,11 @@ fn unanswered(element: &Element, line: &Line, length: f64, outside: f64) -> f64 
 }
 
 /// The kick at the half drift: element and outside forces together.
-pub(crate) fn kick(element: &Element, bodies: &mut [Body], step: f64) {
+pub(crate) fn kick(element: &Element, bodies: &mut [Body], step: f64, memo: &mut Memo) {
     let Some(line) = element.line(bodies) else {
         return external(bodies, step);
     };
-
-    let poles = poles(element, &line, step);
+    let poles = memo.poles(element, &line, step);
     let before = line.motion(element, bodies, step);
     let rate = line.backward_rate(&before, step);
     let impulse = |outside: f64, drifted: f64| {
@@ -48,11 +59,15 @@ pub(crate) fn kick(element: &Element, bodies: &mut [Body], step: f64) {
     // What acts from outside depends on the speed across the line, which the kick changes. The mean of
     // before and after makes the step its own mirror image in time, so that its error has even powers
     // of the step only.
-    let mut trial = [bodies[0], *bodies.last().unwrap_or(&bodies[0])];
-    let trial = &mut trial[..bodies.len()];
-    let first = impulse(before.outside(), before.drifted(step));
-    act(&line, trial, first, step);
-    let after = line.motion(element, trial, step);
+    let after = if line.is_plain(bodies) {
+        line.coasted(&before, step)
+    } else {
+        let mut trial = [bodies[0], *bodies.last().unwrap_or(&bodies[0])];
+        let trial = &mut trial[..bodies.len()];
+        let first = impulse(before.outside(), before.drifted(step));
+        act(&line, trial, first, step);
+        line.motion(element, trial, step)
+    };
     let mean = |f: &dyn Fn(&Motion) -> f64| 0.5 * (f(&before) + f(&after));
     let second = impulse(mean(&Motion::outside), mean(&|m| m.drifted(step)));
     act(&line, bodies, second, step);
@@ -84,14 +99,20 @@ pub(crate) enum Map {
 /// It is an impulse pair along the line at the true positions, so linear and angular momentum stay as
 /// they are; and as the map after one step is undone before the next, the long run is that of the
 /// drift–kick–drift step, time-symmetric and without energy drift.
-pub(crate) fn map_velocity(element: &Element, bodies: &mut [Body], step: f64, map: Map) {
+pub(crate) fn map_velocity(
+    element: &Element,
+    bodies: &mut [Body],
+    step: f64,
+    map: Map,
+    memo: &mut Memo,
+) {
     let Some(line) = element.line(bodies) else {
         return;
     };
     if line.inverse_mass <= 0.0 {
         return;
     }
-    let coefficients = poles(element, &line, step);
+    let coefficients = memo.poles(element, &line, step);
     let motion = line.motion(element, bodies, step);
     let unanswered = unanswered(element, &line, line.length, motion.outside());
     let offset = coefficients.skew * step * unanswered;
@@ -101,7 +122,7 @@ pub(crate) fn map_velocity(element: &Element, bodies: &mut [Body], step: f64, ma
     };
     line.push(bodies, (mapped - motion.axial) / line.inverse_mass);
     if swings_across(&line, bodies) {
-        map_lateral(element, bodies, &line, &motion, step, map);
+        map_lateral(element, bodies, &line, &motion, step, map, &coefficients);
     }
 }
 
@@ -118,9 +139,9 @@ fn map_lateral(
     motion: &Motion,
     step: f64,
     map: Map,
+    coefficients: &Poles,
 ) {
     let z = element.stiffness * line.inverse_mass * step * step;
-    let coefficients = poles(element, line, step);
     let speed = if is_resolved(z) {
         coefficients.speed_across(z)
     } else {

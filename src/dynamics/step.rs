@@ -2,7 +2,7 @@
 
 use super::body::{Body, Spin, turn};
 use super::element::Element;
-use super::kick::{self, Map};
+use super::kick::{self, Map, Memo};
 use super::network::Network;
 use bevy::math::DVec3;
 
@@ -21,6 +21,7 @@ pub(crate) struct Accuracy {
 pub(crate) struct Component {
     pub bodies: Vec<Body>,
     pub elements: Vec<Element>,
+    pub memo: Memo,
 }
 
 impl Component {
@@ -87,12 +88,18 @@ impl Component {
         let alone = self.elements.len() == 1;
         self.aim();
         if alone {
-            kick::map_velocity(&self.elements[0], &mut self.bodies, step, Map::ToStepped);
+            kick::map_velocity(
+                &self.elements[0],
+                &mut self.bodies,
+                step,
+                Map::ToStepped,
+                &mut self.memo,
+            );
         }
         for _ in 0..count {
             self.drift(step / 2.0);
             if alone {
-                kick::kick(&self.elements[0], &mut self.bodies, step);
+                kick::kick(&self.elements[0], &mut self.bodies, step, &mut self.memo);
             } else {
                 Network::kick(&self.elements, &mut self.bodies, step);
             }
@@ -100,7 +107,13 @@ impl Component {
             self.aim();
         }
         if alone {
-            kick::map_velocity(&self.elements[0], &mut self.bodies, step, Map::ToTrue);
+            kick::map_velocity(
+                &self.elements[0],
+                &mut self.bodies,
+                step,
+                Map::ToTrue,
+                &mut self.memo,
+            );
         }
     }
 

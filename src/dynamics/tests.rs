@@ -5,6 +5,7 @@ use super::delivery::Schedule;
 use super::element::{Element, End};
 use super::step::{Accuracy, Component};
 use bevy::math::{DQuat, DVec3};
+use bevy::prelude::default;
 
 const DT: f64 = 1.0 / 60.0;
 
@@ -74,6 +75,7 @@ fn pendulum_error(file: &str, k: f64, c: f64, accuracy: Accuracy) -> f64 {
     let g = DVec3::new(0.0, -9.81, 0.0);
     let mut pendulum = Component {
         bodies: vec![point(1.0, DVec3::X, g)],
+        memo: default(),
         elements: vec![element(fixed(DVec3::ZERO), held(0, DVec3::ZERO), k, c, 1.0)],
     };
     let rows = reference(file);
@@ -117,6 +119,7 @@ fn dumbbell(stiffness: f64) -> Component {
             turning(a, DVec3::new(0.2, 0.3, 0.45), DVec3::new(1.0, -2.0, 0.5)),
             turning(b, DVec3::new(0.02, 0.05, 0.06), DVec3::new(-1.0, 0.5, 3.0)),
         ],
+        memo: default(),
         elements: vec![element(
             held(0, DVec3::new(0.4, 0.2, 0.1)),
             held(1, DVec3::new(-0.3, 0.1, 0.2)),
@@ -257,6 +260,7 @@ fn chain_of_ten_swings_as_the_reference() {
         bodies: (1..=10)
             .map(|i| point(0.1, DVec3::X * 0.2 * f64::from(i), g))
             .collect(),
+        memo: default(),
         elements: (0..10)
             .map(|i: usize| {
                 let a = if i == 0 {
@@ -290,6 +294,7 @@ fn damped_chain_of_a_thousand_to_one_masses_settles_at_any_stiffness() {
                 .enumerate()
                 .map(|(i, m)| point(*m, DVec3::NEG_Y * (i + 1) as f64, g))
                 .collect(),
+            memo: default(),
             elements: (0..4)
                 .map(|i: usize| {
                     let a = if i == 0 {

@@ -3,7 +3,7 @@
 use super::body::{Engine, FARTHEST_TURN, deliver, is_movable, point_after, point_of, read};
 use super::check::Fault;
 use super::forces::{SpringLoad, release};
-use super::group::{Group, groups};
+use super::group::{Group, Groups};
 use super::held::{self, Expected, Ground, Support};
 use super::scene::{ElementRow, Held, Scene};
 use super::sleep::{is_restless, is_set_moving, keep_awake};
@@ -42,6 +42,17 @@ type Loads<'w, 's> = Query<
     Allow<Disabled>,
 >;
 
+/// Buffers kept from tick to tick.
+#[derive(Default)]
+pub(crate) struct Work {
+    groups: Groups,
+    component: Component,
+    /// The component's bodies at the start of the step, with their full mass.
+    start: Vec<Body>,
+    /// Index of each of the scene's bodies within its component.
+    slots: Vec<usize>,
+}
+
 /// Computes and delivers every element's force for the coming engine step.
 pub(crate) fn solve(
     mut scene: ResMut<Scene>,
@@ -51,6 +62,7 @@ pub(crate) fn solve(
     contexts: Query<ContextParts>,
     mut sets: Query<&mut RapierRigidBodySet>,
     mut loads: Loads,
+    mut work: Local<Work>,
     mut commands: Commands,
 ) {
     let scene = &mut *scene;
@@ -72,8 +84,16 @@ pub(crate) fn solve(
 
     scene.time = 0.0;
     let mut ground = (Entity::PLACEHOLDER, Ground::default());
-    let mut slots = vec![usize::MAX; scene.bodies.len()];
-    for group in groups(scene) {
+    let Work {
+        groups,
+        component,
+        start,
+        slots,
+    } = &mut *work;
+    groups.find(scene);
+    slots.clear();
+    slots.resize(scene.bodies.len(), usize::MAX);
+    for group in groups.iter() {
         let Some(context) = group.bodies.first().map(|b| scene.bodies[*b].context) else {
             continue;
         };
@@ -109,7 +129,7 @@ pub(crate) fn solve(
             ground: &ground.1,
             settings: &settings,
         };
-        step.run(scene, &group, &slots, &mut set, &mut loads);
+        step.run(scene, group, slots, component, start, &mut set, &mut loads);
     }
     // Without a movable body nothing is stepped, but the readouts still want the time.
     if scene.time == 0.0 {
@@ -135,14 +155,17 @@ impl Step<'_> {
     fn run(
         &self,
         scene: &mut Scene,
-        group: &Group,
+        group: Group,
         slots: &[usize],
+        component: &mut Component,
+        start: &mut Vec<Body>,
         set: &mut RapierRigidBodySet,
         loads: &mut Loads,
     ) {
-        let mut component = Component::default();
-        let mut start = Vec::with_capacity(group.bodies.len());
-        for b in &group.bodies {
+        component.bodies.clear();
+        component.elements.clear();
+        start.clear();
+        for b in group.bodies {
             let row = scene.bodies[*b];
             let user = loads
                 .get(row.entity)
@@ -157,7 +180,7 @@ impl Step<'_> {
         }
         let sound = component.bodies.iter().all(Body::is_finite);
         let mut disturbed = false;
-        for e in &group.elements {
+        for e in group.elements {
             let row = &mut scene.elements[*e];
             let ends = row.held.map(|held| self.end(held, slots, set));
             disturbed |= row.changed
@@ -168,7 +191,7 @@ impl Step<'_> {
                 component.elements.push(element);
             }
         }
-        if !self.is_awake(scene, group, &component, set, loads, disturbed) {
+        if !self.is_awake(scene, group, component, set, loads, disturbed) {
             return;
         }
         for (slot, b) in group.bodies.iter().enumerate() {
@@ -192,7 +215,7 @@ impl Step<'_> {
         }
         let sound = sound && component.bodies.iter().all(Body::is_finite);
         if sound {
-            self.wake_the_moved(scene, group, &start, &component.bodies, set);
+            self.wake_the_moved(scene, group, start, &component.bodies, set);
         }
         for (slot, b) in group.bodies.iter().enumerate() {
             let row = scene.bodies[*b];
@@ -217,15 +240,13 @@ impl Step<'_> {
             }
             load.write(share, body, force.as_mut());
         }
-        for (element, e) in component.elements.iter().zip(
-            group
-                .elements
-                .iter()
-                .filter(|e| scene.elements[**e].fault.is_none())
-                .copied()
-                .collect::<Vec<_>>(),
-        ) {
-            scene.elements[e].direction = element.direction;
+        let mut solved = component.elements.iter();
+        for e in group.elements {
+            if scene.elements[*e].fault.is_none()
+                && let Some(element) = solved.next()
+            {
+                scene.elements[*e].direction = element.direction;
+            }
         }
     }
 
@@ -287,7 +308,7 @@ impl Step<'_> {
     fn wake_the_moved(
         &self,
         scene: &Scene,
-        group: &Group,
+        group: Group,
         start: &[Body],
         end: &[Body],
         set: &mut RapierRigidBodySet,
@@ -312,7 +333,7 @@ impl Step<'_> {
     fn is_awake(
         &self,
         scene: &Scene,
-        group: &Group,
+        group: Group,
         component: &Component,
         set: &mut RapierRigidBodySet,
         loads: &mut Loads,
@@ -328,7 +349,7 @@ impl Step<'_> {
             .sqrt() as f32;
         // A damper alone has no period; a second stands in for it.
         let omega = if omega == 0.0 { 1.0 } else { omega };
-        for b in &group.bodies {
+        for b in group.bodies {
             let row = scene.bodies[*b];
             let (Some(body), Ok((_, mut load, ..))) =
                 (set.bodies.get(row.handle), loads.get_mut(row.entity))
@@ -353,7 +374,7 @@ impl Step<'_> {
             return false;
         }
         if disturbed || restless {
-            for b in &group.bodies {
+            for b in group.bodies {
                 if let Some(body) = set.bodies.get_mut(scene.bodies[*b].handle) {
                     if body.is_sleeping() {
                         body.wake_up(true);
