@@ -54,9 +54,9 @@ impl Component {
         }
     }
 
-    /// The force (N) of all elements on a body as they stand.
-    pub(crate) fn force_on(&self, body: usize) -> DVec3 {
-        let mut sum = DVec3::ZERO;
+    /// Force (N) and torque (N m) of all elements on a body as they stand.
+    pub(crate) fn load_on(&self, body: usize) -> (DVec3, DVec3) {
+        let mut sum = (DVec3::ZERO, DVec3::ZERO);
         for element in &self.elements {
             let Some(line) = element.line(&self.bodies) else {
                 continue;
@@ -66,7 +66,9 @@ impl Component {
             let tension = element.stiffness * stretch + element.damping * rate;
             for (hold, sign) in line.holds.iter().zip([1.0, -1.0]) {
                 if hold.body == Some(body) {
-                    sum += sign * tension * line.direction;
+                    let force = sign * tension * line.direction;
+                    sum.0 += force;
+                    sum.1 += hold.arm.cross(force);
                 }
             }
         }

@@ -97,6 +97,8 @@ pub(super) enum Support {
     None,
     /// A joint: it holds both ways.
     Joint,
+    /// Joints to fixed ground before the first step, which leave this share of a free body's motion.
+    Tied(f64),
     /// Contacts, which push this way and hold only against the opposite.
     Contact(DVec3),
 }
@@ -230,6 +232,7 @@ pub(super) fn mobility(load: &SpringLoad, support: Support, free: &Body, force: 
     match support {
         Support::None | Support::Unknown => 1.0,
         Support::Joint => load.mobility,
+        Support::Tied(share) => share,
         Support::Contact(push) => {
             let weight = crate::dynamics::delivery::force_for(free.acceleration, free.inverse_mass);
             if (force + weight).dot(push) >= 0.0 {

@@ -8,6 +8,7 @@ mod ends;
 mod forces;
 mod group;
 mod held;
+mod jointed;
 mod measure;
 mod memory;
 mod scene;

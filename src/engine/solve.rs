@@ -5,7 +5,8 @@ use super::check::Fault;
 use super::forces::{SpringLoad, release};
 use super::group::{Group, Groups};
 use super::held::{self, Expected, Ground, Support};
-use super::scene::{ElementRow, Held, Scene};
+use super::jointed;
+use super::scene::{BodyRow, ElementRow, Held, Scene};
 use super::sleep::{is_restless, is_set_moving, keep_awake};
 use super::timestep::Plan;
 use crate::dynamics::body::Body;
@@ -14,6 +15,7 @@ use crate::dynamics::step::Component;
 use crate::plugin::CoiloverSettings;
 use bevy::ecs::entity_disabling::Disabled;
 use bevy::ecs::query::Allow;
+use bevy::math::DVec3;
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
 use bevy_rapier3d::rapier::dynamics::{RigidBody as RapierBody, RigidBodyHandle};
@@ -200,11 +202,13 @@ impl Step<'_> {
                 (set.bodies.get(row.handle), loads.get(row.entity))
             {
                 let support = match load.support {
-                    Support::Unknown => self.ground.under(body, &set.bodies, self.colliders),
+                    Support::Unknown => {
+                        self.first_support(&row, body, &load.user, component.load_on(slot), set)
+                    }
                     known => known,
                 };
                 if support != Support::None {
-                    let force = component.force_on(slot);
+                    let (force, _) = component.load_on(slot);
                     let mobility = held::mobility(load, support, &start[slot], force);
                     component.bodies[slot] = held::held(&start[slot], mobility);
                 }
@@ -250,6 +254,22 @@ impl Step<'_> {
         }
     }
 
+    /// What is known of a body that the engine has not stepped yet.
+    fn first_support(
+        &self,
+        row: &BodyRow,
+        body: &RapierBody,
+        user: &ExternalForce,
+        load: (DVec3, DVec3),
+        set: &RapierRigidBodySet,
+    ) -> Support {
+        let free = read(body, self.engine.gravity, user, true);
+        match jointed::share(row.handle, &free, load, &set.bodies, self.joints) {
+            Some(share) => Support::Tied(share),
+            None => self.ground.under(body, &set.bodies, self.colliders),
+        }
+    }
+
     /// Sets a body's velocities and returns the force of its elements.
     fn deliver(
         &self,
@@ -279,7 +299,7 @@ impl Step<'_> {
     }
 
     fn end(&self, held: Held, slots: &[usize], set: &RapierRigidBodySet) -> End {
-        let path = |from: bevy::math::DVec3, to: bevy::math::DVec3| End::Path {
+        let path = |from: DVec3, to: DVec3| End::Path {
             position: from,
             velocity: (to - from) / self.plan.time,
         };
