@@ -4,6 +4,7 @@
 
 mod body;
 mod check;
+mod component;
 mod ends;
 mod forces;
 mod group;
