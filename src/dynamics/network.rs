@@ -19,7 +19,7 @@ use nalgebra::{DMatrix, DVector};
 /// (ω h)² of the stiffest mode up to which it is placed exactly.
 const PLACED: f64 = 9.0;
 /// (ω h)² of the stiffest mode beyond which unresolved modes are damped.
-const RESOLVED: f64 = 4.0;
+pub(crate) const RESOLVED: f64 = 4.0;
 /// How strongly.
 const UNRESOLVED_DAMPING: f64 = 0.1;
 

@@ -3,11 +3,14 @@
 use super::body::{Body, Spin, turn};
 use super::element::Element;
 use super::kick::{self, Map, Memo};
-use super::network::Network;
+use super::network::{Network, RESOLVED};
 use bevy::math::DVec3;
 
 /// Phase per coarse step up to which the fourth-order combination converges.
 const EXTRAPOLATION_LIMIT: f64 = 1.5;
+
+/// Most that a network steps finer by itself to resolve a stiff mode.
+const EXTRA_STEPS: u32 = 4;
 
 /// How finely to step.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -85,7 +88,23 @@ impl Component {
         }
     }
 
+    /// How many times finer a network has to step for its stiffest mode to need no damping; once where
+    /// that is out of reach.
+    fn extra_steps(&self, step: f64) -> u32 {
+        if self.elements.len() < 2 {
+            return 1;
+        }
+        let z = Network::stiffest(&self.elements, &self.bodies, step);
+        let finer = (z / RESOLVED).sqrt().ceil();
+        if finer <= f64::from(EXTRA_STEPS) {
+            finer.max(1.0) as u32
+        } else {
+            1
+        }
+    }
+
     fn microsteps(&mut self, time: f64, count: u32) {
+        let count = count * self.extra_steps(time / f64::from(count));
         let step = time / f64::from(count);
         let alone = self.elements.len() == 1;
         self.aim();

@@ -16,6 +16,7 @@ mod hard_cases;
 mod joints;
 mod messages;
 mod natural_frequency;
+mod networks;
 mod quarter_car;
 mod repeatability;
 mod sleeping;

@@ -1,0 +1,191 @@
+//! Do elements that share bodies move as the reference, and stay bounded at any stiffness?
+
+use crate::fit::frequency;
+use crate::harness::*;
+use bevy::math::DVec3;
+use bevy::prelude::*;
+use bevy_coilover::prelude::*;
+use bevy_rapier3d::prelude::*;
+use std::f64::consts::PI;
+
+/// What joins the points.
+#[derive(Clone, Copy)]
+enum Link {
+    Ours,
+    Joint,
+}
+
+/// Points of a mass, some of them fixed, joined pairwise at their first distance.
+struct Net {
+    lab: Lab,
+    points: Vec<Entity>,
+}
+
+struct Plan<'a> {
+    at: &'a [Vec3],
+    fixed: &'a [usize],
+    mass: f32,
+    pairs: &'a [(usize, usize)],
+    stiffness: f32,
+    damping: f32,
+}
+
+fn net(mut lab: Lab, plan: &Plan, link: Link) -> Net {
+    let points: Vec<Entity> = plan
+        .at
+        .iter()
+        .enumerate()
+        .map(|(i, at)| {
+            if plan.fixed.contains(&i) {
+                lab.spawn((RigidBody::Fixed, Transform::from_translation(*at)))
+            } else {
+                lab.body(plan.mass, *at)
+            }
+        })
+        .collect();
+    for (a, b) in plan.pairs {
+        let length = plan.at[*a].distance(plan.at[*b]);
+        let (a, b) = (points[*a], points[*b]);
+        match link {
+            Link::Ours => {
+                lab.spawn(
+                    SpringDamper::new(a, b)
+                        .with_stiffness(plan.stiffness)
+                        .with_damping(plan.damping)
+                        .with_rest_length(length),
+                );
+            }
+            Link::Joint => {
+                let joint = SpringJointBuilder::new(length, plan.stiffness, plan.damping);
+                // A body may carry several joints as children.
+                lab.spawn((ImpulseJoint::new(a, joint), ChildOf(b)));
+            }
+        }
+    }
+    Net { lab, points }
+}
+
+fn chain(count: usize) -> (Vec<Vec3>, Vec<(usize, usize)>) {
+    let at = (0..=count).map(|i| Vec3::X * 0.2 * i as f32).collect();
+    (at, (0..count).map(|i| (i, i + 1)).collect())
+}
+
+fn lattice(side: usize) -> (Vec<Vec3>, Vec<(usize, usize)>) {
+    let at = |i: usize, j: usize| j * side + i;
+    let mut pairs = Vec::new();
+    for j in 0..side {
+        for i in 0..side {
+            if i + 1 < side {
+                pairs.push((at(i, j), at(i + 1, j)));
+            }
+            if j + 1 < side {
+                pairs.push((at(i, j), at(i, j + 1)));
+            }
+            if i + 1 < side && j + 1 < side {
+                pairs.push((at(i, j), at(i + 1, j + 1)));
+                pairs.push((at(i + 1, j), at(i, j + 1)));
+            }
+        }
+    }
+    let points = (0..side * side)
+        .map(|p| Vec3::new(0.1 * (p % side) as f32, -0.1 * (p / side) as f32, 0.0))
+        .collect();
+    (points, pairs)
+}
+
+/// Largest error of the watched points over the first second, m.
+fn error(mut net: Net, file: &str, watched: &[usize]) -> f64 {
+    let mut worst = 0.0_f64;
+    for row in reference(file).iter().step_by(4).skip(1).take(60) {
+        net.lab.tick();
+        for (i, p) in watched.iter().enumerate() {
+            let wanted = DVec3::new(row[1 + 2 * i], row[2 + 2 * i], 0.0);
+            let at = net.lab.position(net.points[*p]).as_dvec3();
+            worst = worst.max(at.distance(wanted));
+        }
+    }
+    worst
+}
+
+#[test]
+fn chain_of_ten_and_lattice_of_six_follow_the_reference() {
+    let (at, pairs) = chain(10);
+    let swing = Plan {
+        at: &at,
+        fixed: &[0],
+        mass: 0.1,
+        pairs: &pairs,
+        stiffness: 100.0,
+        damping: 0.5,
+    };
+    let file = include_str!("../data/chain10_k100_c0.5.csv");
+    let run = |link| error(net(Lab::new(), &swing, link), file, &[5, 10]);
+    let (ours, joint) = (run(Link::Ours), run(Link::Joint));
+    println!(
+        "chain of 10: ours {:.2} mm, SpringJoint {:.1} mm",
+        1e3 * ours,
+        1e3 * joint
+    );
+    assert!(ours <= 8e-3 && joint > 10.0 * ours, "{ours} {joint}");
+
+    let (at, pairs) = lattice(6);
+    let sheet = Plan {
+        at: &at,
+        fixed: &[0, 5],
+        mass: 0.05,
+        pairs: &pairs,
+        stiffness: 100.0,
+        damping: 0.5,
+    };
+    let file = include_str!("../data/lattice6_k100_c0.5.csv");
+    let run = |link| error(net(Lab::new(), &sheet, link), file, &[14, 33, 35]);
+    let (ours, joint) = (run(Link::Ours), run(Link::Joint));
+    println!(
+        "lattice 6×6: ours {:.3} mm, SpringJoint {:.1} mm",
+        1e3 * ours,
+        1e3 * joint
+    );
+    assert!(ours <= 1e-3 && joint > 10.0 * ours, "{ours} {joint}");
+}
+
+#[test]
+fn every_normal_mode_of_a_chain_has_its_frequency() {
+    // Ten masses between two walls, eleven springs: ω_j = 2 √(k/m) sin(jπ/22).
+    let mass = 0.1;
+    let k = mass * (0.3 / DT).powi(2);
+    for j in 1..=10 {
+        let (at, pairs) = chain(11);
+        let still = Plan {
+            at: &at,
+            fixed: &[0, 11],
+            mass,
+            pairs: &pairs,
+            stiffness: k,
+            damping: 0.0,
+        };
+        let mut net = net(Lab::weightless(), &still, Link::Ours);
+        let shape = |i: usize| (i as f64 * j as f64 * PI / 11.0).sin();
+        for i in 1..=10 {
+            net.lab.get_mut::<Transform>(net.points[i]).translation.x += (1e-3 * shape(i)) as f32;
+        }
+        let samples: Vec<(f64, f64)> = (1..=300)
+            .map(|tick| {
+                net.lab.tick();
+                let along: f64 = (1..=10)
+                    .map(|i| {
+                        let x = f64::from(net.lab.position(net.points[i]).x) - f64::from(at[i].x);
+                        x * shape(i)
+                    })
+                    .sum();
+                (f64::from(tick) * f64::from(DT), along)
+            })
+            .collect();
+        let omega = 2.0 * (f64::from(k) / f64::from(mass)).sqrt() * (j as f64 * PI / 22.0).sin();
+        let error = frequency(&samples, omega) / omega - 1.0;
+        println!(
+            "mode {j}: ω·dt {:.3}, frequency error {error:+.1e}",
+            omega * f64::from(DT)
+        );
+        assert!(error.abs() <= 3e-3, "mode {j}: {error:e}");
+    }
+}
