@@ -167,7 +167,8 @@ impl Element {
     /// The separation from end A to end B, and how much of it is more than rounding of the engine's f32.
     fn separation(&self, holds: &[Hold; 2]) -> (DVec3, bool) {
         let d = holds[1].position - holds[0].position;
-        let scale = holds[0].position.abs().max_element().max(self.rest_length);
+        let scale = holds.map(|h| h.position.abs().max_element());
+        let scale = scale[0].max(scale[1]);
         (d, d.length() > 1e-9 * scale.max(1e-3))
     }
 

@@ -80,7 +80,9 @@ impl Component {
 
     fn resolved(&self, step: f64) -> bool {
         match self.elements.as_slice() {
-            [element] => kick::resolved(element, &self.bodies, step, EXTRAPOLATION_LIMIT),
+            [element] if self.is_alone() => {
+                kick::resolved(element, &self.bodies, step, EXTRAPOLATION_LIMIT)
+            }
             elements => {
                 Network::stiffest(elements, &self.bodies, step)
                     < EXTRAPOLATION_LIMIT * EXTRAPOLATION_LIMIT
@@ -91,7 +93,7 @@ impl Component {
     /// How many times finer a network has to step for its stiffest mode to need no damping; once where
     /// that is out of reach.
     fn extra_steps(&self, step: f64) -> u32 {
-        if self.elements.len() < 2 {
+        if self.is_alone() {
             return 1;
         }
         let z = Network::stiffest(&self.elements, &self.bodies, step);
@@ -106,7 +108,7 @@ impl Component {
     fn microsteps(&mut self, time: f64, count: u32) {
         let count = count * self.extra_steps(time / f64::from(count));
         let step = time / f64::from(count);
-        let alone = self.elements.len() == 1;
+        let alone = self.is_alone();
         self.aim();
         if alone {
             kick::map_velocity(
@@ -136,6 +138,11 @@ impl Component {
                 &mut self.memo,
             );
         }
+    }
+
+    /// One element on its own bodies; a component can have more of them where other elements are inert.
+    fn is_alone(&self) -> bool {
+        self.elements.len() == 1 && self.bodies.len() <= 2
     }
 
     fn aim(&mut self) {

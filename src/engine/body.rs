@@ -106,7 +106,8 @@ pub(super) fn read(body: &RapierBody, gravity: Vec3, user: &ExternalForce, turns
         given: (DVec3::ZERO, DVec3::ZERO),
     };
     if turns {
-        if rotation_locked == [false; 3] {
+        // No inertia about an axis means to the engine that nothing turns the body about it.
+        if rotation_locked == [false; 3] && out.inertia.min_element() > 0.0 {
             out.spin = Spin::Free {
                 momentum: DVec3::ZERO,
             };

@@ -61,10 +61,7 @@ impl Step<'_> {
         for e in group.elements {
             let row = &mut scene.elements[*e];
             let ends = row.held.map(|held| self.end(held, slots, set));
-            disturbed |= row.changed
-                || ends.iter().any(|end| {
-                    matches!(end, End::Path { velocity, .. } if velocity.length_squared() > 0.0)
-                });
+            disturbed |= row.changed || self.has_moved(row, &ends, set);
             if let Some(element) = element(row, ends, &component.bodies) {
                 component.elements.push(element);
             }
@@ -104,7 +101,6 @@ impl Step<'_> {
             else {
                 continue;
             };
-            load.before = Some((body.linvel(), body.angvel()));
             if body.is_sleeping() {
                 continue;
             }
@@ -172,6 +168,33 @@ impl Step<'_> {
         } else {
             deliver(body, start, end, &schedule, &self.engine, takes_impulses)
         }
+    }
+
+    /// Whether an end moves, or is not where it was after the last step.
+    fn has_moved(&self, row: &ElementRow, ends: &[End; 2], set: &RapierRigidBodySet) -> bool {
+        row.held
+            .iter()
+            .zip(ends)
+            .zip(row.remembered)
+            .any(|((held, end), before)| {
+                let now = match (*held, *end) {
+                    (_, End::Path { velocity, .. }) if velocity != DVec3::ZERO => return true,
+                    (
+                        Held::Body {
+                            local,
+                            movable: Some(_),
+                            ..
+                        },
+                        _,
+                    ) => local,
+                    (Held::Body { handle, local, .. }, _) => set
+                        .bodies
+                        .get(handle)
+                        .map_or(DVec3::ZERO, |body| point_of(body, local).0),
+                    (Held::Path { to, .. }, _) => to,
+                };
+                before.is_some_and(|before| before != now)
+            })
     }
 
     fn end(&self, held: Held, slots: &[usize], set: &RapierRigidBodySet) -> End {

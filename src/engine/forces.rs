@@ -1,6 +1,7 @@
 //! One `ExternalForce` per body, two owners: the user's share and ours, kept apart.
 
 use super::held::{Expected, Support};
+use super::sleep::Rest;
 use bevy::ecs::entity_disabling::Disabled;
 use bevy::ecs::query::Allow;
 use bevy::prelude::*;
@@ -24,9 +25,9 @@ pub struct SpringLoad {
     /// What we left in the component.
     #[reflect(ignore)]
     pub(super) mirrored: ExternalForce,
-    /// Velocities one step ago, to tell rest from a turning point.
+    /// Since when and where the body has been at rest.
     #[reflect(ignore)]
-    pub(super) before: Option<(Vec3, Vec3)>,
+    pub(super) rest: Option<Rest>,
     /// How much of a free body's motion contacts and joints leave it; see [`super::held`].
     #[reflect(ignore)]
     pub(super) mobility: f64,
@@ -53,7 +54,7 @@ impl SpringLoad {
             elements: ExternalForce::default(),
             user,
             mirrored: user,
-            before: None,
+            rest: None,
             mobility: 1.0,
             support: Support::Unknown,
             expected: None,
@@ -83,8 +84,17 @@ impl SpringLoad {
         body: &mut RapierBody,
         component: Option<&mut Mut<ExternalForce>>,
     ) {
-        self.elements = elements;
-        self.mirrored = self.user + elements;
+        let finite = elements.force.is_finite() && elements.torque.is_finite();
+        self.elements = if finite {
+            elements
+        } else {
+            ExternalForce::default()
+        };
+        let elements = self.elements;
+        self.mirrored = ExternalForce {
+            force: told_apart(self.user.force + elements.force, self.user.force),
+            torque: told_apart(self.user.torque + elements.torque, self.user.torque),
+        };
         body.reset_forces(false);
         body.reset_torques(false);
         body.add_force(self.mirrored.force, false);
@@ -95,20 +105,20 @@ impl SpringLoad {
     }
 }
 
-/// Components that differ from what we left there were written by the user. A vector set to the very
-/// value it had is a clearing if that is zero, and no change otherwise.
+/// Axes that differ from what we left there were written by the user.
 fn take_in(share: &mut Vec3, now: Vec3, left: Vec3) {
-    if now == left {
-        if now == Vec3::ZERO {
-            *share = Vec3::ZERO;
-        }
-        return;
-    }
     for axis in 0..3 {
         if now[axis].to_bits() != left[axis].to_bits() {
             share[axis] = now[axis];
         }
     }
+}
+
+/// A sum that happens to be zero is left as the smallest number instead, so that a user who clears it
+/// changes it.
+fn told_apart(sum: Vec3, user: Vec3) -> Vec3 {
+    let hidden = sum.cmpeq(Vec3::ZERO) & user.cmpne(Vec3::ZERO);
+    Vec3::select(hidden, Vec3::splat(f32::MIN_POSITIVE), sum)
 }
 
 /// Takes our share back from bodies that no element acts on any more.
@@ -139,10 +149,13 @@ pub(super) fn release(
             && let Some(body) = set.bodies.get_mut(handle.0)
         {
             load.write(ExternalForce::default(), body, component.as_mut());
-            if load.raised_iterations {
+            if load.raised_iterations && body.additional_solver_iterations() == 1 {
                 body.set_additional_solver_iterations(0);
             }
             body.wake_up(true);
+        } else if let Some(component) = &mut component {
+            // No body any more; one that comes later starts from the component.
+            *component.bypass_change_detection() = load.user;
         }
         commands.entity(entity).try_remove::<SpringLoad>();
     }

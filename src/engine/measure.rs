@@ -10,6 +10,7 @@ use crate::readout::SpringReadout;
 use bevy::math::DVec3;
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
+use bevy_rapier3d::rapier::dynamics::RigidBodyHandle;
 
 /// Writes readouts, captured rest lengths, and faults found while solving.
 pub(crate) fn measure(
@@ -29,6 +30,7 @@ pub(crate) fn measure(
     if scene.time <= 0.0 {
         return;
     }
+    scene.step += 1;
     for row in &scene.bodies {
         let (Ok(set), Ok((simulation, joints)), Ok(mut load)) = (
             sets.get(row.context),
@@ -41,17 +43,34 @@ pub(crate) fn measure(
             observe(&mut load, row.handle, body, simulation, joints);
         }
     }
-    for row in &scene.elements {
+    for row in &mut scene.elements {
+        if row.parameters.rest_length.is_none() {
+            // No movable body: it took no part in the solve.
+            row.parameters.rest_length = Some(read_out(row, &sets, scene.time).length);
+            row.captured = true;
+        }
         let Ok((mut readout, mut memory, spring, pair)) = elements.get_mut(row.entity) else {
             continue;
         };
         report(row.entity, row.fault, &mut memory, &mut commands);
         memory.direction = row.direction;
+        memory.step = scene.step;
         for (i, held) in row.held.iter().enumerate() {
-            memory.ends[i].point = match held {
-                Held::Path { to, .. } => Some((row.parameters.ends[i], *to)),
-                Held::Body { .. } => None,
+            let place = match *held {
+                Held::Path { to, .. } => to,
+                Held::Body {
+                    local,
+                    movable: Some(_),
+                    ..
+                } => local,
+                Held::Body {
+                    handle,
+                    context,
+                    local,
+                    ..
+                } => point(&sets, context, handle, local).0,
             };
+            memory.ends[i].place = Some((row.parameters.ends[i], place));
         }
         if row.captured && row.fault.is_none() {
             if let Some(mut spring) = spring {
@@ -68,6 +87,19 @@ pub(crate) fn measure(
     }
 }
 
+/// Position and velocity of a point on a body.
+fn point(
+    sets: &Query<&RapierRigidBodySet>,
+    context: Entity,
+    handle: RigidBodyHandle,
+    local: DVec3,
+) -> (DVec3, DVec3) {
+    sets.get(context)
+        .ok()
+        .and_then(|set| set.bodies.get(handle))
+        .map_or((DVec3::ZERO, DVec3::ZERO), |body| point_of(body, local))
+}
+
 fn read_out(row: &ElementRow, sets: &Query<&RapierRigidBodySet>, time: f64) -> SpringReadout {
     let [a, b] = row.held.map(|held| match held {
         Held::Path { from, to } => (to, (to - from) / time),
@@ -76,11 +108,7 @@ fn read_out(row: &ElementRow, sets: &Query<&RapierRigidBodySet>, time: f64) -> S
             context,
             local,
             ..
-        } => sets
-            .get(context)
-            .ok()
-            .and_then(|set| set.bodies.get(handle))
-            .map_or((DVec3::ZERO, DVec3::ZERO), |body| point_of(body, local)),
+        } => point(sets, context, handle, local),
     });
     let d = b.0 - a.0;
     let length = d.length();

@@ -37,6 +37,9 @@ pub(super) struct ElementRow {
     pub direction: Option<DVec3>,
     /// A parameter or an end changed since the last tick.
     pub changed: bool,
+    /// Where its ends were after the last step: a body's own point if elements can move it, else a point
+    /// of the world.
+    pub remembered: [Option<DVec3>; 2],
     /// Why it does not act, if it does not.
     pub fault: Option<Fault>,
     /// The rest length was found in this tick and has to be written back.
@@ -55,6 +58,8 @@ pub(super) struct BodyRow {
     pub elements: u32,
     /// Which ones, as a hash.
     pub signature: u64,
+    /// Its mass has changed.
+    pub changed: bool,
 }
 
 /// The scene as this tick sees it.
@@ -63,6 +68,8 @@ pub struct Scene {
     pub(super) elements: Vec<ElementRow>,
     pub(super) bodies: Vec<BodyRow>,
     pub(super) index: EntityHashMap<usize>,
+    /// Engine steps so far, to tell what an element remembers of the last one.
+    pub(super) step: u64,
     /// Seconds that the engine will step in this tick; 0 if it will not.
     pub(super) time: f64,
 }
@@ -135,6 +142,7 @@ pub(crate) fn prepare(
                     parameters,
                     direction: memory.direction,
                     changed,
+                    remembered: memory.ends.map(|end| end.place.map(|(_, place)| place)),
                     fault: None,
                     captured: false,
                 });
@@ -249,11 +257,15 @@ fn find(
                 handle,
                 context,
                 local,
-                movable: movable[i]
-                    .map(|(entity, off_center)| scene.enter(entity, handle, context, off_center)),
+                movable: movable[i].map(|(entity, off_center)| {
+                    let body = scene.enter(entity, handle, context, off_center);
+                    scene.bodies[body].changed |= mass_modified.contains(&entity);
+                    body
+                }),
             },
             Place::Point(to) => {
-                let last = memory.ends[i].point;
+                // Where it was after the last step; older memories would make a leap of it.
+                let last = memory.ends[i].place.filter(|_| memory.step == scene.step);
                 let from = last
                     .filter(|(e, _)| *e == parameters.ends[i])
                     .map_or(to, |(_, p)| p);
@@ -281,6 +293,7 @@ impl Scene {
                 turns: false,
                 elements: 0,
                 signature: 0,
+                changed: false,
             });
             bodies.len() - 1
         });

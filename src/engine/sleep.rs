@@ -1,8 +1,9 @@
 //! A body may sleep only where it would really stay.
 //!
 //! Rapier puts a body to sleep after half a second below a speed that a slow spring never exceeds, and
-//! a body at its turning point is slow too. So bodies of a component that is not at rest have their
-//! timers set back, and one that is disturbed is woken as a whole.
+//! a body at its turning point is slow too. So bodies of a component have their timers set back until
+//! each has been at rest, and at the same place, for longer than a turning point lasts; and one that is
+//! disturbed is woken as a whole.
 
 use super::body::is_movable;
 use super::component::Step;
@@ -12,48 +13,57 @@ use super::scene::Scene;
 use super::solve::Loads;
 use crate::dynamics::body::Body;
 use crate::dynamics::step::Component;
+use bevy::math::{Quat, Vec3};
 use bevy_rapier3d::prelude::RapierRigidBodySet;
 use bevy_rapier3d::rapier::dynamics::RigidBody as RapierBody;
 
-/// Speed (m/s, rad/s; times the engine's length unit) that counts as rest, for the present velocity
-/// and for the velocity that the present acceleration would lead to within the element's period.
+/// Speed (m/s, rad/s; times the engine's length unit) that counts as rest.
 const REST: f32 = 2e-4;
+
+/// How long it has to last, s. At a turning point of amplitude A and frequency ω it lasts
+/// 2·REST/(A ω²), so what falls asleep has accelerations below REST·2/QUIET.
+const QUIET: f32 = 2.0;
 
 /// Rounding of a position that is not motion, in units of its last place: a stiff spring answers each
 /// of them with a speed of ω times that.
 const ROUNDING: f32 = 4.0;
 
-/// Slowest natural frequency (rad/s) that is waited for.
-const SLOWEST: f32 = 0.05;
+/// A body at rest: since when, and where that was.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Rest {
+    position: Vec3,
+    rotation: Quat,
+    seconds: f32,
+}
 
-/// Judges by measured acceleration, so that contacts and joints count. `omega` is the natural
-/// frequency of the stiffest element on the body.
+/// Whether a body moves, or has not rested long enough yet. `omega` is the natural frequency of the
+/// stiffest element on it.
 fn is_restless(
-    load: &SpringLoad,
+    load: &mut SpringLoad,
     body: &RapierBody,
     omega: f32,
     time: f32,
     length_unit: f32,
 ) -> bool {
-    let (linear, angular) = (body.linvel(), body.angvel());
-    let Some((linear_before, angular_before)) = load.before else {
+    let (position, rotation) = (body.position().translation, body.position().rotation);
+    let place = position.abs().max_element() * f32::EPSILON;
+    let noise = ROUNDING * omega;
+    let slow = body.linvel().length() < REST * length_unit + noise * place
+        && body.angvel().length() < REST + noise * f32::EPSILON;
+    let rest = load.rest.get_or_insert(Rest {
+        position,
+        rotation,
+        seconds: 0.0,
+    });
+    // Trembling may be rounding; going somewhere is not.
+    let strayed = rest.position.distance(position) > REST * QUIET * length_unit + ROUNDING * place
+        || (rest.rotation.inverse() * rotation).xyz().length() > 0.5 * REST * QUIET;
+    if !slow || strayed {
+        load.rest = None;
         return true;
-    };
-    let reach = 1.0 / (time * omega.max(SLOWEST));
-    let place = body.position().translation.abs().max_element();
-    let noise = ROUNDING * f32::EPSILON * omega;
-    let still = |now: f32, change: f32, limit: f32| {
-        now * now + (change * reach) * (change * reach) < limit * limit
-    };
-    !(still(
-        linear.length(),
-        (linear - linear_before).length(),
-        REST * length_unit + noise * place,
-    ) && still(
-        angular.length(),
-        (angular - angular_before).length(),
-        REST + noise,
-    ))
+    }
+    rest.seconds += time;
+    rest.seconds < QUIET
 }
 
 /// Whether a step would set a sleeping body moving: an acceleration that within a second is not rest.
@@ -112,8 +122,6 @@ impl Step<'_> {
             .filter_map(|e| Some(e.stiffness * e.line(&component.bodies)?.inverse_mass))
             .fold(0.0, f64::max)
             .sqrt() as f32;
-        // A damper alone has no period; a second stands in for it.
-        let omega = if omega == 0.0 { 1.0 } else { omega };
         for b in group.bodies {
             let row = scene.bodies[*b];
             let (Some(body), Ok((_, mut load, ..))) =
@@ -121,13 +129,13 @@ impl Step<'_> {
             else {
                 continue;
             };
-            disturbed |= load.disturbed || load.signature != row.signature;
+            disturbed |= load.disturbed || row.changed || load.signature != row.signature;
             load.disturbed = false;
             load.signature = row.signature;
             if !body.is_sleeping() && is_movable(body) {
                 all_asleep = false;
                 restless |= is_restless(
-                    &load,
+                    &mut load,
                     body,
                     omega,
                     self.plan.time as f32,
