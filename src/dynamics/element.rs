@@ -24,6 +24,8 @@ pub(crate) struct Element {
     pub rest_length: f64,
     /// From end A to end B where the step began; see [`Element::aim`].
     pub direction: Option<DVec3>,
+    /// A strong damper: then a spring of zero rest length has an axis after all.
+    pub stiff_damper: bool,
 }
 
 /// One end of the line, resolved at an instant.
@@ -175,11 +177,16 @@ impl Element {
     /// Notes on which side of end A end B is before a drift. A stiff spring that is far from rest
     /// drifts through the centre and is kicked back within one step; its force must not turn round on
     /// the way.
-    pub(crate) fn aim(&mut self, bodies: &[Body]) {
+    pub(crate) fn aim(&mut self, bodies: &[Body], step: f64) {
         let holds = [self.ends[0].hold(bodies), self.ends[1].hold(bodies)];
         if let (d, true) = self.separation(&holds) {
             self.direction = Some(d.normalize());
         }
+        let along = self.direction.unwrap_or(DVec3::Y);
+        let inverse_mass: f64 = holds.iter().map(|h| h.inverse_mass_along(along)).sum();
+        // Past that the spring needs its isotropic, implicit form more than the damper its axis.
+        let resolved = self.stiffness * inverse_mass * step * step < 4.0;
+        self.stiff_damper = resolved && self.damping * inverse_mass * step > 0.5;
     }
 
     /// The line at this instant, or `None` where the ends coincide and nothing says which way to push.
@@ -187,12 +194,12 @@ impl Element {
     pub(crate) fn line(&self, bodies: &[Body]) -> Option<Line> {
         let holds = [self.ends[0].hold(bodies), self.ends[1].hold(bodies)];
         let (d, apart) = self.separation(&holds);
-        let isotropic = self.rest_length == 0.0;
+        let isotropic = self.rest_length == 0.0 && !self.stiff_damper;
         let direction = match (apart, self.direction) {
             (true, None) => d.normalize(),
             (true, Some(side)) => d.normalize() * if d.dot(side) < 0.0 { -1.0 } else { 1.0 },
             (false, Some(side)) => side,
-            (false, None) if isotropic => {
+            (false, None) if self.rest_length == 0.0 => {
                 // Whatever acts on the ends decides; with nothing acting any axis will do.
                 let [a, b] = [0, 1].map(|i| self.ends[i].motion(&holds[i], bodies));
                 let hint = (b.0 - a.0) + (b.1 - a.1);

@@ -158,7 +158,7 @@ fn is_resolved(z: f64) -> bool {
     z < RESOLVED_PHASE * RESOLVED_PHASE
 }
 
-/// ω h of the element where it stands, and whether the lateral motion is resolved too.
+/// Whether a step resolves the element's oscillation, its decay, and the turning of its line.
 pub(crate) fn resolved(element: &Element, bodies: &[Body], step: f64, limit: f64) -> bool {
     let Some(line) = element.line(bodies) else {
         return false;
@@ -166,5 +166,6 @@ pub(crate) fn resolved(element: &Element, bodies: &[Body], step: f64, limit: f64
     let z = element.stiffness * line.inverse_mass * step * step;
     let Motion { lateral_square, .. } = line.motion(element, bodies, step);
     let turned = step * step * lateral_square;
-    z < limit * limit && (line.isotropic || turned < line.length * line.length)
+    let decay = element.damping * line.inverse_mass * step;
+    z < limit * limit && decay < limit && (line.isotropic || turned < line.length * line.length)
 }

@@ -2,12 +2,14 @@
 //!
 //! Read in the order in which a step runs: [`body`] drifts, [`element`] measures the line between the
 //! ends, [`poles`] gives the exact coefficients, [`kick`] acts for a lone element and [`network`] for
-//! elements that share bodies, [`step`] repeats that as micro-steps, and [`delivery`] says which impulse
+//! elements that share bodies, [`guard`] keeps strong damping
+//! honest, [`step`] repeats that as micro-steps, and [`delivery`] says which impulse
 //! and force make the engine arrive there.
 
 pub(crate) mod body;
 pub(crate) mod delivery;
 pub(crate) mod element;
+pub(crate) mod guard;
 pub(crate) mod kick;
 pub(crate) mod network;
 pub(crate) mod poles;

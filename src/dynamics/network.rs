@@ -73,14 +73,15 @@ impl Blend {
         let rate = line.backward_rate(before, h);
         let tension = k * (line.length - element.rest_length) + c * rate;
         let implicit = (self.theta + self.eta) * h2;
+        let damping = damper_placement(c * h * line.inverse_mass);
         let mut struts = vec![Strut {
             line: index,
             direction: line.direction,
             row: jacobian(line, line.direction),
             load: tension + self.eta * h * k * rate,
             // The half drift counted h²/8 of the turning as stretch already.
-            turning: (self.theta * h2 - h2 / 8.0) * k + 0.5 * h * c,
-            weight: implicit * k + 0.5 * h * c,
+            turning: (self.theta * h2 - h2 / 8.0) * k + damping * h * c,
+            weight: implicit * k + damping * h * c,
         }];
         let across = across(element, line, tension);
         if across > 0.0 {
@@ -108,23 +109,14 @@ fn jacobian(line: &Line, direction: DVec3) -> [(Option<usize>, DVec3, DVec3); 2]
 }
 
 impl Network {
-    /// Bound on (ω h)² of the component's stiffest mode: Gershgorin on h² M⁻¹K, block by body.
+    /// Bound on (ω h)² of the component's stiffest mode.
     pub(crate) fn stiffest(elements: &[Element], bodies: &[Body], step: f64) -> f64 {
-        let mut bound = vec![0.0_f64; bodies.len()];
-        for element in elements {
-            let Some(line) = element.line(bodies) else {
-                continue;
-            };
-            let w = line
-                .holds
-                .map(|h| h.inverse_mass_along(line.direction).sqrt());
-            for (end, hold) in line.holds.iter().enumerate() {
-                if let Some(body) = hold.body {
-                    bound[body] += element.stiffness * w[end] * (w[0] + w[1]);
-                }
-            }
-        }
-        step * step * bound.into_iter().fold(0.0, f64::max)
+        step * step * bound(elements, bodies, |element| element.stiffness)
+    }
+
+    /// Bound on 2γh of its most damped mode.
+    pub(crate) fn most_damped(elements: &[Element], bodies: &[Body], step: f64) -> f64 {
+        step * bound(elements, bodies, |element| element.damping)
     }
 
     fn new(bodies: &[Body]) -> Self {
@@ -314,6 +306,25 @@ impl Network {
     }
 }
 
+/// Gershgorin bound on M⁻¹K or M⁻¹C, block by body.
+fn bound(elements: &[Element], bodies: &[Body], constant: impl Fn(&Element) -> f64) -> f64 {
+    let mut sums = vec![0.0_f64; bodies.len()];
+    for element in elements {
+        let Some(line) = element.line(bodies) else {
+            continue;
+        };
+        let w = line
+            .holds
+            .map(|h| h.inverse_mass_along(line.direction).sqrt());
+        for (end, hold) in line.holds.iter().enumerate() {
+            if let Some(body) = hold.body {
+                sums[body] += constant(element) * w[end] * (w[0] + w[1]);
+            }
+        }
+    }
+    sums.into_iter().fold(0.0, f64::max)
+}
+
 /// Component k of six.
 fn entry(linear: DVec3, angular: DVec3, k: usize) -> f64 {
     if k < 3 { linear[k] } else { angular[k - 3] }
@@ -327,6 +338,17 @@ fn across(element: &Element, line: &Line, tension: f64) -> f64 {
         tension / line.length
     } else {
         0.0
+    }
+}
+
+/// Share of the step at whose end a damper with x = c h/m acts: half, which is of second order, while it
+/// is resolved; beyond that the share with which a lone damper decays exactly, so that strong ones stop
+/// their ends instead of throwing them back and forth.
+fn damper_placement(x: f64) -> f64 {
+    if x <= 1.0 {
+        0.5
+    } else {
+        -1.0 / (-x).exp_m1() - 1.0 / x
     }
 }
 

@@ -11,9 +11,8 @@ pub(crate) const RESOLVED_PHASE: f64 = 2.5;
 /// a minute of it would heat a swinging rod by several per cent.
 const UNRESOLVED_DECAY: f64 = 0.01;
 
-/// Decay exponent per step beyond which the velocity map is frozen: by then the motion is over
-/// within the step, and the exact map would only be badly conditioned.
-const RESOLVED_DECAY: f64 = 3.0;
+/// Decay exponent per step up to which one step is the true flow.
+const RESOLVED_DECAY: f64 = 2.0;
 
 /// Coefficients of one step h for y″ = −ω²y − 2γy′ + a, with z = (ωh)² and g = γh.
 ///
@@ -54,18 +53,17 @@ impl Poles {
             let slow = if fast > 0.0 { z / fast } else { 0.0 };
             (decay_ratio(fast) * decay_ratio(slow), slow)
         };
-        let shrink = if slow > RESOLVED_DECAY {
-            RESOLVED_DECAY / slow
+        // Where the motion is over within the step its map matters to nobody, and is badly conditioned.
+        let (speed, skew) = if slow < RESOLVED_DECAY {
+            velocity_map(z, g)
         } else {
-            1.0
+            (1.0, 0.0)
         };
-        let (speed, skew) = velocity_map(z * shrink * shrink, g * shrink);
         Self {
             restoring,
             loss: -(-2.0 * g).exp_m1(),
             speed,
-            // `velocity_map` speaks of a step shrunk by that factor.
-            skew: skew * shrink,
+            skew,
         }
     }
 
@@ -180,7 +178,7 @@ mod tests {
                 } else {
                     g
                 };
-                if slow > RESOLVED_DECAY {
+                if slow >= RESOLVED_DECAY {
                     continue;
                 }
                 let e = exact(z, g);

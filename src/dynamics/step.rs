@@ -2,6 +2,7 @@
 
 use super::body::{Body, Spin, turn};
 use super::element::Element;
+use super::guard::Guard;
 use super::kick::{self, Map, Memo};
 use super::network::{Network, RESOLVED};
 use bevy::math::DVec3;
@@ -86,6 +87,7 @@ impl Component {
             elements => {
                 Network::stiffest(elements, &self.bodies, step)
                     < EXTRAPOLATION_LIMIT * EXTRAPOLATION_LIMIT
+                    && Network::most_damped(elements, &self.bodies, step) < EXTRAPOLATION_LIMIT
             }
         }
     }
@@ -109,7 +111,10 @@ impl Component {
         let count = count * self.extra_steps(time / f64::from(count));
         let step = time / f64::from(count);
         let alone = self.is_alone();
-        self.aim();
+        self.aim(step);
+        let guard = alone
+            .then(|| Guard::begin(&self.elements[0], &self.bodies, step))
+            .flatten();
         if alone {
             kick::map_velocity(
                 &self.elements[0],
@@ -127,7 +132,7 @@ impl Component {
                 Network::kick(&self.elements, &mut self.bodies, step);
             }
             self.drift(step / 2.0);
-            self.aim();
+            self.aim(step);
         }
         if alone {
             kick::map_velocity(
@@ -138,16 +143,25 @@ impl Component {
                 &mut self.memo,
             );
         }
+        if let Some(guard) = guard {
+            guard.end(&self.elements[0], &mut self.bodies, time);
+        }
     }
 
-    /// One element on its own bodies; a component can have more of them where other elements are inert.
+    /// Whether the closed form holds: one element on its own bodies (a component can have more of them
+    /// where other elements are inert), with one direction that matters. An isotropic spring on a turning
+    /// body has three.
     fn is_alone(&self) -> bool {
-        self.elements.len() == 1 && self.bodies.len() <= 2
+        let [element] = self.elements.as_slice() else {
+            return false;
+        };
+        let turns = self.bodies.iter().any(|body| body.spin != Spin::Still);
+        self.bodies.len() <= 2 && !(element.rest_length == 0.0 && turns)
     }
 
-    fn aim(&mut self) {
+    fn aim(&mut self, step: f64) {
         for element in &mut self.elements {
-            element.aim(&self.bodies);
+            element.aim(&self.bodies, step);
         }
     }
 

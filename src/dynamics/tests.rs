@@ -42,6 +42,7 @@ fn element(a: End, b: End, stiffness: f64, damping: f64, rest_length: f64) -> El
         damping,
         rest_length,
         direction: None,
+        stiff_damper: false,
     }
 }
 

@@ -233,6 +233,7 @@ fn element(row: &mut ElementRow, ends: [End; 2], bodies: &[Body]) -> Option<Elem
         damping: f64::from(p.damping),
         rest_length: f64::from(p.rest_length.unwrap_or(0.0)),
         direction: row.direction,
+        stiff_damper: false,
     };
     if p.rest_length.is_none() {
         let length = element.line(bodies).map_or(0.0, |line| line.length.abs());

@@ -208,3 +208,45 @@ fn both_ends_on_one_body_do_nothing_to_it() {
     lab.run(1.0);
     assert!(lab.position(body).length() < 1e-6 && lab.velocity(body).length() < 1e-6);
 }
+
+/// A point that moved while its element was off has not leapt when it comes on again.
+#[test]
+fn a_point_is_at_rest_when_its_element_comes_back() {
+    use bevy::ecs::entity_disabling::Disabled;
+    for way in 0..3 {
+        let mut lab = Lab::weightless();
+        let hook = lab.point(Vec3::ZERO);
+        let body = lab.body(1.0, Vec3::X);
+        let damper = Damper::new(hook, body).with_damping(1.0);
+        let element = lab.spawn(damper);
+        lab.run(0.1);
+        let mut entity = lab.app.world_mut().entity_mut(element);
+        match way {
+            0 => drop(entity.insert(Disabled)),
+            1 => drop(entity.insert(damper.with_damping(f32::NAN))),
+            _ => drop(entity.remove::<Damper>()),
+        }
+        lab.get_mut::<Transform>(hook).translation.x = -6.0;
+        lab.run(0.5);
+        let mut entity = lab.app.world_mut().entity_mut(element);
+        match way {
+            0 => drop(entity.remove::<Disabled>()),
+            _ => drop(entity.insert(damper)),
+        }
+        lab.tick();
+        assert_eq!(lab.velocity(body), Vec3::ZERO, "way {way}");
+    }
+}
+
+#[test]
+fn between_two_ends_that_nothing_moves_it_still_measures() {
+    let mut lab = Lab::new();
+    let a = lab.point(Vec3::ZERO);
+    let b = lab.spawn((RigidBody::Fixed, Transform::from_xyz(2.0, 0.0, 0.0)));
+    let element = lab.spawn(Spring::new(a, b).with_stiffness(10.0));
+    lab.run(0.1);
+    assert_eq!(lab.get::<Spring>(element).rest_length, Some(2.0));
+    lab.get_mut::<Transform>(a).translation.x = -1.0;
+    lab.run(0.1);
+    assert_eq!(lab.readout(element).spring_force, 10.0);
+}

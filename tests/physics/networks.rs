@@ -189,3 +189,48 @@ fn every_normal_mode_of_a_chain_has_its_frequency() {
         assert!(error.abs() <= 3e-3, "mode {j}: {error:e}");
     }
 }
+
+#[test]
+fn strong_dampers_bring_a_row_to_one_speed_at_once() {
+    for plugin in [
+        CoiloverPlugin::default(),
+        CoiloverPlugin::default().with_microsteps(2),
+        CoiloverPlugin::default().with_extrapolation(),
+    ] {
+        let mut lab = Lab::with(
+            plugin,
+            Engine {
+                gravity: Vec3::ZERO,
+                ..default()
+            },
+        );
+        let row = [0.0, 1.0, 2.0].map(|x| lab.body(1.0, Vec3::X * x));
+        for (a, b) in [(row[0], row[1]), (row[1], row[2])] {
+            lab.spawn(Damper::new(a, b).with_damping(1000.0 / DT));
+        }
+        lab.get_mut::<Velocity>(row[0]).linear = Vec3::X;
+        for _ in 0..30 {
+            lab.tick();
+            for body in row {
+                let v = lab.velocity(body).x;
+                assert!((v - 1.0 / 3.0).abs() < 2e-3, "{plugin:?}: {v}");
+            }
+        }
+    }
+}
+
+#[test]
+fn an_inert_neighbour_stops_nothing() {
+    // Two bodies at the same place give their spring no direction; the next spring goes on.
+    let mut lab = Lab::weightless();
+    let (a, b, c) = (
+        lab.body(1.0, Vec3::ZERO),
+        lab.body(1.0, Vec3::ZERO),
+        lab.body(1.0, Vec3::X * 2.0),
+    );
+    let inert = lab.spawn(Spring::new(a, b).with_stiffness(10.0).with_rest_length(1.0));
+    lab.spawn(Spring::new(b, c).with_stiffness(10.0).with_rest_length(1.0));
+    lab.tick();
+    assert!(lab.app.world().get::<SpringFault>(inert).is_some());
+    assert!(lab.velocity(c).x < -0.1 && lab.velocity(a).length() < 1e-6);
+}

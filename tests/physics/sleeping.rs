@@ -143,3 +143,85 @@ fn moving_one_body_wakes_the_other() {
     let center = 0.5 * (lab.position(a).x + lab.position(b).x);
     assert!((center - 0.25).abs() < 1e-5, "{center}");
 }
+
+#[test]
+fn a_long_pendulum_on_a_stiff_spring_does_not_fall_asleep_at_its_turning_point() {
+    let mut lab = Lab::new();
+    let hook = lab.point(Vec3::ZERO);
+    let (k, length) = (1e5_f32, 10.0_f32);
+    let bob = lab.body(1.0, Vec3::new(0.002, -length - 9.81 / k, 0.0));
+    lab.spawn(
+        Spring::new(hook, bob)
+            .with_stiffness(k)
+            .with_rest_length(length),
+    );
+    let mut least = 0.0_f32;
+    for _ in 0..lab.ticks(30.0) {
+        lab.tick();
+        assert!(!lab.is_sleeping(bob));
+        least = least.min(lab.position(bob).x);
+    }
+    assert!(least < -1.9e-3, "it swings: {least}");
+}
+
+#[test]
+fn a_pair_that_drifts_far_from_the_origin_does_not_fall_asleep() {
+    for (at, k, speed) in [(10.0, 1e6, 0.003), (100.0, 1e4, 0.003), (1000.0, 1e4, 0.03)] {
+        let mut lab = Lab::weightless();
+        let pair = [0.0, 1.0].map(|x| lab.body(1.0, Vec3::X * (at + x)));
+        for body in pair {
+            lab.get_mut::<Velocity>(body).linear = Vec3::Y * speed;
+        }
+        lab.spawn(
+            Spring::new(pair[0], pair[1])
+                .with_stiffness(k)
+                .with_rest_length(1.0),
+        );
+        lab.run(20.0);
+        let y = lab.position(pair[0]).y;
+        assert!((y / (20.0 * speed) - 1.0).abs() < 1e-2, "at {at} m: {y}");
+    }
+}
+
+#[test]
+fn moving_what_holds_it_or_where_it_is_held_wakes() {
+    for change in 0..4 {
+        let mut lab = Lab::new();
+        let hook = lab.spawn((RigidBody::Fixed, Transform::default()));
+        let weight = lab.spawn((
+            RigidBody::Dynamic,
+            Collider::ball(0.1),
+            ColliderMassProperties::Mass(1.0),
+            Transform::from_xyz(0.0, -1.0, 0.0),
+            Velocity::default(),
+            Sleeping::default(),
+        ));
+        let lug = lab.spawn(Transform::default());
+        let eye = lab.spawn((Transform::default(), ChildOf(weight)));
+        let a = if change == 1 { lug } else { hook };
+        let b = if change == 2 { eye } else { weight };
+        lab.spawn(
+            SpringDamper::new(a, b)
+                .with_stiffness(100.0)
+                .with_damping(15.0)
+                .with_rest_length(0.9),
+        );
+        lab.run(10.0);
+        assert!(lab.is_sleeping(weight), "change {change}");
+        let before = lab.position(weight).y;
+        match change {
+            0 => lab.get_mut::<Transform>(hook).translation.y = 0.3,
+            1 => lab.get_mut::<Transform>(lug).translation.y = 0.3,
+            2 => lab.get_mut::<Transform>(eye).translation.y = 0.05,
+            _ => {
+                lab.app
+                    .world_mut()
+                    .entity_mut(weight)
+                    .insert(ColliderMassProperties::Mass(3.0));
+            }
+        }
+        lab.run(0.5);
+        let moved = (lab.position(weight).y - before).abs();
+        assert!(moved > 0.02, "change {change}: {moved}");
+    }
+}

@@ -242,3 +242,46 @@ fn nothing_of_ours_is_left_behind() {
         assert!(lab.app.world().get::<SpringLoad>(body).is_none());
     }
 }
+
+/// The share of elements must not come back as the user's when a body does.
+#[test]
+fn a_body_that_loses_its_rigid_body_keeps_only_the_users_share() {
+    let mut lab = Lab::weightless();
+    let hook = lab.point(Vec3::ZERO);
+    let body = lab.body(1.0, Vec3::X * 2.0);
+    lab.spawn(
+        Spring::new(hook, body)
+            .with_stiffness(50.0)
+            .with_rest_length(1.0),
+    );
+    lab.spawn_force(body, Vec3::Y);
+    lab.run(0.1);
+    lab.app.world_mut().entity_mut(body).remove::<RigidBody>();
+    lab.run(0.1);
+    assert_eq!(lab.get::<ExternalForce>(body).force, Vec3::Y);
+    lab.app
+        .world_mut()
+        .entity_mut(body)
+        .insert(RigidBody::Dynamic);
+    lab.run(0.1);
+    assert_eq!(lab.get::<SpringLoad>(body).user.force, Vec3::Y);
+}
+
+/// Where both shares cancel, an assignment still replaces the whole of the user's.
+#[test]
+fn an_assignment_to_a_sum_of_zero_counts_on_every_axis() {
+    let mut lab = Lab::weightless();
+    let hook = lab.point(Vec3::ZERO);
+    let body = lab.body(1.0, Vec3::X * 1.5);
+    lab.spawn(
+        SpringDamper::new(hook, body)
+            .with_stiffness(10.0)
+            .with_damping(5.0)
+            .with_rest_length(1.0),
+    );
+    lab.spawn_force(body, Vec3::X * 5.0);
+    lab.run(20.0);
+    lab.get_mut::<ExternalForce>(body).force = Vec3::Z * 0.1;
+    lab.tick();
+    assert_eq!(lab.get::<SpringLoad>(body).user.force, Vec3::Z * 0.1);
+}

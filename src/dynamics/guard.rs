@@ -1,0 +1,79 @@
+//! A strong damper only takes energy, whatever the line does meanwhile.
+//!
+//! With much damping in a step, the map between true and stepped velocities is steep; where the line or
+//! an arm turns within the step, a little lateral motion can come back as a lot along the line. Energy
+//! says how much of it can be true.
+
+use super::body::{Body, Spin};
+use super::element::{Element, End};
+use bevy::math::DVec3;
+
+/// c h/m above which an element is watched.
+const STRONG: f64 = 0.5;
+
+/// Mechanical energy at the start of a step, in the frame of a moving end.
+pub(crate) struct Guard {
+    energy: f64,
+    frame: DVec3,
+}
+
+impl Guard {
+    /// Begins to watch a lone element, if it is strongly damped and all forces on its bodies are known.
+    pub(crate) fn begin(element: &Element, bodies: &[Body], step: f64) -> Option<Self> {
+        let line = element.line(bodies)?;
+        let known = bodies
+            .iter()
+            .all(|b| b.torque == DVec3::ZERO && b.mobility == 1.0);
+        if !known || element.damping * line.inverse_mass * step < STRONG {
+            return None;
+        }
+        let frame = element
+            .ends
+            .iter()
+            .find_map(|end| match end {
+                End::Path { velocity, .. } => Some(*velocity),
+                End::Body { .. } => None,
+            })
+            .unwrap_or(DVec3::ZERO);
+        let mut guard = Self { energy: 0.0, frame };
+        guard.energy = guard.energy_of(element, bodies, 0.0)?;
+        Some(guard)
+    }
+
+    /// Takes the surplus out of the motion along the line.
+    pub(crate) fn end(&self, element: &Element, bodies: &mut [Body], step: f64) {
+        let (Some(line), Some(energy)) =
+            (element.line(bodies), self.energy_of(element, bodies, step))
+        else {
+            return;
+        };
+        let surplus = energy - self.energy;
+        if surplus <= 1e-9 * self.energy.abs() || line.inverse_mass <= 0.0 {
+            return;
+        }
+        let rate = line.motion(element, bodies, step).axial;
+        let left = (rate * rate - 2.0 * line.inverse_mass * surplus)
+            .max(0.0)
+            .sqrt();
+        line.push(bodies, (left.copysign(rate) - rate) / line.inverse_mass);
+    }
+
+    /// Kinetic, stored, and potential energy in the outside forces, after so much time.
+    fn energy_of(&self, element: &Element, bodies: &[Body], time: f64) -> Option<f64> {
+        let mass = |inverse: DVec3| {
+            DVec3::select(inverse.cmpgt(DVec3::ZERO), inverse.recip(), DVec3::ZERO)
+        };
+        let line = element.line(bodies)?;
+        let stretch = line.length - element.rest_length;
+        let mut sum = 0.5 * element.stiffness * stretch * stretch;
+        for body in bodies {
+            let (mass, velocity) = (mass(body.inverse_mass), body.velocity - self.frame);
+            let place = body.position - time * self.frame;
+            sum += 0.5 * (mass * velocity).dot(velocity) - (mass * body.acceleration).dot(place);
+            if let Spin::Free { momentum } = body.spin {
+                sum += 0.5 * momentum.dot(body.angular_velocity());
+            }
+        }
+        Some(sum)
+    }
+}
