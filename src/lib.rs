@@ -5,13 +5,15 @@ mod element;
 mod engine;
 mod plugin;
 mod readout;
+mod settings;
 #[cfg(feature = "visual")]
 mod visual;
 
 pub use element::{Anchors, Damper, Spring, SpringDamper, SpringFault};
 pub use engine::SpringLoad;
-pub use plugin::{CoiloverPlugin, CoiloverSettings, CoiloverSystems};
+pub use plugin::{CoiloverPlugin, CoiloverSystems};
 pub use readout::SpringReadout;
+pub use settings::CoiloverSettings;
 #[cfg(feature = "visual")]
 pub use visual::{Coil, CoiloverVisualPlugin, CoiloverVisualSystems, Telescope, coilover};
 

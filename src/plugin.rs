@@ -1,10 +1,9 @@
-//! The physics plugin: settings, schedule, system sets.
+//! The physics plugin: schedule and system sets.
 
-use crate::dynamics::step::Accuracy;
 use crate::element::{Anchors, Damper, Spring, SpringDamper, SpringFault};
 use crate::engine::{self, Scene, SpringLoad, Watched};
 use crate::readout::SpringReadout;
-use bevy::ecs::intern::Interned;
+use crate::settings::CoiloverSettings;
 use bevy::ecs::schedule::ScheduleLabel;
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::{PhysicsSet, TimestepMode};
@@ -19,26 +18,6 @@ use bevy_rapier3d::prelude::{PhysicsSet, TimestepMode};
 #[derive(Clone, Copy, Debug)]
 pub struct CoiloverPlugin {
     settings: CoiloverSettings,
-}
-
-/// How the plugin runs.
-#[derive(Resource, Clone, Copy, Debug)]
-pub struct CoiloverSettings {
-    /// Micro-steps per engine step, at least 1; may be changed at any time.
-    pub microsteps: u32,
-    /// Combine one and two times as many micro-steps to fourth order wherever the motion is resolved,
-    /// and take three times as many plain ones elsewhere.
-    pub extrapolation: bool,
-    pub(crate) schedule: Interned<dyn ScheduleLabel>,
-}
-
-impl CoiloverSettings {
-    pub(crate) fn accuracy(&self) -> Accuracy {
-        Accuracy {
-            microsteps: self.microsteps.max(1),
-            extrapolate: self.extrapolation,
-        }
-    }
 }
 
 /// What the plugin does in its schedule, in this order.

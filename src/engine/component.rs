@@ -12,7 +12,7 @@ use super::timestep::Plan;
 use crate::dynamics::body::Body;
 use crate::dynamics::element::{Element, End};
 use crate::dynamics::step::Component;
-use crate::plugin::CoiloverSettings;
+use crate::settings::CoiloverSettings;
 use bevy::math::DVec3;
 use bevy_rapier3d::prelude::*;
 use bevy_rapier3d::rapier::dynamics::{RigidBody as RapierBody, RigidBodyHandle};

@@ -1,6 +1,6 @@
 //! Wrong set-ups are told in one message that says what to change.
 
-use crate::plugin::CoiloverSettings;
+use crate::settings::CoiloverSettings;
 use bevy::ecs::schedule::{ScheduleLabel, Schedules};
 use bevy::prelude::*;
 use bevy_rapier3d::plugin::systems;

@@ -9,7 +9,7 @@ use super::scene::Scene;
 use super::timestep::Plan;
 use crate::dynamics::body::Body;
 use crate::dynamics::step::Component;
-use crate::plugin::CoiloverSettings;
+use crate::settings::CoiloverSettings;
 use bevy::ecs::entity_disabling::Disabled;
 use bevy::ecs::query::Allow;
 use bevy::prelude::*;

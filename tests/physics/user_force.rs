@@ -160,9 +160,8 @@ fn the_component_shows_the_sum_and_the_load_keeps_the_shares_apart() {
     }
 }
 
-/// A weight held up by the user against a spring at rest: the sum is zero, and clearing it must count.
-#[test]
-fn clearing_a_share_that_balances_the_spring_counts() {
+/// A body that the user's 5 N hold against a spring, at rest and asleep: the sum of both shares is zero.
+fn balanced() -> (Lab, Entity) {
     let mut lab = Lab::weightless();
     let hook = lab.point(Vec3::ZERO);
     let body = lab.body(1.0, Vec3::X * 1.5);
@@ -174,6 +173,12 @@ fn clearing_a_share_that_balances_the_spring_counts() {
     );
     lab.spawn_force(body, Vec3::X * 5.0);
     lab.run(20.0);
+    (lab, body)
+}
+
+#[test]
+fn clearing_a_share_that_balances_the_spring_counts() {
+    let (mut lab, body) = balanced();
     assert!((lab.position(body).x - 1.5).abs() < 1e-3);
     *lab.get_mut::<ExternalForce>(body) = ExternalForce::default();
     lab.run(20.0);
@@ -267,20 +272,9 @@ fn a_body_that_loses_its_rigid_body_keeps_only_the_users_share() {
     assert_eq!(lab.get::<SpringLoad>(body).user.force, Vec3::Y);
 }
 
-/// Where both shares cancel, an assignment still replaces the whole of the user's.
 #[test]
 fn an_assignment_to_a_sum_of_zero_counts_on_every_axis() {
-    let mut lab = Lab::weightless();
-    let hook = lab.point(Vec3::ZERO);
-    let body = lab.body(1.0, Vec3::X * 1.5);
-    lab.spawn(
-        SpringDamper::new(hook, body)
-            .with_stiffness(10.0)
-            .with_damping(5.0)
-            .with_rest_length(1.0),
-    );
-    lab.spawn_force(body, Vec3::X * 5.0);
-    lab.run(20.0);
+    let (mut lab, body) = balanced();
     lab.get_mut::<ExternalForce>(body).force = Vec3::Z * 0.1;
     lab.tick();
     assert_eq!(lab.get::<SpringLoad>(body).user.force, Vec3::Z * 0.1);
