@@ -5,6 +5,8 @@ use std::fmt;
 ///
 /// The same text is logged once as a warning.
 #[derive(Component, Reflect, Clone, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Component, Debug, PartialEq, Clone)]
 pub struct SpringFault {
     /// The element.

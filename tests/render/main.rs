@@ -15,6 +15,7 @@ use bevy::window::ExitCondition;
 use bevy::winit::WinitPlugin;
 use bevy_coilover::prelude::*;
 use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, Instant};
 
 /// Software adapters are slow, and one renderer has all their threads.
 static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
@@ -96,7 +97,8 @@ fn draw(setup: impl FnOnce(&mut World)) -> Option<Image> {
     setup(app.world_mut());
     app.finish();
     app.cleanup();
-    for _ in 0..200 {
+    let begun = Instant::now();
+    while begun.elapsed() < Duration::from_secs(120) {
         app.update();
         app.world_mut()
             .spawn(Screenshot::image(target.clone()))
@@ -112,9 +114,9 @@ fn draw(setup: impl FnOnce(&mut World)) -> Option<Image> {
         {
             return Some(picture);
         }
-        std::thread::sleep(std::time::Duration::from_millis(10));
+        std::thread::sleep(Duration::from_millis(10));
     }
-    panic!("nothing was drawn in 200 frames");
+    panic!("nothing was drawn in two minutes");
 }
 
 fn is_mark(pixel: [u8; 3]) -> bool {
