@@ -71,21 +71,21 @@ impl Step<'_> {
         }
         for (slot, b) in group.bodies.iter().enumerate() {
             let row = scene.bodies[*b];
-            if let (Some(body), Ok((_, load, ..))) =
+            let (Some(body), Ok((_, load, ..))) =
                 (set.bodies.get(row.handle), loads.get(row.entity))
-            {
-                let support = match load.support {
-                    Support::Unknown => {
-                        self.first_support(&row, body, &load.user, component.load_on(slot), set)
-                    }
-                    known => known,
-                };
-                if support != Support::None {
-                    let (force, _) = component.load_on(slot);
-                    let mobility = held::mobility(load, support, &start[slot], force);
-                    component.bodies[slot] = held::held(&start[slot], mobility);
-                }
+            else {
+                continue;
+            };
+            if load.support == Support::None {
+                continue;
             }
+            let elements = component.load_on(slot);
+            let support = match load.support {
+                Support::Unknown => self.first_support(&row, body, &load.user, elements, set),
+                known => known,
+            };
+            let mobility = held::mobility(load, support, &start[slot], elements.0);
+            component.bodies[slot] = held::held(&start[slot], mobility);
         }
         if sound && !component.elements.is_empty() {
             component.advance(self.plan.time, self.settings.accuracy());

@@ -2,8 +2,7 @@
 
 use super::held::{Expected, Support};
 use super::sleep::Rest;
-use bevy::ecs::entity_disabling::Disabled;
-use bevy::ecs::query::Allow;
+use super::solve::Loads;
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
 use bevy_rapier3d::rapier::dynamics::RigidBody as RapierBody;
@@ -64,12 +63,9 @@ impl SpringLoad {
         }
     }
 
-    /// Takes in what the user wrote since the last step.
-    pub(super) fn read_user(&mut self, component: &ExternalForce, changed: bool) {
-        if !changed {
-            return;
-        }
-        let (now, before) = (*component, self.user);
+    /// Takes in what the user wrote into a component that changed since the last step.
+    pub(super) fn read_user(&mut self, now: &ExternalForce) {
+        let before = self.user;
         take_in(&mut self.user.force, now.force, self.mirrored.force);
         take_in(&mut self.user.torque, now.torque, self.mirrored.torque);
         // The engine wakes a body whose sum changes; ours must wake when the user's share does.
@@ -121,18 +117,9 @@ fn told_apart(sum: Vec3, user: Vec3) -> Vec3 {
     Vec3::select(hidden, Vec3::splat(f32::MIN_POSITIVE), sum)
 }
 
-/// Takes our share back from bodies that no element acts on any more.
+/// Takes our share back from bodies that no element acts on any more; the user's shares have been read.
 pub(super) fn release(
-    loads: &mut Query<
-        (
-            Entity,
-            &mut SpringLoad,
-            Option<&mut ExternalForce>,
-            Option<&RapierRigidBodyHandle>,
-            Option<&RapierContextEntityLink>,
-        ),
-        Allow<Disabled>,
-    >,
+    loads: &mut Loads,
     sets: &mut Query<&mut RapierRigidBodySet>,
     is_loaded: impl Fn(Entity) -> bool,
     commands: &mut Commands,
@@ -140,9 +127,6 @@ pub(super) fn release(
     for (entity, mut load, mut component, handle, link) in loads {
         if is_loaded(entity) {
             continue;
-        }
-        if let Some(component) = &component {
-            load.read_user(component, component.is_changed());
         }
         if let (Some(handle), Some(link)) = (handle, link)
             && let Ok(mut set) = sets.get_mut(link.0)

@@ -63,11 +63,8 @@ pub(crate) fn solve(
 ) {
     let scene = &mut *scene;
     for (_, mut load, component, ..) in &mut loads {
-        if let Some(component) = component {
-            let changed = component.is_changed();
-            if changed {
-                load.read_user(&component, changed);
-            }
+        if let Some(component) = component.filter(Mut::is_changed) {
+            load.read_user(&component);
         }
     }
     let index = &scene.index;
