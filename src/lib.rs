@@ -12,7 +12,7 @@ mod visual;
 pub use element::{Anchors, Damper, Spring, SpringDamper, SpringFault};
 pub use engine::SpringLoad;
 pub use plugin::{CoiloverPlugin, CoiloverSystems};
-pub use readout::SpringReadout;
+pub use readout::{SpringMethod, SpringReadout};
 pub use settings::CoiloverSettings;
 #[cfg(feature = "visual")]
 pub use visual::{Coil, CoiloverVisualPlugin, CoiloverVisualSystems, Telescope, coilover};
@@ -43,7 +43,7 @@ impl PluginGroup for CoiloverPlugins {
 pub mod prelude {
     pub use crate::{
         Anchors, CoiloverPlugin, CoiloverPlugins, CoiloverSettings, CoiloverSystems, Damper,
-        Spring, SpringDamper, SpringFault, SpringLoad, SpringReadout,
+        Spring, SpringDamper, SpringFault, SpringLoad, SpringMethod, SpringReadout,
     };
     #[cfg(feature = "visual")]
     pub use crate::{Coil, CoiloverVisualPlugin, CoiloverVisualSystems, Telescope, coilover};

@@ -1,5 +1,6 @@
 //! What a game reads back from an element.
 
+use crate::dynamics::step::{Method, Outcome};
 use bevy::prelude::*;
 
 /// The state of an element after the last step, on every element without asking. SI units.
@@ -24,11 +25,59 @@ pub struct SpringReadout {
     pub stored_energy: f32,
     /// Power that the damper turns into heat, W.
     pub dissipated_power: f32,
+    /// Phase per engine step, rad: √(stiffness / effective mass) times the step. Up to 1 the motion is
+    /// followed closely, beyond 2.5 it is no longer resolved, only stable.
+    pub omega_dt: f32,
+    /// Mass that the two ends have against each other along the line, kg, with their lever arms and
+    /// inertia; infinite if neither can move.
+    pub effective_mass: f32,
+    /// How the last step was solved.
+    pub method: SpringMethod,
+    /// Kicks that the last step took.
+    pub microsteps: u32,
+    /// Estimate of the error that the last step added to a position, m; where the accuracy was asked for
+    /// as a tolerance, else 0.
+    pub error: f32,
+    /// A cap of [`CoiloverSettings`](crate::CoiloverSettings) kept the step from being finer or more
+    /// exact.
+    pub capped: bool,
+}
+
+/// How an element's step was solved: the cheapest way that is sound.
+#[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
+#[reflect(Default, Debug, PartialEq, Clone, Hash)]
+pub enum SpringMethod {
+    /// It took no part: nothing it holds can move, or it is asleep or at fault.
+    #[default]
+    None,
+    /// Alone on its ends: solved in closed form.
+    ClosedForm,
+    /// In a network: forces alone, since the step is short for the network's stiffest mode.
+    Explicit,
+    /// In a network: one factorisation for all.
+    Direct,
+    /// In a large network: conjugate gradients.
+    Iterative,
 }
 
 impl SpringReadout {
     /// Spring and damper together, N, tension positive.
     pub const fn force(&self) -> f32 {
         self.spring_force + self.damper_force
+    }
+
+    pub(crate) fn note(&mut self, outcome: &Outcome) {
+        self.method = match outcome.method {
+            Method::None => SpringMethod::None,
+            Method::Free => SpringMethod::Explicit,
+            Method::ClosedForm => SpringMethod::ClosedForm,
+            Method::Direct => SpringMethod::Direct,
+            Method::Iterative => SpringMethod::Iterative,
+        };
+        self.microsteps = outcome.microsteps;
+        self.error = outcome.error.unwrap_or(0.0) as f32;
+        self.capped = outcome.capped;
     }
 }

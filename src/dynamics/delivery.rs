@@ -73,14 +73,6 @@ impl Schedule {
         }
     }
 
-    /// Linear part: from (x, v) to where `body` now is.
-    pub(crate) fn linear(&self, position: DVec3, velocity: DVec3, body: &Body) -> Delivery {
-        self.reach(
-            body.position - position - self.time * velocity,
-            body.velocity - velocity,
-        )
-    }
-
     /// Angular part: from the start's rotation and angular velocity to where `end` now is.
     pub(crate) fn angular(&self, start: &Body, gyroscopic: bool, end: &Body) -> Delivery {
         let (from, spin) = (start.rotation, start.angular_velocity());

@@ -13,10 +13,8 @@ use super::poles::{Poles, RESOLVED_PHASE};
 pub(crate) struct Memo(Option<(f64, f64, Poles)>);
 
 impl Memo {
-    /// The poles of an element on this line for a step.
-    fn poles(&mut self, element: &Element, line: &Line, step: f64) -> Poles {
-        let z = element.stiffness * line.inverse_mass * step * step;
-        let g = element.damping * line.inverse_mass * step / 2.0;
+    /// The poles for z = (ω h)² and g = γh.
+    pub(crate) fn poles(&mut self, z: f64, g: f64) -> Poles {
         match self.0 {
             Some((known_z, known_g, poles)) if known_z == z && known_g == g => poles,
             _ => {
@@ -26,6 +24,14 @@ impl Memo {
             }
         }
     }
+}
+
+/// The poles of an element on this line for a step.
+fn poles_of(element: &Element, line: &Line, step: f64, memo: &mut Memo) -> Poles {
+    memo.poles(
+        element.stiffness * line.inverse_mass * step * step,
+        element.damping * line.inverse_mass * step / 2.0,
+    )
 }
 
 /// ω²·stretch − a_out for a length.
@@ -38,7 +44,7 @@ pub(crate) fn kick(element: &Element, bodies: &mut [Body], step: f64, memo: &mut
     let Some(line) = element.line(bodies) else {
         return external(bodies, step);
     };
-    let poles = memo.poles(element, &line, step);
+    let poles = poles_of(element, &line, step, memo);
     let before = line.motion(element, bodies, step);
     let rate = line.backward_rate(&before, step);
     let impulse = |outside: f64, drifted: f64| {
@@ -112,7 +118,7 @@ pub(crate) fn map_velocity(
     if line.inverse_mass <= 0.0 {
         return;
     }
-    let coefficients = memo.poles(element, &line, step);
+    let coefficients = poles_of(element, &line, step, memo);
     let motion = line.motion(element, bodies, step);
     let unanswered = unanswered(element, &line, line.length, motion.outside());
     let offset = coefficients.skew * step * unanswered;

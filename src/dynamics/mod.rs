@@ -12,6 +12,7 @@ pub(crate) mod element;
 pub(crate) mod guard;
 pub(crate) mod kick;
 pub(crate) mod network;
+pub(crate) mod pair;
 pub(crate) mod poles;
 pub(crate) mod step;
 

@@ -20,6 +20,29 @@ pub(crate) struct Accuracy {
     pub extrapolate: bool,
 }
 
+/// How a component was solved.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum Method {
+    #[default]
+    None,
+    Free,
+    ClosedForm,
+    Direct,
+    Iterative,
+}
+
+/// What a step took.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Outcome {
+    pub method: Method,
+    /// Kicks actually made.
+    pub microsteps: u32,
+    pub extrapolated: bool,
+    pub error: Option<f64>,
+    pub iterations: u32,
+    pub capped: bool,
+}
+
 /// Bodies that elements connect, with those elements: what has to be solved together.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Component {
@@ -30,7 +53,12 @@ pub(crate) struct Component {
 
 impl Component {
     /// Advances by one engine step of `time` seconds.
-    pub(crate) fn advance(&mut self, time: f64, accuracy: Accuracy) {
+    pub(crate) fn advance(&mut self, time: f64, accuracy: Accuracy) -> Outcome {
+        self.advance_old(time, accuracy);
+        Outcome::default()
+    }
+
+    fn advance_old(&mut self, time: f64, accuracy: Accuracy) {
         let count = accuracy.microsteps.max(1);
         if !accuracy.extrapolate {
             return self.microsteps(time, count);

@@ -220,7 +220,10 @@ fn engine_substeps_reach_the_state_that_was_ordered() {
     for n in [2, 4, 7, 32] {
         let s = schedule(n);
         for (start, end) in before.iter().zip(&pair.bodies) {
-            let d = s.linear(start.position, start.velocity, end);
+            let d = s.reach(
+                end.position - start.position - s.time * start.velocity,
+                end.velocity - start.velocity,
+            );
             let h = DT / f64::from(n);
             let (mut x, mut v) = (start.position, start.velocity + d.jump);
             for _ in 0..n {

@@ -1,4 +1,3 @@
-use crate::engine::ElementMemory;
 use crate::readout::SpringReadout;
 use bevy::prelude::*;
 
@@ -7,7 +6,7 @@ use bevy::prelude::*;
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Component, Debug, PartialEq, Clone)]
-#[require(SpringReadout, ElementMemory)]
+#[require(SpringReadout)]
 pub struct Damper {
     /// The end that the damper starts from.
     #[entities]

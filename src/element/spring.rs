@@ -1,4 +1,3 @@
-use crate::engine::ElementMemory;
 use crate::readout::SpringReadout;
 use bevy::prelude::*;
 
@@ -10,7 +9,7 @@ use bevy::prelude::*;
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Component, Debug, PartialEq, Clone)]
-#[require(SpringReadout, ElementMemory)]
+#[require(SpringReadout)]
 pub struct Spring {
     /// The end that the spring starts from.
     #[entities]

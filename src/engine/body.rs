@@ -1,7 +1,8 @@
 //! A Rapier body as the integrator's body, and the way back.
 
+use super::step::Terms;
 use crate::dynamics::body::{Body, Spin, turn};
-use crate::dynamics::delivery::{Delivery, Schedule, force_for, torque_for};
+use crate::dynamics::delivery::{Delivery, force_for, torque_for};
 use bevy::math::DVec3;
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::ExternalForce;
@@ -121,38 +122,55 @@ pub(super) fn read(body: &RapierBody, gravity: Vec3, user: &ExternalForce, turns
     out
 }
 
+/// Sets the body's velocity for the start of the step, and returns the acceleration that it must have
+/// over it to move so far and reach such a velocity.
+pub(super) fn deliver_straight(
+    body: &mut RapierBody,
+    velocity: DVec3,
+    displacement: DVec3,
+    reached: DVec3,
+    terms: &Terms,
+    engine: &Engine,
+) -> DVec3 {
+    let time = terms.schedule.time;
+    if !terms.takes_impulses {
+        return (reached - velocity) / time;
+    }
+    let schedule = &terms.schedule;
+    let wanted = schedule.reach(displacement - time * velocity, reached - velocity);
+    let planned = schedule.capped(wanted, velocity, displacement, engine.fastest);
+    let linvel = (velocity + planned.jump).as_vec3();
+    body.set_linvel(linvel, false);
+    // The engine's velocity is rounded; the force makes up for it.
+    let rounding = velocity + planned.jump - linvel.as_dvec3();
+    planned.rate + rounding / time
+}
+
 /// Sets the body's velocities for the start of the step, and returns the force and torque that
 /// elements must add over it, so that the engine ends where the integrator did.
 pub(super) fn deliver(
     body: &mut RapierBody,
     start: &Body,
     end: &Body,
-    schedule: &Schedule,
+    terms: &Terms,
     engine: &Engine,
-    takes_impulses: bool,
 ) -> ExternalForce {
-    let time = schedule.time;
-    let linear = if takes_impulses {
-        let planned = schedule.capped(
-            schedule.linear(start.position, start.velocity, end),
-            start.velocity,
-            end.position - start.position,
-            engine.fastest,
-        );
-        let linvel = (start.velocity + planned.jump).as_vec3();
-        body.set_linvel(linvel, false);
-        // The engine's velocity is rounded; the force makes up for it.
-        let rounding = start.velocity + planned.jump - linvel.as_dvec3();
-        planned.rate + rounding / time
-    } else {
-        (end.velocity - start.velocity) / time
-    };
+    let time = terms.schedule.time;
+    let linear = deliver_straight(
+        body,
+        start.velocity,
+        end.position - start.position,
+        end.velocity,
+        terms,
+        engine,
+    );
     let force = force_for(linear - start.acceleration, start.inverse_mass);
     let mut torque = DVec3::ZERO;
     if start.spin != Spin::Still {
         let inverse_inertia = start.inverse_inertia();
         let spin = start.angular_velocity();
-        let Delivery { jump, rate } = if takes_impulses {
+        let Delivery { jump, rate } = if terms.takes_impulses {
+            let schedule = &terms.schedule;
             let planned = schedule.angular(start, body.gyroscopic_forces_enabled(), end);
             let turned = (end.rotation * start.rotation.inverse()).to_scaled_axis();
             // A body that may turn fast has no cap.
@@ -168,7 +186,7 @@ pub(super) fn deliver(
                 rate: (end.angular_velocity() - spin) / time,
             }
         };
-        if takes_impulses {
+        if terms.takes_impulses {
             body.set_angvel((spin + jump).as_vec3(), false);
         }
         torque = torque_for(rate, inverse_inertia) - start.torque;

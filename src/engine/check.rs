@@ -57,7 +57,29 @@ const SPRING_DAMPER: Names = Names {
     rest_length: "SpringDamper::rest_length",
 };
 
+const NO_NAMES: Names = Names {
+    ends: ["", ""],
+    stiffness: "",
+    damping: "",
+    rest_length: "",
+};
+
 impl Parameters {
+    /// Of an element whose components cannot be read.
+    pub(super) const NONE: Self = Self {
+        ends: [Entity::PLACEHOLDER; 2],
+        stiffness: 0.0,
+        damping: 0.0,
+        rest_length: None,
+        anchors: [Vec3::ZERO; 2],
+        names: &NO_NAMES,
+    };
+
+    /// Whether another set of numbers belongs to the same two ends.
+    pub(super) fn is_held_like(&self, other: &Self) -> bool {
+        self.ends == other.ends && self.anchors == other.anchors
+    }
+
     /// Reads whichever component is there.
     pub(super) fn read(
         spring: Option<&Spring>,

@@ -1,7 +1,6 @@
 //! What an end is: a body, a point below a body, or a point that the game moves.
 
 use super::check::Fault;
-use super::memory::EndMemory;
 use bevy::ecs::system::SystemParam;
 use bevy::math::{DAffine3, DVec3};
 use bevy::prelude::*;
@@ -47,14 +46,14 @@ impl Ends<'_, '_> {
         end: Entity,
         anchor: Vec3,
         field: &'static str,
-        memory: &mut EndMemory,
+        scale: &mut Option<DVec3>,
     ) -> Result<Place, Fault> {
         let mut point = anchor.as_dvec3();
         let mut current = end;
         loop {
             if let Ok((handle, link, global)) = self.bodies.get(current) {
                 if point != DVec3::ZERO {
-                    point *= steady_scale(current, global, memory);
+                    point *= steady_scale(global, scale);
                 }
                 return Ok(Place::OnBody {
                     entity: current,
@@ -96,14 +95,11 @@ impl Ends<'_, '_> {
 
 /// The body's global scale. A rotating transform's scale flickers in the last bits, which would make
 /// the anchor tremble, so a change below 1e-4 is none.
-fn steady_scale(body: Entity, global: Option<&GlobalTransform>, memory: &mut EndMemory) -> DVec3 {
+fn steady_scale(global: Option<&GlobalTransform>, last: &mut Option<DVec3>) -> DVec3 {
     let now = global.map_or(DVec3::ONE, |g| g.scale().as_dvec3());
-    let known = match memory.scale {
-        Some((entity, scale)) if entity == body => scale,
-        _ => DVec3::ONE,
-    };
+    let known = last.unwrap_or(DVec3::ONE);
     let same = (now - known).abs().cmple(known.abs() * 1e-4).all();
     let scale = if same { known } else { now };
-    memory.scale = Some((body, scale));
+    *last = Some(scale);
     scale
 }

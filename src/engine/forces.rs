@@ -1,7 +1,6 @@
 //! One `ExternalForce` per body, two owners: the user's share and ours, kept apart.
 
-use super::held::{Expected, Support};
-use super::sleep::Rest;
+use super::scene::Scene;
 use super::solve::Loads;
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
@@ -23,80 +22,107 @@ pub struct SpringLoad {
     pub user: ExternalForce,
     /// What we left in the component.
     #[reflect(ignore)]
-    pub(super) mirrored: ExternalForce,
-    /// Since when and where the body has been at rest.
+    mirrored: ExternalForce,
+    /// Index of the body's row in the scene, if that row says so too.
     #[reflect(ignore)]
-    pub(super) rest: Option<Rest>,
-    /// How much of a free body's motion contacts and joints leave it; see [`super::held`].
-    #[reflect(ignore)]
-    pub(super) mobility: f64,
-    /// What keeps the body from moving freely.
-    #[reflect(ignore)]
-    pub(super) support: Support,
-    /// What the coming step is to do.
-    #[reflect(ignore)]
-    pub(super) expected: Option<Expected>,
-    /// Which elements load the body; a change wakes it.
-    #[reflect(ignore)]
-    pub(super) signature: u64,
-    /// The user's share changed since the last step.
-    #[reflect(ignore)]
-    pub(super) disturbed: bool,
+    pub(super) slot: usize,
     /// We gave the body a second solver iteration.
     #[reflect(ignore)]
-    pub(super) raised_iterations: bool,
+    raised_iterations: bool,
 }
 
-impl SpringLoad {
-    pub(super) fn new(user: ExternalForce) -> Self {
-        Self {
-            elements: ExternalForce::default(),
-            user,
-            mirrored: user,
-            rest: None,
-            mobility: 1.0,
-            support: Support::Unknown,
-            expected: None,
-            signature: 0,
-            disturbed: true,
-            raised_iterations: false,
-        }
-    }
+/// What a body is given over a step, and the sum that stands in the engine for it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Share {
+    elements: ExternalForce,
+    sum: ExternalForce,
+    /// With a second solver iteration, which has to be given back.
+    pub raised_iterations: bool,
+}
 
-    /// Takes in what the user wrote into a component that changed since the last step.
-    pub(super) fn read_user(&mut self, now: &ExternalForce) {
-        let before = self.user;
-        take_in(&mut self.user.force, now.force, self.mirrored.force);
-        take_in(&mut self.user.torque, now.torque, self.mirrored.torque);
-        // The engine wakes a body whose sum changes; ours must wake when the user's share does.
-        self.disturbed |= self.user != before;
-    }
-
-    /// Puts both shares into the engine, and into the component without marking it changed: a change
-    /// would make bevy_rapier write it again and keep the body awake for ever.
-    pub(super) fn write(
-        &mut self,
+impl Share {
+    /// Adds the elements' share to the user's and puts the sum into the engine.
+    pub(super) fn act(
         elements: ExternalForce,
+        user: &ExternalForce,
         body: &mut RapierBody,
-        component: Option<&mut Mut<ExternalForce>>,
-    ) {
+    ) -> Self {
         let finite = elements.force.is_finite() && elements.torque.is_finite();
-        self.elements = if finite {
+        let elements = if finite {
             elements
         } else {
             ExternalForce::default()
         };
-        let elements = self.elements;
-        self.mirrored = ExternalForce {
-            force: told_apart(self.user.force + elements.force, self.user.force),
-            torque: told_apart(self.user.torque + elements.torque, self.user.torque),
+        let sum = ExternalForce {
+            force: told_apart(user.force + elements.force, user.force),
+            torque: told_apart(user.torque + elements.torque, user.torque),
         };
         body.reset_forces(false);
         body.reset_torques(false);
-        body.add_force(self.mirrored.force, false);
-        body.add_torque(self.mirrored.torque, false);
+        body.add_force(sum.force, false);
+        body.add_torque(sum.torque, false);
+        Self {
+            elements,
+            sum,
+            raised_iterations: false,
+        }
+    }
+}
+
+impl SpringLoad {
+    pub(super) fn new(user: ExternalForce, slot: usize) -> Self {
+        Self {
+            elements: ExternalForce::default(),
+            user,
+            mirrored: user,
+            slot,
+            raised_iterations: false,
+        }
+    }
+
+    /// Takes in what the user wrote into a component that changed since the last step; says whether
+    /// that is new.
+    fn read_user(&mut self, now: &ExternalForce) -> bool {
+        let before = self.user;
+        take_in(&mut self.user.force, now.force, self.mirrored.force);
+        take_in(&mut self.user.torque, now.torque, self.mirrored.torque);
+        self.user != before
+    }
+
+    /// Shows the shares, the sum without marking it changed: a change would make bevy_rapier write it
+    /// again and keep the body awake for ever.
+    fn show(&mut self, share: &Share, component: Option<&mut Mut<ExternalForce>>) {
+        self.elements = share.elements;
+        self.mirrored = share.sum;
+        self.raised_iterations |= share.raised_iterations;
         if let Some(component) = component {
-            *component.bypass_change_detection() = self.mirrored;
+            *component.bypass_change_detection() = share.sum;
+        }
+    }
+}
+
+/// Takes in what users wrote since the last step. The engine wakes a body whose sum changes; ours must
+/// wake when the user's share does.
+pub(super) fn read_users(scene: &mut Scene, loads: &mut Loads) {
+    for (entity, mut load, component, ..) in loads {
+        let Some(component) = component.filter(Mut::is_changed) else {
+            continue;
+        };
+        let load = load.bypass_change_detection();
+        let new = load.read_user(&component);
+        if let Some(row) = scene.body(load.slot, entity) {
+            row.disturbed |= new;
+            row.user = load.user;
+        }
+    }
+}
+
+/// Shows on every stepped body what it was given.
+pub(super) fn show(scene: &mut Scene, loads: &mut Loads) {
+    for (entity, mut load, mut component, ..) in loads {
+        let slot = load.slot;
+        if let Some(share) = scene.body(slot, entity).and_then(|row| row.share.take()) {
+            load.show(&share, component.as_mut());
         }
     }
 }
@@ -119,20 +145,21 @@ fn told_apart(sum: Vec3, user: Vec3) -> Vec3 {
 
 /// Takes our share back from bodies that no element acts on any more; the user's shares have been read.
 pub(super) fn release(
+    scene: &mut Scene,
     loads: &mut Loads,
     sets: &mut Query<&mut RapierRigidBodySet>,
-    is_loaded: impl Fn(Entity) -> bool,
     commands: &mut Commands,
 ) {
     for (entity, mut load, mut component, handle, link) in loads {
-        if is_loaded(entity) {
+        if scene.index.contains_key(&entity) {
             continue;
         }
         if let (Some(handle), Some(link)) = (handle, link)
             && let Ok(mut set) = sets.get_mut(link.0)
             && let Some(body) = set.bodies.get_mut(handle.0)
         {
-            load.write(ExternalForce::default(), body, component.as_mut());
+            let share = Share::act(ExternalForce::default(), &load.user, body);
+            load.show(&share, component.as_mut());
             if load.raised_iterations && body.additional_solver_iterations() == 1 {
                 body.set_additional_solver_iterations(0);
             }

@@ -1,32 +1,27 @@
 //! Which elements have to be solved together.
 
-use super::scene::{ElementRow, Held, Scene};
+use super::assembly::Assembly;
+use super::scene::{BodyRow, ElementRow, Held};
+use bevy::prelude::Entity;
+use std::ops::Range;
 
-/// One component: elements that share bodies, and those bodies, by index into the scene.
-#[derive(Clone, Copy)]
-pub(super) struct Group<'a> {
-    pub elements: &'a [usize],
-    pub bodies: &'a [usize],
+/// One component: elements that share bodies, and those bodies.
+#[derive(Clone, Debug)]
+pub(super) struct Group {
+    elements: Range<usize>,
+    bodies: Range<usize>,
+    /// Rapier's context, in which all of it is.
+    pub context: Entity,
+    /// Index of what it is assembled in; none for a lone element on bodies that it does not turn.
+    pub assembly: Option<usize>,
 }
 
-/// All components, as runs of two flat arrays that are kept from tick to tick.
+/// All components, as runs of two flat arrays.
 #[derive(Default)]
 pub(super) struct Groups {
     elements: Vec<usize>,
     bodies: Vec<usize>,
-    /// Where each component's run begins, and a last one where all end.
-    element_starts: Vec<usize>,
-    body_starts: Vec<usize>,
-    parent: Vec<usize>,
-    of_body: Vec<usize>,
-}
-
-/// The movable bodies of an element's ends.
-fn movable(row: &ElementRow) -> [Option<usize>; 2] {
-    row.held.map(|held| match held {
-        Held::Body { movable, .. } => movable,
-        Held::Path { .. } => None,
-    })
+    list: Vec<Group>,
 }
 
 fn root(parent: &mut [usize], mut at: usize) -> usize {
@@ -37,81 +32,116 @@ fn root(parent: &mut [usize], mut at: usize) -> usize {
     at
 }
 
+/// An order of elements that does not depend on when they were spawned.
+fn rank(row: &ElementRow) -> impl Ord + use<> {
+    let p = &row.parameters;
+    (
+        p.ends,
+        p.anchors.map(|a| a.to_array().map(f32::to_bits)),
+        [p.stiffness, p.damping, p.rest_length.unwrap_or(-1.0)].map(f32::to_bits),
+        row.entity,
+    )
+}
+
 impl Groups {
     /// Finds the components of a scene, in the order of their first bodies.
-    pub(super) fn find(&mut self, scene: &Scene) {
-        let bodies = scene.bodies.len();
-        self.parent.clear();
-        self.parent.extend(0..bodies);
-        for row in &scene.elements {
+    pub(super) fn find(&mut self, elements: &[ElementRow], bodies: &[BodyRow]) {
+        let mut parent: Vec<usize> = (0..bodies.len()).collect();
+        let movable = |row: &ElementRow| row.held.each_ref().map(Held::movable);
+        let sound = |row: &&ElementRow| row.fault.is_none();
+        for row in elements.iter().filter(sound) {
             if let [Some(a), Some(b)] = movable(row) {
-                let (a, b) = (root(&mut self.parent, a), root(&mut self.parent, b));
-                self.parent[a.max(b)] = a.min(b);
+                let (a, b) = (root(&mut parent, a), root(&mut parent, b));
+                parent[a.max(b)] = a.min(b);
             }
         }
         // A root is the least of its component, so it is met first.
-        self.of_body.clear();
+        let mut of_body = Vec::with_capacity(bodies.len());
         let mut count = 0;
-        for body in 0..bodies {
-            let r = root(&mut self.parent, body);
-            self.of_body
-                .push(if r == body { count } else { self.of_body[r] });
+        for body in 0..bodies.len() {
+            let r = root(&mut parent, body);
+            of_body.push(if r == body { count } else { of_body[r] });
             count += usize::from(r == body);
         }
-        let of_element = |row: &ElementRow| {
-            let body = movable(row).into_iter().flatten().next()?;
-            Some(self.of_body[body])
+        let mut order: Vec<usize> = (0..elements.len())
+            .filter(|e| elements[*e].fault.is_none())
+            .collect();
+        order.sort_by_cached_key(|e| rank(&elements[*e]));
+        let of_element = |e: usize| {
+            let body = movable(&elements[e]).into_iter().flatten().next()?;
+            Some((e, of_body[body]))
         };
-        sort(
+        let body_starts = sort(
             count,
-            (0..bodies).map(|body| Some(self.of_body[body])),
-            &mut self.body_starts,
+            (0..bodies.len()).map(|b| (b, of_body[b])),
             &mut self.bodies,
         );
-        sort(
+        let element_starts = sort(
             count,
-            scene.elements.iter().map(of_element),
-            &mut self.element_starts,
+            order.iter().filter_map(|e| of_element(*e)),
             &mut self.elements,
         );
+        self.list.clear();
+        self.list.extend((0..count).map(|g| Group {
+            elements: element_starts[g]..element_starts[g + 1],
+            bodies: body_starts[g]..body_starts[g + 1],
+            context: bodies[self.bodies[body_starts[g]]].context,
+            assembly: None,
+        }));
     }
 
-    pub(super) fn iter(&self) -> impl Iterator<Item = Group<'_>> {
-        let count = self.body_starts.len().saturating_sub(1);
-        (0..count).map(|g| Group {
-            elements: &self.elements[self.element_starts[g]..self.element_starts[g + 1]],
-            bodies: &self.bodies[self.body_starts[g]..self.body_starts[g + 1]],
-        })
+    /// Gives every group that needs one its assembly.
+    pub(super) fn furnish(&mut self, assemblies: &mut Vec<Assembly>, bodies: &[BodyRow]) {
+        let mut count = 0;
+        for group in &mut self.list {
+            let turns = self.bodies[group.bodies.clone()]
+                .iter()
+                .any(|b| bodies[*b].turns);
+            if turns || group.elements.len() > 1 {
+                group.assembly = Some(count);
+                count += 1;
+            }
+        }
+        assemblies.clear();
+        assemblies.resize_with(count, Assembly::default);
+    }
+
+    pub(super) fn list(&self) -> &[Group] {
+        &self.list
+    }
+
+    /// Indices of a group's elements.
+    pub(super) fn elements(&self, group: &Group) -> &[usize] {
+        &self.elements[group.elements.clone()]
+    }
+
+    /// Indices of a group's bodies.
+    pub(super) fn bodies(&self, group: &Group) -> &[usize] {
+        &self.bodies[group.bodies.clone()]
     }
 }
 
-/// Counting sort of indices by group, stable; those without a group are left out.
+/// Counting sort of (index, group), stable; returns where each group begins, and last where all end.
 fn sort(
     count: usize,
-    groups: impl Iterator<Item = Option<usize>> + Clone,
-    starts: &mut Vec<usize>,
+    items: impl Iterator<Item = (usize, usize)> + Clone,
     sorted: &mut Vec<usize>,
-) {
-    starts.clear();
-    starts.resize(count + 1, 0);
-    for group in groups.clone().flatten() {
-        starts[group] += 1;
+) -> Vec<usize> {
+    let mut starts = vec![0; count + 1];
+    for (_, group) in items.clone() {
+        starts[group + 1] += 1;
     }
-    let mut sum = 0;
-    for start in starts.iter_mut() {
-        sum += std::mem::replace(start, sum);
+    for g in 0..count {
+        starts[g + 1] += starts[g];
     }
     sorted.clear();
-    sorted.resize(sum, 0);
-    for (i, group) in groups.enumerate() {
-        if let Some(group) = group {
-            sorted[starts[group]] = i;
-            starts[group] += 1;
-        }
+    sorted.resize(starts[count], 0);
+    let mut next = starts.clone();
+    for (item, group) in items {
+        sorted[next[group]] = item;
+        next[group] += 1;
     }
-    // Each start has moved to the next one's place.
-    starts.rotate_right(1);
-    starts[0] = 0;
+    starts
 }
 
 #[cfg(test)]
@@ -119,13 +149,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn sorting_keeps_order_within_groups_and_drops_the_groupless() {
-        let groups = [Some(1), Some(0), None, Some(1), Some(2), Some(0)];
-        let (mut starts, mut sorted) = (Vec::new(), Vec::new());
-        sort(3, groups.into_iter(), &mut starts, &mut sorted);
-        assert_eq!(starts, [0, 2, 4, 5]);
+    fn sorting_keeps_order_within_groups() {
+        let items = [(0, 1), (1, 0), (3, 1), (4, 2), (5, 0)];
+        let mut sorted = Vec::new();
+        assert_eq!(sort(3, items.into_iter(), &mut sorted), [0, 2, 4, 5]);
         assert_eq!(sorted, [1, 5, 0, 3, 4]);
-        sort(0, [].into_iter(), &mut starts, &mut sorted);
-        assert_eq!((starts, sorted), (vec![0], vec![]));
+        assert_eq!(sort(0, [].into_iter(), &mut sorted), [0]);
+        assert!(sorted.is_empty());
     }
 }

@@ -6,9 +6,9 @@
 //! by which its inverse mass is scaled in the next step. Bodies that touch nothing and have no joint are
 //! free by definition, and are never measured.
 
-use super::forces::SpringLoad;
+use super::scene::BodyRow;
+use super::step::Terms;
 use crate::dynamics::body::{Body, Spin};
-use crate::dynamics::delivery::Schedule;
 use bevy::math::DVec3;
 use bevy_rapier3d::parry;
 use bevy_rapier3d::parry::bounding_volume::{Aabb, BoundingVolume};
@@ -37,6 +37,17 @@ pub(super) struct Expected {
 const FREE: f64 = 0.999;
 
 impl Expected {
+    /// A free body that does not turn: from one velocity to another, given an impulse.
+    pub(super) fn straight(from: DVec3, to: DVec3, pulled: DVec3, given: DVec3, time: f64) -> Self {
+        Self {
+            start: (from, DVec3::ZERO),
+            ordered: Some((to, DVec3::ZERO)),
+            free_change: (pulled, DVec3::ZERO),
+            given: (given, DVec3::ZERO),
+            time,
+        }
+    }
+
     /// `free` is the body at the start of the step with its full mass, `end` after it.
     pub(super) fn new(free: &Body, end: &Body, time: f64) -> Self {
         let start = (free.velocity, free.angular_velocity());
@@ -105,26 +116,25 @@ pub(super) enum Support {
 
 /// Takes in what the engine's step did to a body.
 pub(super) fn observe(
-    load: &mut SpringLoad,
-    handle: RigidBodyHandle,
+    row: &mut BodyRow,
     body: &RapierBody,
     simulation: &RapierContextSimulation,
     joints: &RapierContextJoints,
 ) {
-    let Some(expected) = load.expected.take() else {
+    let Some(expected) = row.expected.take() else {
         return;
     };
     let change = expected.change(body);
     if expected.was_met(change) {
-        load.support = Support::None;
-        load.mobility = 1.0;
+        row.support = Support::None;
+        row.mobility = 1.0;
         return;
     }
-    load.support = support(handle, body, simulation, joints);
-    if load.support == Support::None {
-        load.mobility = 1.0;
+    row.support = support(row.handle, body, simulation, joints);
+    if row.support == Support::None {
+        row.mobility = 1.0;
     } else if let Some(share) = expected.share(change) {
-        load.mobility = if share > FREE { 1.0 } else { share };
+        row.mobility = if share > FREE { 1.0 } else { share };
     }
 }
 
@@ -228,20 +238,20 @@ fn solids(bodies: &RigidBodySet, colliders: &ColliderSet) -> Vec<(ColliderHandle
 const TOUCH: f32 = 0.005;
 
 /// Mobility of a body in the coming step, given the force of its elements as it stands.
-pub(super) fn mobility(load: &SpringLoad, support: Support, free: &Body, force: DVec3) -> f64 {
+pub(super) fn mobility(row: &BodyRow, support: Support, free: &Body, force: DVec3) -> f64 {
     match support {
         Support::None | Support::Unknown => 1.0,
-        Support::Joint => load.mobility,
+        Support::Joint => row.mobility,
         Support::Tied(share) => share,
         Support::Contact(push) => {
             let weight = crate::dynamics::delivery::force_for(free.acceleration, free.inverse_mass);
             if (force + weight).dot(push) >= 0.0 {
                 // It is being lifted off, and a contact does not pull.
                 1.0
-            } else if load.support == Support::Unknown {
+            } else if row.support == Support::Unknown {
                 0.0
             } else {
-                load.mobility
+                row.mobility
             }
         }
     }
@@ -269,12 +279,12 @@ pub(super) fn deliver(
     body: &mut RapierBody,
     free: &Body,
     given: (DVec3, DVec3),
-    schedule: &Schedule,
-    takes_impulses: bool,
+    terms: &Terms,
 ) -> ExternalForce {
+    let schedule = &terms.schedule;
     let n = f64::from(schedule.substeps);
     let mut share = 1.0 / schedule.time;
-    if takes_impulses && schedule.substeps > 1 {
+    if terms.takes_impulses && schedule.substeps > 1 {
         let back = 1.0 / (n - 1.0);
         let linvel = free.velocity - back * (free.inverse_mass * given.0);
         body.set_linvel(linvel.as_vec3(), false);

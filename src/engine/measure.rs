@@ -1,136 +1,229 @@
 //! After the engine's step: what each element shows.
 
-use super::body::point_of;
-use super::forces::SpringLoad;
+use super::body::{is_movable, point_of};
 use super::held::observe;
-use super::memory::ElementMemory;
-use super::scene::{ElementRow, Held, Scene, report};
+use super::prepare::{IsElement, report};
+use super::scene::{BodyRow, ElementRow, Held, Scene};
 use crate::element::{Spring, SpringDamper};
 use crate::readout::SpringReadout;
 use bevy::math::DVec3;
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
-use bevy_rapier3d::rapier::dynamics::RigidBodyHandle;
+
+/// What is written back to an element.
+type Shown<'a> = (
+    Entity,
+    &'a mut SpringReadout,
+    Option<&'a mut Spring>,
+    Option<&'a mut SpringDamper>,
+);
 
 /// Writes readouts, captured rest lengths, and faults found while solving.
 pub(crate) fn measure(
     mut scene: ResMut<Scene>,
     sets: Query<&RapierRigidBodySet>,
-    mut elements: Query<(
-        &mut SpringReadout,
-        &mut ElementMemory,
-        Option<&mut Spring>,
-        Option<&mut SpringDamper>,
-    )>,
+    mut elements: Query<Shown, IsElement>,
     contexts: Query<(&RapierContextSimulation, &RapierContextJoints)>,
-    mut loads: Query<&mut SpringLoad>,
     mut commands: Commands,
 ) {
     let scene = &mut *scene;
     if scene.time <= 0.0 {
         return;
     }
-    scene.step += 1;
-    for row in &scene.bodies {
-        let (Ok(set), Ok((simulation, joints)), Ok(mut load)) = (
-            sets.get(row.context),
-            contexts.get(row.context),
-            loads.get_mut(row.entity),
-        ) else {
-            continue;
+    look(scene, &sets, &contexts);
+    // The rows stand in the query's order; if something came or went within the tick, from there on
+    // each is looked up.
+    let mut rows = scene.elements.iter_mut();
+    for (entity, mut readout, spring, pair) in &mut elements {
+        let Some(row) = rows.as_slice().first() else {
+            break;
         };
-        if let Some(body) = set.bodies.get(row.handle) {
-            observe(&mut load, row.handle, body, simulation, joints);
+        if row.entity != entity {
+            break;
+        }
+        if let Some(row) = rows.next() {
+            let rest = [spring.map(rest_of_spring), pair.map(rest_of_pair)];
+            row.show(
+                scene.time,
+                &scene.bodies,
+                &sets,
+                &mut readout,
+                rest,
+                &mut commands,
+            );
         }
     }
-    for row in &mut scene.elements {
-        if row.parameters.rest_length.is_none() {
-            // No movable body: it took no part in the solve.
-            row.parameters.rest_length = Some(read_out(row, &sets, scene.time).length);
-            row.captured = true;
+    for row in rows {
+        if let Ok((_, mut readout, spring, pair)) = elements.get_mut(row.entity) {
+            let rest = [spring.map(rest_of_spring), pair.map(rest_of_pair)];
+            row.show(
+                scene.time,
+                &scene.bodies,
+                &sets,
+                &mut readout,
+                rest,
+                &mut commands,
+            );
         }
-        let Ok((mut readout, mut memory, spring, pair)) = elements.get_mut(row.entity) else {
+    }
+}
+
+/// A rest length within its component, which is marked as changed only if it is set.
+type Rest<'a> = Mut<'a, Option<f32>>;
+
+fn rest_of_spring(spring: Mut<Spring>) -> Rest {
+    spring.map_unchanged(|s| &mut s.rest_length)
+}
+
+fn rest_of_pair(pair: Mut<SpringDamper>) -> Rest {
+    pair.map_unchanged(|p| &mut p.rest_length)
+}
+
+/// Sees where the stepped bodies are, and what the step did to them.
+fn look(
+    scene: &mut Scene,
+    sets: &Query<&RapierRigidBodySet>,
+    contexts: &Query<(&RapierContextSimulation, &RapierContextJoints)>,
+) {
+    let mut known: Option<(Entity, _, _, _)> = None;
+    for row in &mut scene.bodies {
+        if row.expected.is_none() {
+            continue;
+        }
+        if known.as_ref().is_none_or(|known| known.0 != row.context) {
+            known = match (sets.get(row.context), contexts.get(row.context)) {
+                (Ok(set), Ok((simulation, joints))) => {
+                    Some((row.context, &set.bodies, simulation, joints))
+                }
+                _ => None,
+            };
+        }
+        let Some((_, bodies, simulation, joints)) = known else {
             continue;
         };
-        report(row.entity, row.fault, &mut memory, &mut commands);
-        memory.direction = row.direction;
-        memory.step = scene.step;
-        for (i, held) in row.held.iter().enumerate() {
-            let place = match *held {
+        match bodies.get(row.handle) {
+            Some(body) => {
+                observe(row, body, simulation, joints);
+                let mut center = body.position().translation.as_dvec3();
+                let local = body.local_center_of_mass();
+                if local != Vec3::ZERO {
+                    center += body.position().rotation.as_dquat().normalize() * local.as_dvec3();
+                }
+                row.now = (center, body.linvel().as_dvec3());
+                // The engine takes bodies out that it cannot step.
+                scene.stale |= !is_movable(body);
+            }
+            None => scene.stale = true,
+        }
+    }
+}
+
+impl ElementRow {
+    /// Shows the element's state, if anything about it can have changed.
+    fn show(
+        &mut self,
+        time: f64,
+        bodies: &[BodyRow],
+        sets: &Query<&RapierRigidBodySet>,
+        readout: &mut Mut<SpringReadout>,
+        rest_lengths: [Option<Rest>; 2],
+        commands: &mut Commands,
+    ) {
+        if self.fault.is_some() {
+            return;
+        }
+        let held = self.held.iter().all(|held| held.movable().is_none());
+        if !self.active && !held {
+            return;
+        }
+        let points = self
+            .held
+            .each_ref()
+            .map(|held| point(held, time, bodies, sets));
+        if self.parameters.rest_length.is_none() {
+            // No movable body: it took no part in the solve.
+            let length = points[0].0.distance(points[1].0) as f32;
+            self.parameters.rest_length = Some(length);
+            self.captured = true;
+        }
+        report(self, commands);
+        for (place, (held, point)) in self
+            .memory
+            .places
+            .iter_mut()
+            .zip(self.held.iter().zip(points))
+        {
+            *place = Some(match *held {
                 Held::Path { to, .. } => to,
                 Held::Body {
                     local,
                     movable: Some(_),
                     ..
                 } => local,
-                Held::Body {
-                    handle,
-                    context,
-                    local,
-                    ..
-                } => point(&sets, context, handle, local).0,
-            };
-            memory.ends[i].place = Some((row.parameters.ends[i], place));
+                Held::Body { .. } => point.0,
+            });
         }
-        if row.captured && row.fault.is_none() {
-            if let Some(mut spring) = spring {
-                spring.rest_length = row.parameters.rest_length;
-            }
-            if let Some(mut pair) = pair {
-                pair.rest_length = row.parameters.rest_length;
+        if std::mem::take(&mut self.captured) && self.passing.is_none() {
+            for mut rest_length in rest_lengths.into_iter().flatten() {
+                *rest_length = self.parameters.rest_length;
             }
         }
-        let new = read_out(row, &sets, scene.time);
-        if *readout != new {
-            *readout = new;
+        let new = self.read_out(points, time);
+        readout.set_if_neq(new);
+    }
+
+    fn read_out(&self, [a, b]: [(DVec3, DVec3); 2], time: f64) -> SpringReadout {
+        let d = b.0 - a.0;
+        let length = d.length();
+        let direction = if length > 0.0 {
+            d / length
+        } else {
+            self.memory.direction.unwrap_or(DVec3::ZERO)
+        };
+        let rate = (b.1 - a.1).dot(direction);
+        let mut readout = SpringReadout {
+            length: length as f32,
+            rate: rate as f32,
+            ..default()
+        };
+        if self.passing.is_none() {
+            let p = &self.parameters;
+            let (k, c) = (f64::from(p.stiffness), f64::from(p.damping));
+            let stretch = length - f64::from(p.rest_length.unwrap_or(0.0));
+            readout.spring_force = (k * stretch) as f32;
+            readout.damper_force = (c * rate) as f32;
+            readout.stored_energy = (0.5 * k * stretch * stretch) as f32;
+            readout.dissipated_power = (c * rate * rate) as f32;
+            readout.omega_dt = ((k * self.inverse_mass).sqrt() * time) as f32;
+            readout.effective_mass = self.inverse_mass.recip() as f32;
+            readout.note(&self.outcome);
         }
+        readout
     }
 }
 
-/// Position and velocity of a point on a body.
+/// Position and velocity of an end after the step.
 fn point(
+    held: &Held,
+    time: f64,
+    bodies: &[BodyRow],
     sets: &Query<&RapierRigidBodySet>,
-    context: Entity,
-    handle: RigidBodyHandle,
-    local: DVec3,
 ) -> (DVec3, DVec3) {
-    sets.get(context)
-        .ok()
-        .and_then(|set| set.bodies.get(handle))
-        .map_or((DVec3::ZERO, DVec3::ZERO), |body| point_of(body, local))
-}
-
-fn read_out(row: &ElementRow, sets: &Query<&RapierRigidBodySet>, time: f64) -> SpringReadout {
-    let [a, b] = row.held.map(|held| match held {
+    match *held {
         Held::Path { from, to } => (to, (to - from) / time),
+        Held::Body {
+            movable: Some(index),
+            ..
+        } if !bodies[index].turns => bodies[index].now,
         Held::Body {
             handle,
             context,
             local,
             ..
-        } => point(sets, context, handle, local),
-    });
-    let d = b.0 - a.0;
-    let length = d.length();
-    let direction = if length > 0.0 {
-        d / length
-    } else {
-        row.direction.unwrap_or(DVec3::ZERO)
-    };
-    let rate = (b.1 - a.1).dot(direction);
-    let mut readout = SpringReadout {
-        length: length as f32,
-        rate: rate as f32,
-        ..default()
-    };
-    if row.fault.is_none() {
-        let p = &row.parameters;
-        let (k, c) = (f64::from(p.stiffness), f64::from(p.damping));
-        let stretch = length - f64::from(p.rest_length.unwrap_or(0.0));
-        readout.spring_force = (k * stretch) as f32;
-        readout.damper_force = (c * rate) as f32;
-        readout.stored_energy = (0.5 * k * stretch * stretch) as f32;
-        readout.dissipated_power = (c * rate * rate) as f32;
+        } => sets
+            .get(context)
+            .ok()
+            .and_then(|set| set.bodies.get(handle))
+            .map_or((DVec3::ZERO, DVec3::ZERO), |body| point_of(body, local)),
     }
-    readout
 }

@@ -1,26 +1,32 @@
 //! The only room that knows Rapier: bodies and elements into flat arrays, forces back.
 //!
-//! One step runs [`scene::prepare`] → [`solve::solve`] → (Rapier steps) → [`measure::measure`].
+//! One step runs [`prepare::prepare`] → [`solve::solve`] → (Rapier steps) → [`measure::measure`].
+//! [`scene`] holds what is kept between; [`find`] fills it where [`watch`] or an element says that it
+//! changed. A lone element goes through [`lone`], everything else through [`assembly`].
 
+mod assembly;
 mod body;
 mod check;
-mod component;
 mod ends;
+mod find;
 mod forces;
 mod group;
 mod held;
 mod jointed;
+mod lone;
 mod measure;
-mod memory;
+mod prepare;
 mod scene;
 mod setup;
 mod sleep;
 mod solve;
+mod step;
 mod timestep;
+mod watch;
 
 pub use forces::SpringLoad;
 pub(crate) use measure::measure;
-pub(crate) use memory::ElementMemory;
-pub(crate) use scene::{Scene, prepare};
+pub(crate) use prepare::prepare;
+pub(crate) use scene::Scene;
 pub(crate) use setup::{Watched, check_schedule, check_timestep, in_place};
 pub(crate) use solve::solve;

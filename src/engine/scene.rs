@@ -1,19 +1,20 @@
-//! Elements and the bodies they act on, as flat arrays, found anew every tick.
+//! Elements and the bodies they act on, as flat arrays kept from tick to tick.
 
-use super::body::is_movable;
+use super::assembly::Assembly;
 use super::check::{Fault, Parameters};
-use super::ends::{Ends, Place};
-use super::forces::SpringLoad;
-use super::memory::ElementMemory;
-use crate::element::{Anchors, Damper, Spring, SpringDamper};
+use super::forces::Share;
+use super::group::Groups;
+use super::held::{Expected, Support};
+use super::sleep::Rest;
+use crate::dynamics::kick::Memo;
+use crate::dynamics::step::Outcome;
 use bevy::ecs::entity::EntityHashMap;
-use bevy::ecs::message::MessageReader;
 use bevy::math::DVec3;
 use bevy::prelude::*;
-use bevy_rapier3d::prelude::*;
+use bevy_rapier3d::prelude::ExternalForce;
 use bevy_rapier3d::rapier::dynamics::RigidBodyHandle;
 
-/// Where an element is held this tick.
+/// Where an element is held.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Held {
     /// On a rigid body, movable or not, at a point of its own frame.
@@ -28,22 +29,60 @@ pub(super) enum Held {
     Path { from: DVec3, to: DVec3 },
 }
 
-/// One element this tick.
+impl Held {
+    pub(super) const NOWHERE: Self = Self::Path {
+        from: DVec3::ZERO,
+        to: DVec3::ZERO,
+    };
+
+    /// Index of the body that elements can move.
+    pub(super) fn movable(&self) -> Option<usize> {
+        match self {
+            Self::Body { movable, .. } => *movable,
+            Self::Path { .. } => None,
+        }
+    }
+}
+
+/// One element.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ElementRow {
     pub entity: Entity,
-    pub held: [Held; 2],
     pub parameters: Parameters,
-    pub direction: Option<DVec3>,
+    pub held: [Held; 2],
+    /// Which ends have to be looked for in every tick: what is not a body itself can be moved by the game.
+    pub watched: [bool; 2],
+    /// Why it takes no part at all, found before the step.
+    pub fault: Option<Fault>,
+    /// Why it does not act in this step, found within it.
+    pub passing: Option<Fault>,
+    /// What was said of it last, so that each message comes once.
+    pub said: Option<Fault>,
     /// A parameter or an end changed since the last tick.
     pub changed: bool,
-    /// Where its ends were after the last step: a body's own point if elements can move it, else a point
-    /// of the world.
-    pub remembered: [Option<DVec3>; 2],
-    /// Why it does not act, if it does not.
-    pub fault: Option<Fault>,
     /// The rest length was found in this tick and has to be written back.
     pub captured: bool,
+    /// Whether some body of it was stepped, or none can be: then there is something to read out.
+    pub active: bool,
+    pub memory: Memory,
+    /// Inverse of the effective mass of its ends along the line in the last step, 1/kg.
+    pub inverse_mass: f64,
+    /// How it was solved.
+    pub outcome: Outcome,
+}
+
+/// What an element remembers from step to step.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Memory {
+    /// Last well-defined direction from end A to end B.
+    pub direction: Option<DVec3>,
+    /// Where its ends were after the last step: a body's own point if elements can move it, else a point
+    /// of the world.
+    pub places: [Option<DVec3>; 2],
+    /// The bodies' scales, held against the rounding noise of their transforms.
+    pub scales: [Option<DVec3>; 2],
+    /// The last coefficients.
+    pub memo: Memo,
 }
 
 /// One movable body that elements act on.
@@ -56,283 +95,70 @@ pub(super) struct BodyRow {
     pub turns: bool,
     /// How many elements act on it.
     pub elements: u32,
-    /// Which ones, as a hash.
+    /// Which ones, as a hash; a change wakes it.
     pub signature: u64,
-    /// Its mass has changed.
-    pub changed: bool,
+    /// Its mass, its elements or the user's share changed since the last step.
+    pub disturbed: bool,
+    /// Index within its component.
+    pub slot: usize,
+    pub user: ExternalForce,
+    /// What we give it over the coming step; `None` where it is not stepped by us.
+    pub share: Option<Share>,
+    /// Since when and where it has been at rest.
+    pub rest: Option<Rest>,
+    /// How much of a free body's motion contacts and joints leave it; see [`super::held`].
+    pub mobility: f64,
+    /// What keeps it from moving freely.
+    pub support: Support,
+    /// What the coming step is to do.
+    pub expected: Option<Expected>,
+    /// Centre of mass and its velocity after the last step.
+    pub now: (DVec3, DVec3),
 }
 
-/// The scene as this tick sees it.
-#[derive(Resource, Default)]
-pub struct Scene {
-    pub(super) elements: Vec<ElementRow>,
-    pub(super) bodies: Vec<BodyRow>,
-    pub(super) index: EntityHashMap<usize>,
-    /// Engine steps so far, to tell what an element remembers of the last one.
-    pub(super) step: u64,
-    /// Seconds that the engine will step in this tick; 0 if it will not.
-    pub(super) time: f64,
-}
-
-/// The parts of an element.
-pub(crate) type ElementParts<'a> = (
-    Entity,
-    Option<Ref<'a, Spring>>,
-    Option<Ref<'a, Damper>>,
-    Option<Ref<'a, SpringDamper>>,
-    Option<Ref<'a, Anchors>>,
-    &'a mut ElementMemory,
-);
-
-/// Finds elements, their ends and the bodies they load.
-pub(crate) fn prepare(
-    mut scene: ResMut<Scene>,
-    mut elements: Query<ElementParts, Or<(With<Spring>, With<Damper>, With<SpringDamper>)>>,
-    ends: Ends,
-    mut sets: Query<(&mut RapierRigidBodySet, &RapierContextColliders)>,
-    loads: Query<(Has<SpringLoad>, Option<&ExternalForce>), With<RapierRigidBodyHandle>>,
-    mut mass_modified: MessageReader<MassModifiedEvent>,
-    mut commands: Commands,
-) {
-    let scene = &mut *scene;
-    scene.elements.clear();
-    scene.bodies.clear();
-    scene.index.clear();
-    let mass_modified: Vec<Entity> = mass_modified.read().map(|m| m.0).collect();
-
-    for (entity, spring, damper, pair, anchors, mut memory) in &mut elements {
-        let changed = spring.as_ref().is_some_and(Ref::is_changed)
-            || damper.as_ref().is_some_and(Ref::is_changed)
-            || pair.as_ref().is_some_and(Ref::is_changed)
-            || anchors.as_ref().is_some_and(Ref::is_changed);
-        let parameters = Parameters::read(
-            spring.as_deref(),
-            damper.as_deref(),
-            pair.as_deref(),
-            anchors.as_deref(),
-        );
-        let found = parameters.and_then(|parameters| {
-            parameters.check()?;
-            let held = find(
-                &parameters,
-                &ends,
-                &mut memory,
-                &mut sets,
-                scene,
-                &mass_modified,
-            )?;
-            Ok((parameters, held))
-        });
-        match found {
-            Ok((parameters, held)) => {
-                for end in held {
-                    if let Held::Body {
-                        movable: Some(index),
-                        ..
-                    } = end
-                    {
-                        let body = &mut scene.bodies[index];
-                        body.elements += 1;
-                        body.signature = body.signature.wrapping_add(mix(entity.to_bits()));
-                    }
-                }
-                scene.elements.push(ElementRow {
-                    entity,
-                    held,
-                    parameters,
-                    direction: memory.direction,
-                    changed,
-                    remembered: memory.ends.map(|end| end.place.map(|(_, place)| place)),
-                    fault: None,
-                    captured: false,
-                });
-            }
-            Err(fault) => report(entity, Some(fault), &mut memory, &mut commands),
-        }
-    }
-
-    for body in &scene.bodies {
-        let Ok((has_load, force)) = loads.get(body.entity) else {
-            continue;
-        };
-        if force.is_none() || !has_load {
-            let engine = sets.get(body.context).ok().and_then(|(set, _)| {
-                let body = set.bodies.get(body.handle)?;
-                Some(ExternalForce {
-                    force: body.user_force(),
-                    torque: body.user_torque(),
-                })
-            });
-            // A force written to the engine alone belongs to the user too.
-            let present = force.copied().or(engine).unwrap_or_default();
-            let mut entity = commands.entity(body.entity);
-            if force.is_none() {
-                entity.try_insert(present);
-            }
-            if !has_load {
-                entity.try_insert(SpringLoad::new(present));
-            }
-        }
-    }
-}
-
-/// Both ends, with their bodies entered into the scene; nothing is entered unless both are sound.
-fn find(
-    parameters: &Parameters,
-    ends: &Ends,
-    memory: &mut ElementMemory,
-    sets: &mut Query<(&mut RapierRigidBodySet, &RapierContextColliders)>,
-    scene: &mut Scene,
-    mass_modified: &[Entity],
-) -> Result<[Held; 2], Fault> {
-    let mut places = [Place::Point(DVec3::ZERO); 2];
-    for (i, place) in places.iter_mut().enumerate() {
-        *place = ends.find(
-            parameters.ends[i],
-            parameters.anchors[i],
-            parameters.names.ends[i],
-            &mut memory.ends[i],
-        )?;
-    }
-    if let [
-        Place::OnBody { context: a, .. },
-        Place::OnBody { context: b, .. },
-    ] = places
-        && a != b
-    {
-        return Err(Fault::new(
-            parameters.names.ends[1],
-            "is in another Rapier context than body_a",
-        ));
-    }
-    let mut movable = [None; 2];
-    for (i, place) in places.iter().enumerate() {
-        let Place::OnBody {
+impl BodyRow {
+    pub(super) fn new(entity: Entity, handle: RigidBodyHandle, context: Entity) -> Self {
+        Self {
             entity,
             handle,
             context,
-            local,
-        } = *place
-        else {
-            continue;
-        };
-        let missing = Fault::new(
-            parameters.names.ends[i],
-            "has a rigid body that the physics engine does not know",
-        );
-        let (mut set, colliders) = sets.get_mut(context).map_err(|_| missing)?;
-        // Read first: a mutable look marks the body as modified in the engine.
-        let body = set.bodies.get(handle).ok_or(missing)?;
-        if !is_movable(body) {
-            continue;
+            turns: false,
+            elements: 0,
+            signature: 0,
+            disturbed: true,
+            slot: 0,
+            user: ExternalForce::default(),
+            share: None,
+            rest: None,
+            mobility: 1.0,
+            support: Support::Unknown,
+            expected: None,
+            now: (DVec3::ZERO, DVec3::ZERO),
         }
-        let fresh = body.mass_properties().local_mprops.inv_mass == 0.0;
-        if (fresh || mass_modified.contains(&entity))
-            && let Some(body) = set.bodies.get_mut(handle)
-        {
-            body.recompute_mass_properties_from_colliders(&colliders.colliders);
-        }
-        let body = set.bodies.get(handle).ok_or(missing)?;
-        if body.mass_properties().local_mprops.inv_mass == 0.0 {
-            return Err(Fault::new(
-                parameters.names.ends[i],
-                "is a dynamic body without mass; give it a collider or AdditionalMassProperties",
-            ));
-        }
-        let arm = local - body.local_center_of_mass().as_dvec3();
-        movable[i] = Some((entity, arm.length() > 1e-7));
     }
-    let mut held = [Held::Path {
-        from: DVec3::ZERO,
-        to: DVec3::ZERO,
-    }; 2];
-    for (i, place) in places.iter().enumerate() {
-        held[i] = match *place {
-            Place::OnBody {
-                handle,
-                context,
-                local,
-                ..
-            } => Held::Body {
-                handle,
-                context,
-                local,
-                movable: movable[i].map(|(entity, off_center)| {
-                    let body = scene.enter(entity, handle, context, off_center);
-                    scene.bodies[body].changed |= mass_modified.contains(&entity);
-                    body
-                }),
-            },
-            Place::Point(to) => {
-                // Where it was after the last step; older memories would make a leap of it.
-                let last = memory.ends[i].place.filter(|_| memory.step == scene.step);
-                let from = last
-                    .filter(|(e, _)| *e == parameters.ends[i])
-                    .map_or(to, |(_, p)| p);
-                Held::Path { from, to }
-            }
-        };
-    }
-    Ok(held)
+}
+
+/// The scene as the engine's step sees it.
+#[derive(Resource, Default)]
+pub struct Scene {
+    /// In the order of the query that finds them, inert ones too.
+    pub(super) elements: Vec<ElementRow>,
+    /// In the order of their entities.
+    pub(super) bodies: Vec<BodyRow>,
+    pub(super) index: EntityHashMap<usize>,
+    pub(super) groups: Groups,
+    pub(super) assemblies: Vec<Assembly>,
+    /// Seconds that the engine will step in this tick; 0 if it will not.
+    pub(super) time: f64,
+    /// Something was found amiss after the scene was prepared: look at everything again.
+    pub(super) stale: bool,
+    /// The rows were made anew in this tick.
+    pub(super) renewed: bool,
 }
 
 impl Scene {
-    fn enter(
-        &mut self,
-        entity: Entity,
-        handle: RigidBodyHandle,
-        context: Entity,
-        off_center: bool,
-    ) -> usize {
-        let bodies = &mut self.bodies;
-        let index = *self.index.entry(entity).or_insert_with(|| {
-            bodies.push(BodyRow {
-                entity,
-                handle,
-                context,
-                turns: false,
-                elements: 0,
-                signature: 0,
-                changed: false,
-            });
-            bodies.len() - 1
-        });
-        bodies[index].turns |= off_center;
-        index
+    /// The row of a body that says it stands at `slot`.
+    pub(super) fn body(&mut self, slot: usize, entity: Entity) -> Option<&mut BodyRow> {
+        self.bodies.get_mut(slot).filter(|row| row.entity == entity)
     }
-}
-
-/// Says once what is wrong with an element, and takes it back once it is mended.
-pub(super) fn report(
-    entity: Entity,
-    fault: Option<Fault>,
-    memory: &mut ElementMemory,
-    commands: &mut Commands,
-) {
-    if memory.fault == fault {
-        return;
-    }
-    memory.fault = fault;
-    match fault {
-        Some(fault) => {
-            let fault = crate::element::SpringFault {
-                entity,
-                field: fault.field.into(),
-                reason: fault.reason.into(),
-            };
-            log::warn!("{fault}");
-            commands.entity(entity).try_insert(fault);
-        }
-        None => {
-            commands
-                .entity(entity)
-                .try_remove::<crate::element::SpringFault>();
-        }
-    }
-}
-
-/// Spreads an entity's bits, so that sums of them tell sets apart.
-fn mix(bits: u64) -> u64 {
-    let x = (bits ^ (bits >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb)
 }

@@ -6,16 +6,11 @@
 //! disturbed is woken as a whole.
 
 use super::body::is_movable;
-use super::component::Step;
-use super::forces::SpringLoad;
-use super::group::Group;
-use super::scene::Scene;
-use super::solve::Loads;
+use super::scene::{BodyRow, ElementRow};
+use super::step::Step;
 use crate::dynamics::body::Body;
-use crate::dynamics::step::Component;
 use bevy::math::{Quat, Vec3};
-use bevy_rapier3d::prelude::RapierRigidBodySet;
-use bevy_rapier3d::rapier::dynamics::RigidBody as RapierBody;
+use bevy_rapier3d::rapier::dynamics::{RigidBody as RapierBody, RigidBodySet};
 
 /// Speed (m/s, rad/s; times the engine's length unit) that counts as rest.
 const REST: f32 = 2e-4;
@@ -39,7 +34,7 @@ pub(super) struct Rest {
 /// Whether a body moves, or has not rested long enough yet. `omega` is the natural frequency of the
 /// stiffest element on it.
 fn is_restless(
-    load: &mut SpringLoad,
+    row: &mut BodyRow,
     body: &RapierBody,
     omega: f32,
     time: f32,
@@ -50,7 +45,7 @@ fn is_restless(
     let noise = ROUNDING * omega;
     let slow = body.linvel().length() < REST * length_unit + noise * place
         && body.angvel().length() < REST + noise * f32::EPSILON;
-    let rest = load.rest.get_or_insert(Rest {
+    let rest = row.rest.get_or_insert(Rest {
         position,
         rotation,
         seconds: 0.0,
@@ -59,7 +54,7 @@ fn is_restless(
     let strayed = rest.position.distance(position) > REST * QUIET * length_unit + ROUNDING * place
         || (rest.rotation.inverse() * rotation).xyz().length() > 0.5 * REST * QUIET;
     if !slow || strayed {
-        load.rest = None;
+        row.rest = None;
         return true;
     }
     rest.seconds += time;
@@ -78,64 +73,59 @@ fn keep_awake(body: &mut RapierBody) {
     body.activation_mut().time_since_can_sleep = 0.0;
 }
 
+/// Natural frequency of an element on its own ends, as of the last step.
+pub(super) fn omega_of(row: &ElementRow) -> f32 {
+    (f64::from(row.parameters.stiffness) * row.inverse_mass).sqrt() as f32
+}
+
 impl Step<'_> {
     /// A sleeping body is no wall: where the step would set it moving, it and the others wake.
     pub(super) fn wake_the_moved(
         &self,
-        scene: &Scene,
-        group: Group,
+        rows: &[BodyRow],
+        members: &[usize],
         start: &[Body],
         end: &[Body],
-        set: &mut RapierRigidBodySet,
+        set: &mut RigidBodySet,
     ) {
-        let bodies = || group.bodies.iter().map(|b| scene.bodies[*b].handle);
+        let bodies = || members.iter().map(|b| rows[*b].handle);
         let moved = bodies()
             .zip(start.iter().zip(end))
             .any(|(handle, (start, end))| {
-                set.bodies.get(handle).is_some_and(RapierBody::is_sleeping)
+                set.get(handle).is_some_and(RapierBody::is_sleeping)
                     && is_set_moving(start, end, self.plan.time, self.engine.length_unit)
             });
         if moved {
             for handle in bodies() {
-                if let Some(body) = set.bodies.get_mut(handle) {
+                if let Some(body) = set.get_mut(handle) {
                     body.wake_up(true);
                 }
             }
         }
     }
 
-    /// Wakes, keeps awake or lets sleep; says whether there is anything to do.
+    /// Wakes, keeps awake or lets sleep; says whether there is anything to do. `omega` is the natural
+    /// frequency of the stiffest element.
     pub(super) fn is_awake(
         &self,
-        scene: &Scene,
-        group: Group,
-        component: &Component,
-        set: &mut RapierRigidBodySet,
-        loads: &mut Loads,
+        rows: &mut [BodyRow],
+        members: &[usize],
+        omega: f32,
+        set: &mut RigidBodySet,
         mut disturbed: bool,
     ) -> bool {
         let mut all_asleep = true;
         let mut restless = false;
-        let omega = component
-            .elements
-            .iter()
-            .filter_map(|e| Some(e.stiffness * e.line(&component.bodies)?.inverse_mass))
-            .fold(0.0, f64::max)
-            .sqrt() as f32;
-        for b in group.bodies {
-            let row = scene.bodies[*b];
-            let (Some(body), Ok((_, mut load, ..))) =
-                (set.bodies.get(row.handle), loads.get_mut(row.entity))
-            else {
+        for b in members {
+            let row = &mut rows[*b];
+            let Some(body) = set.get(row.handle) else {
                 continue;
             };
-            disturbed |= load.disturbed || row.changed || load.signature != row.signature;
-            load.disturbed = false;
-            load.signature = row.signature;
+            disturbed |= std::mem::take(&mut row.disturbed);
             if !body.is_sleeping() && is_movable(body) {
                 all_asleep = false;
                 restless |= is_restless(
-                    &mut load,
+                    row,
                     body,
                     omega,
                     self.plan.time as f32,
@@ -147,8 +137,8 @@ impl Step<'_> {
             return false;
         }
         if disturbed || restless {
-            for b in group.bodies {
-                if let Some(body) = set.bodies.get_mut(scene.bodies[*b].handle) {
+            for b in members {
+                if let Some(body) = set.get_mut(rows[*b].handle) {
                     if body.is_sleeping() {
                         body.wake_up(true);
                     }

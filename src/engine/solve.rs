@@ -1,22 +1,25 @@
 //! The step's system: the user's shares, then component by component.
 
+use super::assembly::{Assembly, Members};
 use super::body::{Engine, FARTHEST_TURN};
-use super::component::Step;
-use super::forces::{SpringLoad, release};
-use super::group::Groups;
+use super::forces::{self, SpringLoad};
 use super::held::Ground;
+use super::lone::Handled;
 use super::scene::Scene;
+use super::step::Step;
 use super::timestep::Plan;
-use crate::dynamics::body::Body;
-use crate::dynamics::step::Component;
+use crate::dynamics::step::Accuracy;
 use crate::settings::CoiloverSettings;
 use bevy::ecs::entity_disabling::Disabled;
 use bevy::ecs::query::Allow;
 use bevy::prelude::*;
+use bevy::tasks::ComputeTaskPool;
 use bevy_rapier3d::prelude::*;
+use bevy_rapier3d::rapier::dynamics::RigidBodySet;
 
 /// What of a Rapier context the step needs.
 type ContextParts<'a> = (
+    Entity,
     &'a RapierContextSimulation,
     &'a RapierContextColliders,
     &'a RapierContextJoints,
@@ -38,16 +41,8 @@ pub(super) type Loads<'w, 's> = Query<
     Allow<Disabled>,
 >;
 
-/// Buffers kept from tick to tick.
-#[derive(Default)]
-pub(crate) struct Work {
-    groups: Groups,
-    component: Component,
-    /// The component's bodies at the start of the step, with their full mass.
-    start: Vec<Body>,
-    /// Index of each of the scene's bodies within its component.
-    slots: Vec<usize>,
-}
+/// Elements in networks that are about to be solved, above which it is worth waking other threads.
+const WORTH_SHARING: usize = 256;
 
 /// Computes and delivers every element's force for the coming engine step.
 pub(crate) fn solve(
@@ -58,56 +53,29 @@ pub(crate) fn solve(
     contexts: Query<ContextParts>,
     mut sets: Query<&mut RapierRigidBodySet>,
     mut loads: Loads,
-    mut work: Local<Work>,
+    mut spare: Local<Assembly>,
     mut commands: Commands,
 ) {
     let scene = &mut *scene;
-    for (_, mut load, component, ..) in &mut loads {
-        if let Some(component) = component.filter(Mut::is_changed) {
-            load.read_user(&component);
-        }
+    forces::read_users(scene, &mut loads);
+    if scene.renewed {
+        forces::release(scene, &mut loads, &mut sets, &mut commands);
     }
-    let index = &scene.index;
-    release(
-        &mut loads,
-        &mut sets,
-        |e| index.contains_key(&e),
-        &mut commands,
-    );
-
     scene.time = 0.0;
-    let mut ground = (Entity::PLACEHOLDER, Ground::default());
-    let Work {
-        groups,
-        component,
-        start,
-        slots,
-    } = &mut *work;
-    groups.find(scene);
-    slots.clear();
-    slots.resize(scene.bodies.len(), usize::MAX);
-    for group in groups.iter() {
-        let Some(context) = group.bodies.first().map(|b| scene.bodies[*b].context) else {
-            continue;
-        };
-        let Ok((simulation, colliders, joints, configuration, lag)) = contexts.get(context) else {
-            continue;
-        };
+    for (context, simulation, colliders, joints, configuration, lag) in &contexts {
         let plan = Plan::new(*mode, time.delta_secs(), lag.diff);
         if plan.time <= 0.0 || !configuration.physics_pipeline_active {
             continue;
         }
         scene.time = plan.time;
-        if ground.0 != context {
-            ground = (context, Ground::default());
-        }
+        let here = scene.groups.list().iter().any(|g| g.context == context);
         let Ok(mut set) = sets.get_mut(context) else {
             continue;
         };
-        let parameters = &simulation.integration_parameters;
-        for (slot, body) in group.bodies.iter().enumerate() {
-            slots[*body] = slot;
+        if !here {
+            continue;
         }
+        let parameters = &simulation.integration_parameters;
         let step = Step {
             plan,
             engine: Engine {
@@ -119,17 +87,75 @@ pub(crate) fn solve(
             },
             joints,
             colliders: &colliders.colliders,
-            ground: &ground.1,
-            settings: &settings,
+            ground: &Ground::default(),
+            accuracy: settings.accuracy(),
         };
-        step.run(scene, group, slots, component, start, &mut set, &mut loads);
+        scene.step(context, &step, &mut set.bodies, &mut spare);
     }
-    // Without a movable body nothing is stepped, but the readouts still want the time.
-    if scene.time == 0.0 {
-        for (.., configuration, lag) in &contexts {
-            if configuration.physics_pipeline_active {
-                scene.time = Plan::new(*mode, time.delta_secs(), lag.diff).time;
+    forces::show(scene, &mut loads);
+}
+
+impl Scene {
+    /// Takes every component of a context through the step.
+    fn step(&mut self, context: Entity, step: &Step, set: &mut RigidBodySet, spare: &mut Assembly) {
+        let Self {
+            elements,
+            bodies,
+            groups,
+            assemblies,
+            stale,
+            ..
+        } = self;
+        let members = |group| Members {
+            elements: groups.elements(group),
+            bodies: groups.bodies(group),
+        };
+        let here = || groups.list().iter().filter(|g| g.context == context);
+        for group in here() {
+            let members = members(group);
+            if let Some(index) = group.assembly {
+                assemblies[index].gather(step, &members, elements, bodies, set, stale);
+                continue;
+            }
+            let Some(element) = members.elements.first() else {
+                continue;
+            };
+            let handled = step.lone(&mut elements[*element], bodies, members.bodies, set, stale);
+            if handled == Handled::No {
+                spare.gather(step, &members, elements, bodies, set, stale);
+                spare.advance(step.plan.time, step.accuracy);
+                spare.deliver(step, &members, elements, bodies, set);
+            }
+        }
+        advance(assemblies, step.plan.time, step.accuracy);
+        for group in here() {
+            if let Some(index) = group.assembly {
+                assemblies[index].deliver(step, &members(group), elements, bodies, set);
             }
         }
     }
+}
+
+/// Integrates all assemblies, on several threads where that is worth it; each is on its own, so the
+/// result is the same.
+fn advance(assemblies: &mut [Assembly], time: f64, accuracy: Accuracy) {
+    let load: usize = assemblies.iter().map(Assembly::load).sum();
+    let threads = ComputeTaskPool::try_get().map_or(1, |pool| pool.thread_num());
+    let ready = assemblies.iter().filter(|a| a.load() > 0).count();
+    if threads < 2 || ready < 2 || load < WORTH_SHARING {
+        for assembly in assemblies {
+            assembly.advance(time, accuracy);
+        }
+        return;
+    }
+    let chunk = assemblies.len().div_ceil(4 * threads);
+    ComputeTaskPool::get().scope(|scope| {
+        for chunk in assemblies.chunks_mut(chunk) {
+            scope.spawn(async move {
+                for assembly in chunk {
+                    assembly.advance(time, accuracy);
+                }
+            });
+        }
+    });
 }

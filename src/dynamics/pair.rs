@@ -1,0 +1,277 @@
+//! A lone element between ends that do not turn: the closed form on the separation alone.
+//!
+//! What acts along the line leaves the common centre of mass alone, so the whole motion is that of one
+//! point, the separation d from end A to end B with the effective mass, under the difference of the
+//! outside accelerations. It is [`super::kick`] without arms and inertia, at a fraction of the price.
+
+use super::kick::Memo;
+use super::poles::{Poles, RESOLVED_PHASE};
+use super::step::Accuracy;
+use bevy::math::DVec3;
+
+/// Phase per coarse step up to which the fourth-order combination converges.
+const EXTRAPOLATION_LIMIT: f64 = 1.5;
+/// c h/m above which a step's energy is watched; see [`super::guard`].
+const STRONG: f64 = 0.5;
+
+/// The element and what is constant about its ends over an engine step.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Pair {
+    /// N/m.
+    pub stiffness: f64,
+    /// N s/m.
+    pub damping: f64,
+    /// m.
+    pub rest_length: f64,
+    /// Of both ends together, 1/kg; above zero.
+    pub inverse_mass: f64,
+    /// Acceleration of end B less that of end A by everything but the element.
+    pub outside: DVec3,
+    /// Separation below which it is rounding of the engine's f32.
+    pub rounding: f64,
+}
+
+/// State of the separation.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Separation {
+    /// From end A to end B.
+    pub d: DVec3,
+    /// Its rate.
+    pub v: DVec3,
+    /// Last well-defined direction.
+    pub direction: Option<DVec3>,
+    /// A strong damper: then a spring of zero rest length has an axis after all.
+    stiff_damper: bool,
+}
+
+/// The line at an instant, and what it does.
+struct Line {
+    direction: DVec3,
+    length: f64,
+    isotropic: bool,
+    axial: f64,
+    lateral: DVec3,
+    lateral_square: f64,
+    pushed: f64,
+}
+
+impl Separation {
+    pub(crate) fn new(d: DVec3, v: DVec3, direction: Option<DVec3>) -> Self {
+        Self {
+            d,
+            v,
+            direction,
+            stiff_damper: false,
+        }
+    }
+}
+
+impl Pair {
+    /// (ω h)².
+    fn stiffness_number(&self, step: f64) -> f64 {
+        self.stiffness * self.inverse_mass * step * step
+    }
+
+    /// Advances the separation by one engine step; says how many kicks that took.
+    pub(crate) fn advance(
+        &self,
+        state: &mut Separation,
+        time: f64,
+        accuracy: Accuracy,
+        memo: &mut Memo,
+    ) -> u32 {
+        let count = accuracy.microsteps.max(1);
+        if !accuracy.extrapolate {
+            self.microsteps(state, time, count, memo);
+            return count;
+        }
+        if !self.resolved(state, time / f64::from(count)) {
+            // The same three kicks, spent on plain micro-steps, which never diverge.
+            self.microsteps(state, time, 3 * count, memo);
+            return 3 * count;
+        }
+        let mut coarse = *state;
+        self.microsteps(&mut coarse, time, count, memo);
+        self.microsteps(state, time, 2 * count, memo);
+        // Even powers only, so a third of the difference is the leading error.
+        state.d += (state.d - coarse.d) / 3.0;
+        state.v += (state.v - coarse.v) / 3.0;
+        3 * count
+    }
+
+    fn microsteps(&self, state: &mut Separation, time: f64, count: u32, memo: &mut Memo) {
+        let step = time / f64::from(count);
+        let z = self.stiffness_number(step);
+        let poles = memo.poles(z, self.damping * self.inverse_mass * step / 2.0);
+        self.aim(state, step);
+        let watched = self.damping * self.inverse_mass * step >= STRONG;
+        let before = watched.then(|| self.energy(state)).flatten();
+        self.map(state, &poles, step, |axial, offset, speed| {
+            ((axial - offset) / poles.speed, 1.0 / speed)
+        });
+        for _ in 0..count {
+            state.d += 0.5 * step * state.v;
+            self.kick(state, &poles, step);
+            state.d += 0.5 * step * state.v;
+            self.aim(state, step);
+        }
+        self.map(state, &poles, step, |axial, offset, speed| {
+            (poles.speed * axial + offset, speed)
+        });
+        if let Some(before) = before {
+            self.keep_energy(state, before);
+        }
+    }
+
+    /// Notes on which side of end A end B is: see `Element::aim`.
+    fn aim(&self, state: &mut Separation, step: f64) {
+        let length = state.d.length();
+        if length > self.rounding {
+            state.direction = Some(state.d / length);
+        }
+        let resolved = self.stiffness_number(step) < 4.0;
+        state.stiff_damper = resolved && self.damping * self.inverse_mass * step > 0.5;
+    }
+
+    /// The line, or `None` where the ends coincide and nothing says which way to push. Its length is
+    /// negative while end B is on the far side of end A during a drift.
+    fn line(&self, state: &Separation) -> Option<Line> {
+        let distance = state.d.length();
+        let apart = distance > self.rounding;
+        let direction = match (apart, state.direction) {
+            (true, None) => state.d / distance,
+            (true, Some(side)) => state.d / distance.copysign(state.d.dot(side)),
+            (false, Some(side)) => side,
+            (false, None) if self.rest_length == 0.0 => {
+                // Whatever acts on the ends decides; with nothing acting any axis will do.
+                (state.v + self.outside).try_normalize().unwrap_or(DVec3::Y)
+            }
+            (false, None) => return None,
+        };
+        let axial = state.v.dot(direction);
+        let lateral = state.v - axial * direction;
+        Some(Line {
+            direction,
+            length: state.d.dot(direction),
+            isotropic: self.rest_length == 0.0 && !state.stiff_damper,
+            axial,
+            lateral,
+            lateral_square: lateral.length_squared(),
+            pushed: self.outside.dot(direction),
+        })
+    }
+
+    /// The change of velocity at the half drift; the formulas are [`super::kick`]'s.
+    fn kick(&self, state: &mut Separation, poles: &Poles, step: f64) {
+        let Some(line) = self.line(state) else {
+            state.v += step * self.outside;
+            return;
+        };
+        let rate = line.backward_rate(step);
+        if line.isotropic && !is_resolved(self.stiffness_number(step)) {
+            // The line turns too fast to tell along from across: what is lost along it is lost across.
+            state.v -= poles.loss * line.lateral;
+        }
+        // The mean of before and after the kick makes the step its own mirror image in time.
+        let across = self.outside - line.pushed * line.direction;
+        let after = (line.lateral + step * across).length_squared();
+        let turning = 0.5 * (line.turning(line.lateral_square, step) + line.turning(after, step));
+        let outside = line.pushed + turning;
+        // The straight half drift lengthened the line by that already.
+        let length = line.length - step * step / 8.0 * turning;
+        let unanswered = self.stiffness * self.inverse_mass * (length - self.rest_length) - outside;
+        let total = -poles.restoring * unanswered - poles.loss / step * rate;
+        state.v += step * (total - outside) * line.direction + step * self.outside;
+    }
+
+    /// The change of velocity between the true motion and the stepped one: see `kick::map_velocity`.
+    /// `to` gives the new axial velocity and the factor across the line.
+    fn map(
+        &self,
+        state: &mut Separation,
+        poles: &Poles,
+        step: f64,
+        to: impl Fn(f64, f64, f64) -> (f64, f64),
+    ) {
+        let Some(line) = self.line(state) else {
+            return;
+        };
+        let outside = line.pushed + line.turning(line.lateral_square, step);
+        let unanswered =
+            self.stiffness * self.inverse_mass * (line.length - self.rest_length) - outside;
+        let z = self.stiffness_number(step);
+        let speed = if line.isotropic && is_resolved(z) {
+            poles.speed_across(z)
+        } else {
+            poles.speed
+        };
+        let (axial, across) = to(line.axial, poles.skew * step * unanswered, speed);
+        state.v += (axial - line.axial) * line.direction;
+        if line.isotropic {
+            state.v += (across - 1.0) * line.lateral;
+        }
+    }
+
+    /// Whether a step resolves oscillation, decay, and the turning of the line.
+    fn resolved(&self, state: &Separation, step: f64) -> bool {
+        let Some(line) = self.line(state) else {
+            return false;
+        };
+        let turned = step * step * line.lateral_square;
+        self.stiffness_number(step) < EXTRAPOLATION_LIMIT * EXTRAPOLATION_LIMIT
+            && self.damping * self.inverse_mass * step < EXTRAPOLATION_LIMIT
+            && (line.isotropic || turned < line.length * line.length)
+    }
+
+    /// Energy of the motion about the common centre of mass, in the outside forces.
+    fn energy(&self, state: &Separation) -> Option<f64> {
+        let stretch = self.line(state)?.length - self.rest_length;
+        let motion = 0.5 * state.v.length_squared() - self.outside.dot(state.d);
+        Some(0.5 * self.stiffness * stretch * stretch + motion / self.inverse_mass)
+    }
+
+    /// Takes a surplus out of the motion along the line.
+    fn keep_energy(&self, state: &mut Separation, before: f64) {
+        let (Some(line), Some(after)) = (self.line(state), self.energy(state)) else {
+            return;
+        };
+        let surplus = after - before;
+        if surplus <= 1e-9 * before.abs() {
+            return;
+        }
+        let rate = line.axial;
+        let left = (rate * rate - 2.0 * self.inverse_mass * surplus)
+            .max(0.0)
+            .sqrt();
+        state.v += (left.copysign(rate) - rate) * line.direction;
+    }
+}
+
+impl Line {
+    /// |lateral|²/L, bounded where the line turns further than the step can follow.
+    fn turning(&self, lateral_square: f64, step: f64) -> f64 {
+        if self.isotropic || lateral_square == 0.0 {
+            return 0.0;
+        }
+        let half = 0.5 * step;
+        let reach = (self.length * self.length + half * half * lateral_square).sqrt();
+        (2.0 * lateral_square / (self.length.abs() + reach)).copysign(self.length)
+    }
+
+    /// Length change over the step that led here, divided by the step: with it damping is second order.
+    fn backward_rate(&self, step: f64) -> f64 {
+        let along = self.length - step * self.axial;
+        if self.isotropic || along * self.length <= 0.0 {
+            // Through the centre: the line flips, its rate does not.
+            return self.axial;
+        }
+        let before = (along * along + step * step * self.lateral_square)
+            .sqrt()
+            .copysign(along);
+        (self.length - before) / step
+    }
+}
+
+fn is_resolved(z: f64) -> bool {
+    z < RESOLVED_PHASE * RESOLVED_PHASE
+}

@@ -1,0 +1,256 @@
+//! One component through one step: gather, wake, integrate, deliver.
+
+use super::body::{deliver, read};
+use super::check::Fault;
+use super::forces::Share;
+use super::held::{self, Expected, Support};
+use super::jointed;
+use super::scene::{BodyRow, ElementRow, Held};
+use super::sleep::omega_of;
+use super::step::Step;
+use crate::dynamics::body::Body;
+use crate::dynamics::element::{Element, End};
+use crate::dynamics::step::{Accuracy, Component, Outcome};
+use bevy::math::DVec3;
+use bevy_rapier3d::prelude::*;
+use bevy_rapier3d::rapier::dynamics::{RigidBody as RapierBody, RigidBodySet};
+
+/// A component with its bodies and elements, kept from tick to tick.
+#[derive(Default)]
+pub(crate) struct Assembly {
+    component: Component,
+    /// Its bodies at the start of the step, with their full mass.
+    start: Vec<Body>,
+    state: State,
+    outcome: Outcome,
+}
+
+/// What there is to do.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+enum State {
+    /// Nothing: asleep, or not to be stepped.
+    #[default]
+    Resting,
+    /// No element acts, so their shares are taken back.
+    Powerless,
+    /// To be advanced.
+    Ready,
+}
+
+/// The rows of one component within the scene's.
+pub(super) struct Members<'a> {
+    pub elements: &'a [usize],
+    pub bodies: &'a [usize],
+}
+
+impl Assembly {
+    /// How much work it is to advance.
+    pub(super) fn load(&self) -> usize {
+        if self.state == State::Ready {
+            self.component.elements.len()
+        } else {
+            0
+        }
+    }
+
+    /// Reads bodies and elements, and decides whether there is anything to do.
+    pub(super) fn gather(
+        &mut self,
+        step: &Step,
+        members: &Members,
+        elements: &mut [ElementRow],
+        bodies: &mut [BodyRow],
+        set: &mut RigidBodySet,
+        stale: &mut bool,
+    ) {
+        let component = &mut self.component;
+        component.bodies.clear();
+        component.elements.clear();
+        self.start.clear();
+        self.state = State::Resting;
+        for (slot, b) in members.bodies.iter().enumerate() {
+            let row = &mut bodies[*b];
+            row.slot = slot;
+            let Some(body) = step.movable(set, row.handle, stale) else {
+                return;
+            };
+            let free = read(body, step.engine.gravity, &row.user, row.turns);
+            component.bodies.push(free);
+            self.start.push(free);
+        }
+        let sound = component.bodies.iter().all(Body::is_finite);
+        let (mut disturbed, mut omega) = (false, 0.0_f32);
+        for e in members.elements {
+            let row = &mut elements[*e];
+            disturbed |= row.changed || step.has_moved(row, set);
+            let ends = row.held.map(|held| step.end(held, bodies, set));
+            if let Some(element) = element(row, ends, &component.bodies) {
+                omega = omega.max(omega_of(row));
+                component.elements.push(element);
+            }
+        }
+        let awake = step.is_awake(bodies, members.bodies, omega, set, disturbed);
+        for e in members.elements {
+            elements[*e].active = awake;
+        }
+        if !awake {
+            return;
+        }
+        self.state = if sound && !component.elements.is_empty() {
+            State::Ready
+        } else {
+            State::Powerless
+        };
+        for (slot, b) in members.bodies.iter().enumerate() {
+            let row = &bodies[*b];
+            if row.support == Support::None {
+                continue;
+            }
+            let load = self.component.load_on(slot);
+            let support = match (row.support, set.get(row.handle)) {
+                (Support::Unknown, Some(body)) => step.first_support(row, body, load, set),
+                (known, _) => known,
+            };
+            let mobility = held::mobility(row, support, &self.start[slot], load.0);
+            self.component.bodies[slot] = held::held(&self.start[slot], mobility);
+        }
+    }
+
+    /// Integrates over the step.
+    pub(super) fn advance(&mut self, time: f64, accuracy: Accuracy) {
+        if self.state == State::Ready {
+            self.outcome = self.component.advance(time, accuracy);
+            if !self.component.bodies.iter().all(Body::is_finite) {
+                self.state = State::Powerless;
+            }
+        }
+    }
+
+    /// Gives the engine what takes the bodies there.
+    pub(super) fn deliver(
+        &mut self,
+        step: &Step,
+        members: &Members,
+        elements: &mut [ElementRow],
+        bodies: &mut [BodyRow],
+        set: &mut RigidBodySet,
+    ) {
+        if self.state == State::Resting {
+            return;
+        }
+        let ready = self.state == State::Ready;
+        if ready {
+            step.wake_the_moved(
+                bodies,
+                members.bodies,
+                &self.start,
+                &self.component.bodies,
+                set,
+            );
+        }
+        for (slot, b) in members.bodies.iter().enumerate() {
+            let row = &mut bodies[*b];
+            let Some(body) = set.get_mut(row.handle).filter(|body| !body.is_sleeping()) else {
+                continue;
+            };
+            let mut share = ExternalForce::default();
+            let mut raised_iterations = false;
+            if ready {
+                let (start, end) = (&self.start[slot], &self.component.bodies[slot]);
+                let terms = step.terms(row.handle, body);
+                raised_iterations = terms.raised_iterations;
+                row.expected = Some(Expected::new(start, end, step.plan.time));
+                share = if end.mobility < 1.0 {
+                    held::deliver(body, start, end.given, &terms)
+                } else {
+                    deliver(body, start, end, &terms, &step.engine)
+                };
+            }
+            let mut share = Share::act(share, &row.user, body);
+            share.raised_iterations = raised_iterations;
+            row.share = Some(share);
+        }
+        let mut solved = self.component.elements.iter();
+        for e in members.elements {
+            let row = &mut elements[*e];
+            row.outcome = Outcome::default();
+            if row.passing.is_none()
+                && let Some(element) = solved.next()
+            {
+                row.memory.direction = element.direction;
+                if ready {
+                    row.outcome = self.outcome;
+                }
+            }
+        }
+    }
+}
+
+impl Step<'_> {
+    /// What is known of a body that the engine has not stepped yet.
+    fn first_support(
+        &self,
+        row: &BodyRow,
+        body: &RapierBody,
+        load: (DVec3, DVec3),
+        set: &RigidBodySet,
+    ) -> Support {
+        let free = read(body, self.engine.gravity, &row.user, true);
+        match jointed::share(row.handle, &free, load, set, self.joints) {
+            Some(share) => Support::Tied(share),
+            None => self.ground.under(body, set, self.colliders),
+        }
+    }
+
+    fn end(&self, held: Held, bodies: &[BodyRow], set: &RigidBodySet) -> End {
+        if let Held::Body {
+            handle,
+            local,
+            movable: Some(index),
+            ..
+        } = held
+            && let Some(body) = set.get(handle)
+        {
+            return End::Body {
+                index: bodies[index].slot,
+                arm: local - body.local_center_of_mass().as_dvec3(),
+            };
+        }
+        let (from, to) = self.path(&held, set);
+        End::Path {
+            position: from,
+            velocity: (to - from) / self.plan.time,
+        }
+    }
+}
+
+/// The integrator's element, its rest length captured if need be; or none, with the fault noted.
+fn element(row: &mut ElementRow, ends: [End; 2], bodies: &[Body]) -> Option<Element> {
+    row.passing = None;
+    let p = &mut row.parameters;
+    let mut element = Element {
+        ends,
+        stiffness: f64::from(p.stiffness),
+        damping: f64::from(p.damping),
+        rest_length: f64::from(p.rest_length.unwrap_or(0.0)),
+        direction: row.memory.direction,
+        stiff_damper: false,
+    };
+    let mut line = element.line(bodies);
+    if p.rest_length.is_none() {
+        let length = line.map_or(0.0, |line| line.length.abs());
+        p.rest_length = Some(length as f32);
+        element.rest_length = f64::from(length as f32);
+        row.captured = true;
+        line = element.line(bodies);
+    }
+    let Some(line) = line else {
+        row.passing = Some(Fault::new(
+            p.names.ends[1],
+            "coincides with body_a, so nothing says which way to push; move one or set Anchors",
+        ));
+        return None;
+    };
+    row.inverse_mass = line.inverse_mass;
+    Some(element)
+}

@@ -1,0 +1,297 @@
+//! Elements to rows: ends found, bodies entered, what was known of both carried over.
+
+use super::body::is_movable;
+use super::check::{Fault, Parameters};
+use super::ends::{Ends, Place};
+use super::prepare::{ElementParts, IsElement, report};
+use super::scene::{BodyRow, ElementRow, Held, Memory, Scene};
+use bevy::ecs::entity::{EntityHashMap, EntityHashSet};
+use bevy::ecs::system::SystemParam;
+use bevy::math::DVec3;
+use bevy::prelude::*;
+use bevy_rapier3d::prelude::*;
+use std::mem::take;
+
+/// Finds the ends of elements and judges them.
+#[derive(SystemParam)]
+pub(crate) struct Finder<'w, 's> {
+    pub(super) ends: Ends<'w, 's>,
+    pub(super) sets: Query<
+        'w,
+        's,
+        (
+            &'static mut RapierRigidBodySet,
+            &'static RapierContextColliders,
+        ),
+    >,
+}
+
+/// Both ends of a sound element.
+pub(super) struct Found {
+    places: [Place; 2],
+    /// Whether elements can move the body at each end, and if so whether this one turns it.
+    turns: [Option<bool>; 2],
+}
+
+impl Finder<'_, '_> {
+    /// Both ends, or what is wrong with the element. The mass of `modified` bodies is yet to be worked
+    /// out anew by the engine.
+    pub(super) fn find(
+        &mut self,
+        parameters: &Parameters,
+        scales: &mut [Option<DVec3>; 2],
+        modified: &EntityHashSet,
+    ) -> Result<Found, Fault> {
+        parameters.check()?;
+        let mut places = [Place::Point(DVec3::ZERO); 2];
+        for (i, place) in places.iter_mut().enumerate() {
+            *place = self.ends.find(
+                parameters.ends[i],
+                parameters.anchors[i],
+                parameters.names.ends[i],
+                &mut scales[i],
+            )?;
+        }
+        if let [
+            Place::OnBody { context: a, .. },
+            Place::OnBody { context: b, .. },
+        ] = places
+            && a != b
+        {
+            return Err(Fault::new(
+                parameters.names.ends[1],
+                "is in another Rapier context than body_a",
+            ));
+        }
+        let mut turns = [None; 2];
+        for (i, place) in places.iter().enumerate() {
+            turns[i] = self.turns(place, parameters.names.ends[i], modified)?;
+        }
+        Ok(Found { places, turns })
+    }
+
+    /// Whether the body of this end can be moved, and is held off its centre of mass.
+    fn turns(
+        &mut self,
+        place: &Place,
+        field: &'static str,
+        modified: &EntityHashSet,
+    ) -> Result<Option<bool>, Fault> {
+        let Place::OnBody {
+            entity,
+            handle,
+            context,
+            local,
+        } = *place
+        else {
+            return Ok(None);
+        };
+        let missing = Fault::new(
+            field,
+            "has a rigid body that the physics engine does not know",
+        );
+        let (mut set, colliders) = self.sets.get_mut(context).map_err(|_| missing)?;
+        // Read first: a mutable look marks the body as modified in the engine.
+        let body = set.bodies.get(handle).ok_or(missing)?;
+        if !is_movable(body) {
+            return Ok(None);
+        }
+        let fresh = body.mass_properties().local_mprops.inv_mass == 0.0;
+        if (fresh || modified.contains(&entity))
+            && let Some(body) = set.bodies.get_mut(handle)
+        {
+            body.recompute_mass_properties_from_colliders(&colliders.colliders);
+        }
+        let body = set.bodies.get(handle).ok_or(missing)?;
+        if body.mass_properties().local_mprops.inv_mass == 0.0 {
+            return Err(Fault::new(
+                field,
+                "is a dynamic body without mass; give it a collider or AdditionalMassProperties",
+            ));
+        }
+        let arm = local - body.local_center_of_mass().as_dvec3();
+        Ok(Some(arm.length() > 1e-7))
+    }
+}
+
+/// The rows before they were made anew, by entity.
+struct Known {
+    elements: EntityHashMap<ElementRow>,
+    bodies: EntityHashMap<BodyRow>,
+}
+
+impl Scene {
+    /// Makes all rows anew. Bodies stand in the order of their entities, and within a component elements
+    /// in an order of their own, so that the order in which elements were spawned changes nothing.
+    pub(super) fn renew(
+        &mut self,
+        elements: &Query<ElementParts, IsElement>,
+        finder: &mut Finder,
+        modified: &EntityHashSet,
+        commands: &mut Commands,
+    ) {
+        let known = Known {
+            elements: take(&mut self.elements)
+                .into_iter()
+                .map(|row| (row.entity, row))
+                .collect(),
+            bodies: take(&mut self.bodies)
+                .into_iter()
+                .map(|row| (row.entity, row))
+                .collect(),
+        };
+        self.index.clear();
+        let mut found_all = Vec::new();
+        for (entity, spring, damper, pair, anchors) in elements {
+            let mut row = ElementRow::fresh(entity, known.elements.get(&entity));
+            let parameters = Parameters::read(
+                spring.as_deref(),
+                damper.as_deref(),
+                pair.as_deref(),
+                anchors.as_deref(),
+            );
+            if parameters.is_err() {
+                row.parameters = Parameters::NONE;
+            }
+            let found = parameters.and_then(|parameters| {
+                if !parameters.is_held_like(&row.parameters) {
+                    // What is remembered belongs to other ends.
+                    row.memory.places = [None; 2];
+                    row.memory.scales = [None; 2];
+                }
+                row.parameters = parameters;
+                finder.find(&parameters, &mut row.memory.scales, modified)
+            });
+            row.changed |= spring.as_ref().is_some_and(Ref::is_changed)
+                || damper.as_ref().is_some_and(Ref::is_changed)
+                || pair.as_ref().is_some_and(Ref::is_changed)
+                || anchors.as_ref().is_some_and(Ref::is_changed);
+            row.fault = found.as_ref().err().copied();
+            report(&mut row, commands);
+            self.elements.push(row);
+            found_all.push(found.ok());
+        }
+        self.enter_bodies(&found_all, &known, modified);
+        for (row, found) in self.elements.iter_mut().zip(&found_all) {
+            let Some(found) = found else { continue };
+            for end in 0..2 {
+                row.hold(end, &found.places[end], &self.index);
+            }
+            for body in row.held.iter().filter_map(Held::movable) {
+                let body = &mut self.bodies[body];
+                body.elements += 1;
+                body.signature = body.signature.wrapping_add(mix(row.entity.to_bits()));
+            }
+        }
+        for body in &mut self.bodies {
+            let before = known.bodies.get(&body.entity).map(|row| row.signature);
+            body.disturbed |= before != Some(body.signature);
+        }
+        self.groups.find(&self.elements, &self.bodies);
+        self.groups.furnish(&mut self.assemblies, &self.bodies);
+    }
+
+    /// Rows of all movable bodies.
+    fn enter_bodies(&mut self, found: &[Option<Found>], known: &Known, modified: &EntityHashSet) {
+        for found in found.iter().flatten() {
+            for (place, turns) in found.places.iter().zip(found.turns) {
+                let (
+                    Place::OnBody {
+                        entity,
+                        handle,
+                        context,
+                        ..
+                    },
+                    Some(turns),
+                ) = (*place, turns)
+                else {
+                    continue;
+                };
+                let slot = *self.index.entry(entity).or_insert_with(|| {
+                    let mut row = BodyRow::new(entity, handle, context);
+                    if let Some(known) = known.bodies.get(&entity).filter(|k| k.handle == handle) {
+                        row = BodyRow {
+                            turns: false,
+                            elements: 0,
+                            signature: 0,
+                            context,
+                            ..*known
+                        };
+                    }
+                    row.disturbed |= modified.contains(&entity);
+                    self.bodies.push(row);
+                    self.bodies.len() - 1
+                });
+                self.bodies[slot].turns |= turns;
+            }
+        }
+        self.bodies.sort_by_key(|row| row.entity);
+        for (slot, row) in self.bodies.iter().enumerate() {
+            self.index.insert(row.entity, slot);
+        }
+    }
+}
+
+impl ElementRow {
+    /// An inert row, with what is known of the element.
+    fn fresh(entity: Entity, known: Option<&Self>) -> Self {
+        let mut row = Self {
+            entity,
+            parameters: Parameters::NONE,
+            held: [Held::NOWHERE; 2],
+            watched: [true; 2],
+            fault: None,
+            passing: None,
+            said: None,
+            changed: true,
+            captured: false,
+            active: false,
+            memory: Memory::default(),
+            inverse_mass: 0.0,
+            outcome: default(),
+        };
+        if let Some(known) = known {
+            row.parameters = known.parameters;
+            row.said = known.said;
+            row.passing = known.passing;
+            row.memory = known.memory;
+            row.changed = false;
+            if known.fault.is_some() {
+                // Where its ends were when it last acted would make a leap of today's place.
+                row.memory.places = [None; 2];
+            }
+        }
+        row
+    }
+
+    /// Holds an end where it was found.
+    fn hold(&mut self, end: usize, place: &Place, index: &EntityHashMap<usize>) {
+        self.held[end] = match *place {
+            Place::OnBody {
+                entity,
+                handle,
+                context,
+                local,
+            } => {
+                let direct = entity == self.parameters.ends[end];
+                self.watched[end] = !direct || self.parameters.anchors[end] != Vec3::ZERO;
+                Held::Body {
+                    handle,
+                    context,
+                    local,
+                    movable: index.get(&entity).copied(),
+                }
+            }
+            Place::Point(to) => Held::Path {
+                from: self.memory.places[end].unwrap_or(to),
+                to,
+            },
+        };
+    }
+}
+
+/// Spreads an entity's bits, so that sums of them tell sets apart.
+fn mix(bits: u64) -> u64 {
+    let x = (bits ^ (bits >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb)
+}

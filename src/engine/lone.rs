@@ -1,0 +1,221 @@
+//! A lone element on bodies that it does not turn: read, solve and deliver in one go.
+//!
+//! Most elements of most scenes are of this kind. Whatever is out of the ordinary about one (contacts,
+//! joints, locked axes, ends that coincide, a sleeping end) is left to [`super::assembly`].
+
+use super::body::deliver_straight;
+use super::forces::Share;
+use super::held::{Expected, Support};
+use super::scene::{BodyRow, ElementRow, Held};
+use super::step::Step;
+use crate::dynamics::pair::{Pair, Separation};
+use crate::dynamics::step::{Method, Outcome};
+use bevy::math::DVec3;
+use bevy_rapier3d::prelude::ExternalForce;
+use bevy_rapier3d::rapier::dynamics::{LockedAxes, RigidBody as RapierBody, RigidBodySet};
+
+/// One end.
+#[derive(Clone, Copy, Default)]
+struct Point {
+    /// Row of the body that elements can move.
+    body: Option<usize>,
+    position: DVec3,
+    velocity: DVec3,
+    acceleration: DVec3,
+    inverse_mass: f64,
+    asleep: bool,
+}
+
+/// What became of a lone element.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Handled {
+    Done,
+    /// Out of the ordinary.
+    No,
+}
+
+const LOCKED: LockedAxes = LockedAxes::TRANSLATION_LOCKED;
+
+/// The centre of mass of an ordinary movable body.
+fn point(row: &BodyRow, index: usize, body: &RapierBody, step: &Step) -> Option<Point> {
+    let properties = &body.mass_properties().local_mprops;
+    if row.support != Support::None || body.locked_axes().intersects(LOCKED) {
+        return None;
+    }
+    let mut position = body.position().translation.as_dvec3();
+    if properties.local_com != bevy::math::Vec3::ZERO {
+        let rotation = body.position().rotation.as_dquat().normalize();
+        position += rotation * properties.local_com.as_dvec3();
+    }
+    let inverse_mass = f64::from(properties.inv_mass);
+    Some(Point {
+        body: Some(index),
+        position,
+        velocity: body.linvel().as_dvec3(),
+        acceleration: step.engine.gravity.as_dvec3() * f64::from(body.gravity_scale())
+            + inverse_mass * row.user.force.as_dvec3(),
+        inverse_mass,
+        asleep: body.is_sleeping(),
+    })
+}
+
+impl Step<'_> {
+    /// Takes the element through the step, if it is an ordinary one.
+    pub(super) fn lone(
+        &self,
+        row: &mut ElementRow,
+        bodies: &mut [BodyRow],
+        members: &[usize],
+        set: &mut RigidBodySet,
+        stale: &mut bool,
+    ) -> Handled {
+        let time = self.plan.time;
+        let mut points = [Point::default(); 2];
+        for (point_at, held) in points.iter_mut().zip(&row.held) {
+            *point_at = match *held {
+                Held::Body {
+                    handle,
+                    movable: Some(index),
+                    ..
+                } => {
+                    let Some(body) = self.movable(set, handle, stale) else {
+                        row.active = false;
+                        return Handled::Done;
+                    };
+                    match point(&bodies[index], index, body, self) {
+                        Some(point) => point,
+                        None => return Handled::No,
+                    }
+                }
+                _ => {
+                    let (from, to) = self.path(held, set);
+                    Point {
+                        position: from,
+                        velocity: (to - from) / time,
+                        ..Point::default()
+                    }
+                }
+            };
+        }
+        let [a, b] = points;
+        let d = b.position - a.position;
+        let scale = a.position.abs().max(b.position.abs()).max_element();
+        let rounding = 1e-9 * scale.max(1e-3);
+        let rest_length = row.parameters.rest_length.map(f64::from);
+        let asleep = points.iter().any(|p| p.asleep);
+        let coincide = d.length_squared() <= rounding * rounding;
+        if asleep || (coincide && row.memory.direction.is_none() && rest_length != Some(0.0)) {
+            return self.rest(row, bodies, members, set, &points);
+        }
+        let inverse_mass = a.inverse_mass + b.inverse_mass;
+        let omega = (f64::from(row.parameters.stiffness) * inverse_mass).sqrt();
+        let disturbed = row.changed || self.has_moved(row, set);
+        self.is_awake(bodies, members, omega as f32, set, disturbed);
+        row.active = true;
+        row.passing = None;
+        row.inverse_mass = inverse_mass;
+        let rest_length = rest_length.unwrap_or_else(|| {
+            let length = d.length() as f32;
+            row.parameters.rest_length = Some(length);
+            row.captured = true;
+            f64::from(length)
+        });
+        let pair = Pair {
+            stiffness: f64::from(row.parameters.stiffness),
+            damping: f64::from(row.parameters.damping),
+            rest_length,
+            inverse_mass,
+            outside: b.acceleration - a.acceleration,
+            rounding,
+        };
+        let start = Separation::new(d, b.velocity - a.velocity, row.memory.direction);
+        let mut end = start;
+        let kicks = pair.advance(&mut end, time, self.accuracy, &mut row.memory.memo);
+        if !(end.d.is_finite() && end.v.is_finite()) {
+            return Handled::No;
+        }
+        row.memory.direction = end.direction;
+        row.outcome = Outcome {
+            method: Method::ClosedForm,
+            microsteps: kicks,
+            ..Outcome::default()
+        };
+        // What the element adds to the free motion of the separation.
+        let moved = end.d - start.d - time * (start.v + 0.5 * time * pair.outside);
+        let sped = end.v - start.v - time * pair.outside;
+        for (point, sign) in points.iter().zip([-1.0, 1.0]) {
+            let Some(index) = point.body else { continue };
+            let share = sign * point.inverse_mass / inverse_mass;
+            let given = sign / inverse_mass * sped;
+            self.deliver_point(
+                &mut bodies[index],
+                point,
+                share * moved,
+                share * sped,
+                given,
+                set,
+            );
+        }
+        Handled::Done
+    }
+
+    /// Sleeping through the step is ordinary; the rest is not.
+    fn rest(
+        &self,
+        row: &mut ElementRow,
+        bodies: &[BodyRow],
+        members: &[usize],
+        set: &RigidBodySet,
+        points: &[Point; 2],
+    ) -> Handled {
+        let all_asleep = points.iter().all(|p| p.asleep || p.body.is_none());
+        let disturbed = members.iter().any(|b| bodies[*b].disturbed);
+        if !all_asleep || disturbed || row.changed || self.has_moved(row, set) {
+            return Handled::No;
+        }
+        row.active = false;
+        Handled::Done
+    }
+
+    /// Gives the engine what takes a body where the element does.
+    fn deliver_point(
+        &self,
+        row: &mut BodyRow,
+        point: &Point,
+        moved: DVec3,
+        sped: DVec3,
+        given: DVec3,
+        set: &mut RigidBodySet,
+    ) {
+        let Some(body) = set.get_mut(row.handle) else {
+            return;
+        };
+        let time = self.plan.time;
+        let terms = self.terms(row.handle, body);
+        let pulled = time * point.acceleration;
+        let to = point.velocity + pulled + sped;
+        row.expected = Some(Expected::straight(
+            point.velocity,
+            to,
+            point.inverse_mass * given + pulled,
+            given,
+            time,
+        ));
+        let rate = deliver_straight(
+            body,
+            point.velocity,
+            time * (point.velocity + 0.5 * pulled) + moved,
+            to,
+            &terms,
+            &self.engine,
+        );
+        let force = ((rate - point.acceleration) / point.inverse_mass).as_vec3();
+        let share = ExternalForce {
+            force,
+            ..ExternalForce::default()
+        };
+        let mut share = Share::act(share, &row.user, body);
+        share.raised_iterations = terms.raised_iterations;
+        row.share = Some(share);
+    }
+}

@@ -1,0 +1,204 @@
+//! Before the step: is the scene still the one we know? Mostly it is, and only what can move is read.
+
+use super::check::{Fault, Parameters};
+use super::ends::{Ends, Place};
+use super::find::Finder;
+use super::forces::SpringLoad;
+use super::scene::{ElementRow, Held, Scene};
+use super::watch::Watch;
+use crate::element::{Anchors, Damper, Spring, SpringDamper, SpringFault};
+use bevy::ecs::entity::EntityHashSet;
+use bevy::prelude::*;
+use bevy_rapier3d::prelude::*;
+
+/// The parts of an element.
+pub(crate) type ElementParts<'a> = (
+    Entity,
+    Option<Ref<'a, Spring>>,
+    Option<Ref<'a, Damper>>,
+    Option<Ref<'a, SpringDamper>>,
+    Option<Ref<'a, Anchors>>,
+);
+
+/// What makes an entity an element.
+pub(crate) type IsElement = Or<(With<Spring>, With<Damper>, With<SpringDamper>)>;
+
+/// Finds elements, their ends and the bodies they load.
+pub(crate) fn prepare(
+    mut scene: ResMut<Scene>,
+    elements: Query<ElementParts, IsElement>,
+    mut finder: Finder,
+    mut loads: Query<
+        (Option<&mut SpringLoad>, Option<&ExternalForce>),
+        With<RapierRigidBodyHandle>,
+    >,
+    mut watch: Watch,
+    mut commands: Commands,
+) {
+    let scene = &mut *scene;
+    let mut same = !watch.saw_change(&scene.index);
+    same &= !std::mem::take(&mut scene.stale);
+    same = same && refresh(scene, &elements, &finder.ends);
+    same = same
+        && scene
+            .elements
+            .iter_mut()
+            .all(|row| still_faulty(row, &mut finder, &watch.mass_modified, &mut commands));
+    scene.renewed = !same;
+    if same {
+        return;
+    }
+    scene.renew(&elements, &mut finder, &watch.mass_modified, &mut commands);
+    for (slot, row) in scene.bodies.iter_mut().enumerate() {
+        let Ok((load, force)) = loads.get_mut(row.entity) else {
+            continue;
+        };
+        let known = load.map(|mut load| {
+            load.bypass_change_detection().slot = slot;
+            load.user
+        });
+        if let (Some(user), true) = (known, force.is_some()) {
+            row.user = user;
+            continue;
+        }
+        let engine = finder.sets.get(row.context).ok().and_then(|(set, _)| {
+            let body = set.bodies.get(row.handle)?;
+            Some(ExternalForce {
+                force: body.user_force(),
+                torque: body.user_torque(),
+            })
+        });
+        // A force written to the engine alone belongs to the user too.
+        let present = force.copied().or(engine).unwrap_or_default();
+        row.user = known.unwrap_or(present);
+        let mut entity = commands.entity(row.entity);
+        if force.is_none() {
+            entity.try_insert(present);
+        }
+        if known.is_none() {
+            entity.try_insert(SpringLoad::new(present, slot));
+        }
+    }
+}
+
+/// Takes in changed numbers and moved ends; says whether the rows still fit the elements.
+fn refresh(scene: &mut Scene, elements: &Query<ElementParts, IsElement>, ends: &Ends) -> bool {
+    let mut rows = scene.elements.iter_mut();
+    for (entity, spring, damper, pair, anchors) in elements {
+        let Some(row) = rows.next().filter(|row| row.entity == entity) else {
+            return false;
+        };
+        row.changed = spring.as_ref().is_some_and(Ref::is_changed)
+            || damper.as_ref().is_some_and(Ref::is_changed)
+            || pair.as_ref().is_some_and(Ref::is_changed)
+            || anchors.as_ref().is_some_and(Ref::is_changed);
+        if row.changed {
+            let parameters = Parameters::read(
+                spring.as_deref(),
+                damper.as_deref(),
+                pair.as_deref(),
+                anchors.as_deref(),
+            );
+            match parameters {
+                Ok(new) if new.is_held_like(&row.parameters) && new.check().is_ok() => {
+                    row.parameters = new;
+                }
+                _ => return false,
+            }
+        }
+        if row.fault.is_none() {
+            for end in 0..2 {
+                if row.watched[end] && !follow(row, end, ends, &scene.bodies) {
+                    return false;
+                }
+            }
+        }
+    }
+    rows.next().is_none()
+}
+
+/// Looks for an end again; says whether it is still the same kind of end.
+fn follow(row: &mut ElementRow, end: usize, ends: &Ends, bodies: &[super::scene::BodyRow]) -> bool {
+    let p = &row.parameters;
+    let found = ends.find(
+        p.ends[end],
+        p.anchors[end],
+        p.names.ends[end],
+        &mut row.memory.scales[end],
+    );
+    match (&mut row.held[end], found) {
+        (
+            Held::Body {
+                handle,
+                context,
+                local,
+                movable,
+            },
+            Ok(Place::OnBody {
+                handle: now_on,
+                context: now_in,
+                local: now_at,
+                ..
+            }),
+        ) if *handle == now_on && *context == now_in => {
+            if *local != now_at {
+                // Whether it turns the body may have changed.
+                if movable.is_some_and(|b| !bodies[b].turns) {
+                    return false;
+                }
+                *local = now_at;
+            }
+            true
+        }
+        (Held::Path { from, to }, Ok(Place::Point(now))) => {
+            // Where it was after the last step.
+            *from = row.memory.places[end].unwrap_or(now);
+            *to = now;
+            true
+        }
+        _ => false,
+    }
+}
+
+/// Looks at an inert element again; says whether it still is.
+fn still_faulty(
+    row: &mut ElementRow,
+    finder: &mut Finder,
+    modified: &EntityHashSet,
+    commands: &mut Commands,
+) -> bool {
+    if row.fault.is_none() || row.parameters.ends == Parameters::NONE.ends {
+        return true;
+    }
+    match finder.find(&row.parameters, &mut row.memory.scales, modified) {
+        Err(fault) => {
+            row.fault = Some(fault);
+            report(row, commands);
+            true
+        }
+        Ok(_) => false,
+    }
+}
+
+/// Says once what is wrong with an element, and takes it back once it is mended.
+pub(super) fn report(row: &mut ElementRow, commands: &mut Commands) {
+    let fault: Option<Fault> = row.fault.or(row.passing);
+    if row.said == fault {
+        return;
+    }
+    row.said = fault;
+    match fault {
+        Some(fault) => {
+            let fault = SpringFault {
+                entity: row.entity,
+                field: fault.field.into(),
+                reason: fault.reason.into(),
+            };
+            log::warn!("{fault}");
+            commands.entity(row.entity).try_insert(fault);
+        }
+        None => {
+            commands.entity(row.entity).try_remove::<SpringFault>();
+        }
+    }
+}

@@ -1,0 +1,99 @@
+//! What holds for every component of a context in this step, and what they all need.
+
+use super::body::{Engine, is_movable, point_after, point_of};
+use super::held::Ground;
+use super::scene::{ElementRow, Held};
+use super::timestep::Plan;
+use crate::dynamics::delivery::Schedule;
+use crate::dynamics::step::Accuracy;
+use bevy::math::DVec3;
+use bevy_rapier3d::prelude::*;
+use bevy_rapier3d::rapier::dynamics::{RigidBody as RapierBody, RigidBodyHandle, RigidBodySet};
+use bevy_rapier3d::rapier::geometry::ColliderSet;
+
+/// A context about to step.
+pub(super) struct Step<'a> {
+    pub plan: Plan,
+    pub engine: Engine,
+    pub joints: &'a RapierContextJoints,
+    pub colliders: &'a ColliderSet,
+    pub ground: &'a Ground,
+    pub accuracy: Accuracy,
+}
+
+/// How the engine will step one body.
+pub(super) struct Terms {
+    pub schedule: Schedule,
+    /// A link of a multibody does not keep velocities that are set.
+    pub takes_impulses: bool,
+    /// It was given a second solver iteration for that.
+    pub raised_iterations: bool,
+}
+
+impl Step<'_> {
+    /// A body as it may be moved; one that may not be any more makes the scene stale.
+    pub(super) fn movable<'b>(
+        &self,
+        bodies: &'b RigidBodySet,
+        handle: RigidBodyHandle,
+        stale: &mut bool,
+    ) -> Option<&'b RapierBody> {
+        let body = bodies.get(handle).filter(|body| is_movable(body));
+        *stale |= body.is_none();
+        body
+    }
+
+    /// Where a point is that elements cannot move, and where it will be after the step.
+    pub(super) fn path(&self, held: &Held, bodies: &RigidBodySet) -> (DVec3, DVec3) {
+        match *held {
+            Held::Path { from, to } => (from, to),
+            Held::Body { handle, local, .. } => match bodies.get(handle) {
+                Some(body) => (
+                    point_of(body, local).0,
+                    point_after(body, local, self.plan.time),
+                ),
+                None => (local, local),
+            },
+        }
+    }
+
+    /// Whether an end moves, or is not where it was after the last step.
+    pub(super) fn has_moved(&self, row: &ElementRow, bodies: &RigidBodySet) -> bool {
+        row.held.iter().zip(row.memory.places).any(|(held, last)| {
+            let now = match *held {
+                Held::Body {
+                    local,
+                    movable: Some(_),
+                    ..
+                } => local,
+                _ => {
+                    let (from, to) = self.path(held, bodies);
+                    if from != to {
+                        return true;
+                    }
+                    to
+                }
+            };
+            last.is_some_and(|last| last != now)
+        })
+    }
+
+    /// Readies a body for delivery.
+    pub(super) fn terms(&self, handle: RigidBodyHandle, body: &mut RapierBody) -> Terms {
+        let multibody = self.joints.multibody_joints.rigid_body_link(handle);
+        let mut raised_iterations = false;
+        if self.engine.iterations * self.plan.pipeline_steps as usize == 1
+            && body.additional_solver_iterations() == 0
+        {
+            // One substep has room for a force or an impulse, not for both.
+            body.set_additional_solver_iterations(1);
+            raised_iterations = true;
+        }
+        let iterations = self.engine.iterations + body.additional_solver_iterations();
+        Terms {
+            schedule: self.plan.schedule(iterations),
+            takes_impulses: multibody.is_none(),
+            raised_iterations,
+        }
+    }
+}
