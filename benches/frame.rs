@@ -1,72 +1,38 @@
 #![allow(missing_docs, reason = "criterion writes a public function")]
-//! Whole frames with many isolated springs: bodies alone, ours, and Rapier's `SpringJoint`.
+//! Whole frames, and the share of them that our own systems take.
 //!
 //! `cargo bench --bench frame` prints the times of one run; compare them within it, not between machines.
+//! `frame` are whole frames: bodies that fly freely, our springs, and Rapier's `SpringJoint` on the same
+//! bodies. `own` is the time spent in our systems alone.
 
-use bevy::prelude::*;
-use bevy::time::TimeUpdateStrategy;
-use bevy_coilover::prelude::*;
-use bevy_rapier3d::prelude::*;
+mod scenes;
+
+use bevy::app::App;
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
-use std::hint::black_box;
+use scenes::{Link, Own, Scene};
+use std::time::Duration;
 
-/// What joins each pair of bodies.
-#[derive(Clone, Copy, Debug)]
-enum Link {
-    Nothing,
-    Ours,
-    Joint,
-}
+/// An app that is made when a benchmark first needs it, so that one left out by a filter costs nothing.
+struct Lazy<F>(Option<App>, F);
 
-/// Pairs of bodies without colliders, weightless and never asleep, oscillating.
-fn app(count: u32, link: Link, microsteps: u32) -> App {
-    let mut app = App::new();
-    app.add_plugins((
-        MinimalPlugins,
-        TransformPlugin,
-        RapierPhysicsPlugin::<NoUserData>::default().in_fixed_schedule(),
-        CoiloverPlugin::default().with_microsteps(microsteps),
-    ))
-    .insert_resource(TimestepMode::Fixed {
-        dt: 1.0 / 60.0,
-        substeps: 1,
-    })
-    .insert_resource(Time::<Fixed>::from_hz(60.0));
-    let tick = app.world().resource::<Time<Fixed>>().timestep();
-    app.insert_resource(TimeUpdateStrategy::ManualDuration(tick));
-    app.finish();
-    app.cleanup();
-    app.update();
-    let world = app.world_mut();
-    let body = |world: &mut World, at: Vec3| {
-        world
-            .spawn((
-                RigidBody::Dynamic,
-                AdditionalMassProperties::Mass(1.0),
-                GravityScale(0.0),
-                Sleeping::disabled(),
-                Transform::from_translation(at),
-            ))
-            .id()
-    };
-    for i in 0..count {
-        let at = Vec3::new((i % 100) as f32 * 4.0, (i / 100) as f32 * 4.0, 0.0);
-        let (a, b) = (body(world, at), body(world, at + Vec3::X * 1.2));
-        match link {
-            Link::Nothing => {}
-            Link::Ours => {
-                world.spawn(Spring::new(a, b).with_stiffness(40.0).with_rest_length(1.0));
-            }
-            Link::Joint => {
-                let joint = SpringJointBuilder::new(1.0, 40.0, 0.0);
-                world.entity_mut(b).insert(ImpulseJoint::new(a, joint));
-            }
+impl<F: Fn() -> App> Lazy<F> {
+    fn new(make: F) -> Self {
+        Self(None, make)
+    }
+
+    fn app(&mut self) -> &mut App {
+        self.0.get_or_insert_with(&self.1)
+    }
+
+    /// Time in our systems over so many frames.
+    fn own(&mut self, frames: u64) -> Duration {
+        let app = self.app();
+        app.world_mut().resource_mut::<Own>().0 = Duration::ZERO;
+        for _ in 0..frames {
+            app.update();
         }
+        app.world().resource::<Own>().0
     }
-    for _ in 0..20 {
-        app.update();
-    }
-    app
 }
 
 fn frames(c: &mut Criterion) {
@@ -75,27 +41,49 @@ fn frames(c: &mut Criterion) {
     for count in [1_000, 10_000] {
         group.throughput(Throughput::Elements(u64::from(count)));
         for link in [Link::Nothing, Link::Ours, Link::Joint] {
-            let mut app = app(count, link, 1);
+            let mut lazy = Lazy::new(|| Scene::Isolated.app(count, link, 1));
             group.bench_function(BenchmarkId::new(format!("{link:?}"), count), |b| {
+                let app = lazy.app();
                 b.iter(|| app.update());
             });
-            black_box(&app);
         }
     }
     group.finish();
 }
 
-fn microsteps(c: &mut Criterion) {
-    let mut group = c.benchmark_group("microsteps");
-    group.sample_size(20);
-    for n in [1, 4, 16] {
-        let mut app = app(10_000, Link::Ours, n);
-        group.bench_function(BenchmarkId::new("10000 springs", n), |b| {
-            b.iter(|| app.update());
+fn isolated(c: &mut Criterion) {
+    let mut group = c.benchmark_group("own/isolated");
+    group.sample_size(10);
+    let mut bench = |name: &str, scene: Scene, count: u32, microsteps: u32| {
+        let mut lazy = Lazy::new(|| scene.app(count, Link::Ours, microsteps));
+        group.throughput(Throughput::Elements(u64::from(count)));
+        group.bench_function(BenchmarkId::new(name, count), |b| {
+            b.iter_custom(|frames| lazy.own(frames));
         });
+    };
+    for count in [1, 10, 100, 1_000, 10_000, 100_000] {
+        bench("awake", Scene::Isolated, count, 1);
     }
+    bench("asleep", Scene::Asleep, 10_000, 1);
+    bench("4 microsteps", Scene::Isolated, 10_000, 4);
+    bench("16 microsteps", Scene::Isolated, 10_000, 16);
     group.finish();
 }
 
-criterion_group!(benches, frames, microsteps);
+fn networks(c: &mut Criterion) {
+    for scene in [Scene::Chain, Scene::Lattice] {
+        let mut group = c.benchmark_group(format!("own/{scene:?}"));
+        group.sample_size(10);
+        for count in [1_000, 10_000, 50_000] {
+            let mut lazy = Lazy::new(|| scene.app(count, Link::Ours, 1));
+            group.throughput(Throughput::Elements(u64::from(count)));
+            group.bench_function(BenchmarkId::from_parameter(count), |b| {
+                b.iter_custom(|frames| lazy.own(frames));
+            });
+        }
+        group.finish();
+    }
+}
+
+criterion_group!(benches, frames, isolated, networks);
 criterion_main!(benches);

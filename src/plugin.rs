@@ -94,7 +94,9 @@ impl Plugin for CoiloverPlugin {
                 (engine::check_timestep, engine::prepare)
                     .chain()
                     .in_set(CoiloverSystems::Prepare),
-                engine::solve.in_set(CoiloverSystems::Solve),
+                (engine::read_users, engine::solve)
+                    .chain()
+                    .in_set(CoiloverSystems::Solve),
                 engine::measure.in_set(CoiloverSystems::Readout),
             )
                 // Without Rapier there is nothing to do, and a message has said so.

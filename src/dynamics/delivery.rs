@@ -46,10 +46,11 @@ impl Schedule {
             };
         }
         let beta = self.beta();
-        let jump = (displacement - beta * self.time * change) / ((1.0 - beta) * self.time);
+        let per_time = self.time.recip();
+        let jump = (displacement - beta * self.time * change) * (per_time / (1.0 - beta));
         Delivery {
             jump,
-            rate: (change - jump) / self.time,
+            rate: (change - jump) * per_time,
         }
     }
 
@@ -64,7 +65,7 @@ impl Schedule {
     ) -> Delivery {
         let first = velocity + delivery.jump + self.time / f64::from(self.substeps) * delivery.rate;
         let last = velocity + delivery.jump + self.time * delivery.rate;
-        if first.length().max(last.length()) <= cap {
+        if first.length_squared().max(last.length_squared()) <= cap * cap {
             return delivery;
         }
         Delivery {

@@ -103,19 +103,19 @@ impl Pair {
         let step = time / f64::from(count);
         let z = self.stiffness_number(step);
         let poles = memo.poles(z, self.damping * self.inverse_mass * step / 2.0);
-        self.aim(state, step);
+        let mut aimed = self.aim(state, step);
         let watched = self.damping * self.inverse_mass * step >= STRONG;
         let before = watched.then(|| self.energy(state)).flatten();
-        self.map(state, &poles, step, |axial, offset, speed| {
+        self.map(state, aimed, &poles, step, |axial, offset, speed| {
             ((axial - offset) / poles.speed, 1.0 / speed)
         });
         for _ in 0..count {
             state.d += 0.5 * step * state.v;
             self.kick(state, &poles, step);
             state.d += 0.5 * step * state.v;
-            self.aim(state, step);
+            aimed = self.aim(state, step);
         }
-        self.map(state, &poles, step, |axial, offset, speed| {
+        self.map(state, aimed, &poles, step, |axial, offset, speed| {
             (poles.speed * axial + offset, speed)
         });
         if let Some(before) = before {
@@ -123,42 +123,56 @@ impl Pair {
         }
     }
 
-    /// Notes on which side of end A end B is: see `Element::aim`.
-    fn aim(&self, state: &mut Separation, step: f64) {
-        let length = state.d.length();
-        if length > self.rounding {
-            state.direction = Some(state.d / length);
-        }
+    /// Notes on which side of end A end B is (see `Element::aim`), and returns the line's direction and
+    /// length, unless the ends coincide.
+    fn aim(&self, state: &mut Separation, step: f64) -> Option<(DVec3, f64)> {
         let resolved = self.stiffness_number(step) < 4.0;
         state.stiff_damper = resolved && self.damping * self.inverse_mass * step > 0.5;
+        let length = state.d.length();
+        if length <= self.rounding {
+            return None;
+        }
+        let direction = length.recip() * state.d;
+        state.direction = Some(direction);
+        Some((direction, length))
     }
 
     /// The line, or `None` where the ends coincide and nothing says which way to push. Its length is
     /// negative while end B is on the far side of end A during a drift.
     fn line(&self, state: &Separation) -> Option<Line> {
         let distance = state.d.length();
-        let apart = distance > self.rounding;
-        let direction = match (apart, state.direction) {
-            (true, None) => state.d / distance,
-            (true, Some(side)) => state.d / distance.copysign(state.d.dot(side)),
-            (false, Some(side)) => side,
-            (false, None) if self.rest_length == 0.0 => {
-                // Whatever acts on the ends decides; with nothing acting any axis will do.
-                (state.v + self.outside).try_normalize().unwrap_or(DVec3::Y)
-            }
-            (false, None) => return None,
+        if distance <= self.rounding {
+            let direction = match state.direction {
+                Some(side) => side,
+                None if self.rest_length == 0.0 => {
+                    // Whatever acts on the ends decides; with nothing acting any axis will do.
+                    let hint = state.v + self.outside;
+                    hint.try_normalize().unwrap_or(DVec3::Y)
+                }
+                None => return None,
+            };
+            return Some(self.along(state, direction, state.d.dot(direction)));
+        }
+        let length = match state.direction {
+            Some(side) => distance.copysign(state.d.dot(side)),
+            None => distance,
         };
+        Some(self.along(state, length.recip() * state.d, length))
+    }
+
+    /// What the ends do along a line.
+    fn along(&self, state: &Separation, direction: DVec3, length: f64) -> Line {
         let axial = state.v.dot(direction);
         let lateral = state.v - axial * direction;
-        Some(Line {
+        Line {
             direction,
-            length: state.d.dot(direction),
+            length,
             isotropic: self.rest_length == 0.0 && !state.stiff_damper,
             axial,
             lateral,
             lateral_square: lateral.length_squared(),
             pushed: self.outside.dot(direction),
-        })
+        }
     }
 
     /// The change of velocity at the half drift; the formulas are [`super::kick`]'s.
@@ -185,16 +199,21 @@ impl Pair {
     }
 
     /// The change of velocity between the true motion and the stepped one: see `kick::map_velocity`.
-    /// `to` gives the new axial velocity and the factor across the line.
+    /// `aimed` is the line as [`Self::aim`] saw it, `to` gives the new axial velocity and the factor across the line.
     fn map(
         &self,
         state: &mut Separation,
+        aimed: Option<(DVec3, f64)>,
         poles: &Poles,
         step: f64,
         to: impl Fn(f64, f64, f64) -> (f64, f64),
     ) {
-        let Some(line) = self.line(state) else {
-            return;
+        let line = match aimed {
+            Some((direction, length)) => self.along(state, direction, length),
+            None => match self.line(state) {
+                Some(line) => line,
+                None => return,
+            },
         };
         let outside = line.pushed + line.turning(line.lateral_square, step);
         let unanswered =

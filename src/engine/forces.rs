@@ -2,6 +2,8 @@
 
 use super::scene::Scene;
 use super::solve::Loads;
+use bevy::ecs::entity_disabling::Disabled;
+use bevy::ecs::query::Allow;
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
 use bevy_rapier3d::rapier::dynamics::RigidBody as RapierBody;
@@ -103,13 +105,16 @@ impl SpringLoad {
 
 /// Takes in what users wrote since the last step. The engine wakes a body whose sum changes; ours must
 /// wake when the user's share does.
-pub(super) fn read_users(scene: &mut Scene, loads: &mut Loads) {
-    for (entity, mut load, component, ..) in loads {
-        let Some(component) = component.filter(Mut::is_changed) else {
-            continue;
-        };
+pub(crate) fn read_users(
+    mut scene: ResMut<Scene>,
+    mut loads: Query<
+        (Entity, &mut SpringLoad, &ExternalForce),
+        (Changed<ExternalForce>, Allow<Disabled>),
+    >,
+) {
+    for (entity, mut load, component) in &mut loads {
         let load = load.bypass_change_detection();
-        let new = load.read_user(&component);
+        let new = load.read_user(component);
         if let Some(row) = scene.body(load.slot, entity) {
             row.disturbed |= new;
             row.user = load.user;
@@ -119,6 +124,9 @@ pub(super) fn read_users(scene: &mut Scene, loads: &mut Loads) {
 
 /// Shows on every stepped body what it was given.
 pub(super) fn show(scene: &mut Scene, loads: &mut Loads) {
+    if scene.bodies.iter().all(|row| row.share.is_none()) {
+        return;
+    }
     for (entity, mut load, mut component, ..) in loads {
         let slot = load.slot;
         if let Some(share) = scene.body(slot, entity).and_then(|row| row.share.take()) {

@@ -9,7 +9,7 @@
 use super::scene::BodyRow;
 use super::step::Terms;
 use crate::dynamics::body::{Body, Spin};
-use bevy::math::DVec3;
+use bevy::math::{DVec3, Vec3};
 use bevy_rapier3d::parry;
 use bevy_rapier3d::parry::bounding_volume::{Aabb, BoundingVolume};
 use bevy_rapier3d::prelude::{ExternalForce, RapierContextJoints, RapierContextSimulation};
@@ -17,8 +17,21 @@ use bevy_rapier3d::rapier::dynamics::{RigidBody as RapierBody, RigidBodyHandle, 
 use bevy_rapier3d::rapier::geometry::{ColliderHandle, ColliderSet};
 use std::cell::{Cell, OnceCell};
 
-/// Linear and angular velocity.
-type Twist = (DVec3, DVec3);
+/// Linear and angular velocity, or change of it.
+#[derive(Clone, Copy, Debug, Default)]
+struct Twist {
+    linear: Vec3,
+    angular: Vec3,
+}
+
+impl Twist {
+    fn new(linear: DVec3, angular: DVec3) -> Self {
+        Self {
+            linear: linear.as_vec3(),
+            angular: angular.as_vec3(),
+        }
+    }
+}
 
 /// What a step was to do to a body.
 #[derive(Clone, Copy, Debug)]
@@ -29,8 +42,8 @@ pub(super) struct Expected {
     /// What the same load does to a free body.
     free_change: Twist,
     /// The elements' impulse and angular impulse.
-    given: (DVec3, DVec3),
-    time: f64,
+    given: Twist,
+    time: f32,
 }
 
 /// Mobility above which a body counts as free.
@@ -39,61 +52,76 @@ const FREE: f64 = 0.999;
 impl Expected {
     /// A free body that does not turn: from one velocity to another, given an impulse.
     pub(super) fn straight(from: DVec3, to: DVec3, pulled: DVec3, given: DVec3, time: f64) -> Self {
+        let straight = |v: DVec3| Twist::new(v, DVec3::ZERO);
         Self {
-            start: (from, DVec3::ZERO),
-            ordered: Some((to, DVec3::ZERO)),
-            free_change: (pulled, DVec3::ZERO),
-            given: (given, DVec3::ZERO),
-            time,
+            start: straight(from),
+            ordered: Some(straight(to)),
+            free_change: straight(pulled),
+            given: straight(given),
+            time: time as f32,
         }
     }
 
     /// `free` is the body at the start of the step with its full mass, `end` after it.
     pub(super) fn new(free: &Body, end: &Body, time: f64) -> Self {
-        let start = (free.velocity, free.angular_velocity());
         let inverse_inertia = free.inverse_inertia();
         Self {
-            start,
-            ordered: (end.mobility == 1.0).then(|| (end.velocity, end.angular_velocity())),
-            free_change: (
+            start: Twist::new(free.velocity, free.angular_velocity()),
+            ordered: (end.mobility == 1.0)
+                .then(|| Twist::new(end.velocity, end.angular_velocity())),
+            free_change: Twist::new(
                 free.inverse_mass * end.given.0 + time * free.acceleration,
                 inverse_inertia * (end.given.1 + time * free.torque),
             ),
-            given: end.given,
-            time,
+            given: Twist::new(end.given.0, end.given.1),
+            time: time as f32,
         }
     }
 
     /// What the load did, in terms of a free body's velocities before the engine's own damping.
     fn change(&self, body: &RapierBody) -> Twist {
-        let undamped = |v: DVec3, damping: f32| v * (1.0 + self.time * f64::from(damping));
-        (
-            undamped(body.linvel().as_dvec3(), body.linear_damping()) - self.start.0,
-            undamped(body.angvel().as_dvec3(), body.angular_damping()) - self.start.1,
-        )
+        let undamped = |v: Vec3, damping: f32| v * (1.0 + self.time * damping);
+        Twist {
+            linear: undamped(body.linvel(), body.linear_damping()) - self.start.linear,
+            angular: undamped(body.angvel(), body.angular_damping()) - self.start.angular,
+        }
     }
 
     /// Whether the body went where it was to go: then nothing held it.
-    fn was_met(&self, change: Twist) -> bool {
+    fn was_met(&self, change: &Twist) -> bool {
         let Some(ordered) = self.ordered else {
             return false;
         };
-        let close = |change: DVec3, start: DVec3, ordered: DVec3, free: DVec3| {
-            let rounding = 1e-5 * (start.length() + ordered.length()) + 1e-6;
-            (change - (ordered - start)).length() <= 1e-3 * free.length() + rounding
+        let size = |v: Vec3| v.abs().max_element();
+        let close = |change: Vec3, start: Vec3, ordered: Vec3, free: Vec3| {
+            let rounding = 1e-5 * (size(start) + size(ordered)) + 1e-6;
+            size(change - (ordered - start)) <= 1e-3 * size(free) + rounding
         };
-        let angular = self.given.1 == DVec3::ZERO
-            || close(change.1, self.start.1, ordered.1, self.free_change.1);
-        close(change.0, self.start.0, ordered.0, self.free_change.0) && angular
+        close(
+            change.linear,
+            self.start.linear,
+            ordered.linear,
+            self.free_change.linear,
+        ) && (self.given.angular == Vec3::ZERO
+            || close(
+                change.angular,
+                self.start.angular,
+                ordered.angular,
+                self.free_change.angular,
+            ))
     }
 
     /// Share of the free motion along the elements' load that was left; none if the load was too small
     /// to tell.
-    fn share(&self, change: Twist) -> Option<f64> {
-        let along = |twist: Twist| twist.0.dot(self.given.0) + twist.1.dot(self.given.1);
-        let free = along(self.free_change);
-        let scale = self.given.0.length() * self.free_change.0.length()
-            + self.given.1.length() * self.free_change.1.length();
+    fn share(&self, change: &Twist) -> Option<f64> {
+        let dot = |a: Vec3, b: Vec3| a.as_dvec3().dot(b.as_dvec3());
+        let length = |v: Vec3| v.as_dvec3().length();
+        let given = &self.given;
+        let along =
+            |twist: &Twist| dot(twist.linear, given.linear) + dot(twist.angular, given.angular);
+        let free = along(&self.free_change);
+        let scale = length(given.linear) * length(self.free_change.linear)
+            + length(given.angular) * length(self.free_change.angular);
         (free.abs() > 0.05 * scale && scale > 0.0).then(|| (along(change) / free).clamp(0.0, 1.0))
     }
 }
@@ -125,7 +153,7 @@ pub(super) fn observe(
         return;
     };
     let change = expected.change(body);
-    if expected.was_met(change) {
+    if expected.was_met(&change) {
         row.support = Support::None;
         row.mobility = 1.0;
         return;
@@ -133,7 +161,7 @@ pub(super) fn observe(
     row.support = support(row.handle, body, simulation, joints);
     if row.support == Support::None {
         row.mobility = 1.0;
-    } else if let Some(share) = expected.share(change) {
+    } else if let Some(share) = expected.share(&change) {
         row.mobility = if share > FREE { 1.0 } else { share };
     }
 }

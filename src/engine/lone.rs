@@ -23,7 +23,6 @@ struct Point {
     velocity: DVec3,
     acceleration: DVec3,
     inverse_mass: f64,
-    asleep: bool,
 }
 
 /// What became of a lone element.
@@ -55,7 +54,6 @@ fn point(row: &BodyRow, index: usize, body: &RapierBody, step: &Step) -> Option<
         acceleration: step.engine.gravity.as_dvec3() * f64::from(body.gravity_scale())
             + inverse_mass * row.user.force.as_dvec3(),
         inverse_mass,
-        asleep: body.is_sleeping(),
     })
 }
 
@@ -70,42 +68,54 @@ impl Step<'_> {
         stale: &mut bool,
     ) -> Handled {
         let time = self.plan.time;
+        let mut sleepers = 0;
+        for b in members {
+            let Some(body) = self.movable(set, bodies[*b].handle, stale) else {
+                row.active = false;
+                return Handled::Done;
+            };
+            sleepers += usize::from(body.is_sleeping());
+        }
+        if sleepers > 0 {
+            let disturbed = row.changed || members.iter().any(|b| bodies[*b].disturbed);
+            if sleepers < members.len() || disturbed || self.has_moved(row, set) {
+                return Handled::No;
+            }
+            row.active = false;
+            return Handled::Done;
+        }
         let mut points = [Point::default(); 2];
         for (point_at, held) in points.iter_mut().zip(&row.held) {
-            *point_at = match *held {
+            let found = match *held {
                 Held::Body {
                     handle,
                     movable: Some(index),
                     ..
-                } => {
-                    let Some(body) = self.movable(set, handle, stale) else {
-                        row.active = false;
-                        return Handled::Done;
-                    };
-                    match point(&bodies[index], index, body, self) {
-                        Some(point) => point,
-                        None => return Handled::No,
-                    }
-                }
+                } => set
+                    .get(handle)
+                    .and_then(|body| point(&bodies[index], index, body, self)),
                 _ => {
                     let (from, to) = self.path(held, set);
-                    Point {
+                    Some(Point {
                         position: from,
                         velocity: (to - from) / time,
                         ..Point::default()
-                    }
+                    })
                 }
             };
+            match found {
+                Some(point) => *point_at = point,
+                None => return Handled::No,
+            }
         }
         let [a, b] = points;
         let d = b.position - a.position;
         let scale = a.position.abs().max(b.position.abs()).max_element();
         let rounding = 1e-9 * scale.max(1e-3);
         let rest_length = row.parameters.rest_length.map(f64::from);
-        let asleep = points.iter().any(|p| p.asleep);
         let coincide = d.length_squared() <= rounding * rounding;
-        if asleep || (coincide && row.memory.direction.is_none() && rest_length != Some(0.0)) {
-            return self.rest(row, bodies, members, set, &points);
+        if coincide && row.memory.direction.is_none() && rest_length != Some(0.0) {
+            return Handled::No;
         }
         let inverse_mass = a.inverse_mass + b.inverse_mass;
         let omega = (f64::from(row.parameters.stiffness) * inverse_mass).sqrt();
@@ -156,24 +166,6 @@ impl Step<'_> {
                 set,
             );
         }
-        Handled::Done
-    }
-
-    /// Sleeping through the step is ordinary; the rest is not.
-    fn rest(
-        &self,
-        row: &mut ElementRow,
-        bodies: &[BodyRow],
-        members: &[usize],
-        set: &RigidBodySet,
-        points: &[Point; 2],
-    ) -> Handled {
-        let all_asleep = points.iter().all(|p| p.asleep || p.body.is_none());
-        let disturbed = members.iter().any(|b| bodies[*b].disturbed);
-        if !all_asleep || disturbed || row.changed || self.has_moved(row, set) {
-            return Handled::No;
-        }
-        row.active = false;
         Handled::Done
     }
 

@@ -10,19 +10,12 @@ use bevy::math::DVec3;
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
 
-/// What is written back to an element.
-type Shown<'a> = (
-    Entity,
-    &'a mut SpringReadout,
-    Option<&'a mut Spring>,
-    Option<&'a mut SpringDamper>,
-);
-
 /// Writes readouts, captured rest lengths, and faults found while solving.
 pub(crate) fn measure(
     mut scene: ResMut<Scene>,
     sets: Query<&RapierRigidBodySet>,
-    mut elements: Query<Shown, IsElement>,
+    mut readouts: Query<(Entity, &mut SpringReadout), IsElement>,
+    mut springs: Query<(Option<&mut Spring>, Option<&mut SpringDamper>), IsElement>,
     contexts: Query<(&RapierContextSimulation, &RapierContextJoints)>,
     mut commands: Commands,
 ) {
@@ -31,52 +24,52 @@ pub(crate) fn measure(
         return;
     }
     look(scene, &sets, &contexts);
+    let time = scene.time;
+    let mut show = |row: &mut ElementRow, readout: &mut Mut<SpringReadout>| {
+        if let Some(points) = row.see(time, &scene.bodies, &sets) {
+            report(row, &mut commands);
+            if std::mem::take(&mut row.captured) && row.passing.is_none() {
+                write_back(row, &mut springs);
+            }
+            readout.set_if_neq(row.read_out(points, time));
+        }
+    };
     // The rows stand in the query's order; if something came or went within the tick, from there on
     // each is looked up.
     let mut rows = scene.elements.iter_mut();
-    for (entity, mut readout, spring, pair) in &mut elements {
-        let Some(row) = rows.as_slice().first() else {
-            break;
-        };
-        if row.entity != entity {
+    for (entity, mut readout) in &mut readouts {
+        if rows
+            .as_slice()
+            .first()
+            .is_none_or(|row| row.entity != entity)
+        {
             break;
         }
         if let Some(row) = rows.next() {
-            let rest = [spring.map(rest_of_spring), pair.map(rest_of_pair)];
-            row.show(
-                scene.time,
-                &scene.bodies,
-                &sets,
-                &mut readout,
-                rest,
-                &mut commands,
-            );
+            show(row, &mut readout);
         }
     }
     for row in rows {
-        if let Ok((_, mut readout, spring, pair)) = elements.get_mut(row.entity) {
-            let rest = [spring.map(rest_of_spring), pair.map(rest_of_pair)];
-            row.show(
-                scene.time,
-                &scene.bodies,
-                &sets,
-                &mut readout,
-                rest,
-                &mut commands,
-            );
+        if let Ok((_, mut readout)) = readouts.get_mut(row.entity) {
+            show(row, &mut readout);
         }
     }
 }
 
-/// A rest length within its component, which is marked as changed only if it is set.
-type Rest<'a> = Mut<'a, Option<f32>>;
-
-fn rest_of_spring(spring: Mut<Spring>) -> Rest {
-    spring.map_unchanged(|s| &mut s.rest_length)
-}
-
-fn rest_of_pair(pair: Mut<SpringDamper>) -> Rest {
-    pair.map_unchanged(|p| &mut p.rest_length)
+/// Writes a captured rest length into the element's component.
+fn write_back(
+    row: &ElementRow,
+    springs: &mut Query<(Option<&mut Spring>, Option<&mut SpringDamper>), IsElement>,
+) {
+    let Ok((spring, pair)) = springs.get_mut(row.entity) else {
+        return;
+    };
+    if let Some(mut spring) = spring {
+        spring.rest_length = row.parameters.rest_length;
+    }
+    if let Some(mut pair) = pair {
+        pair.rest_length = row.parameters.rest_length;
+    }
 }
 
 /// Sees where the stepped bodies are, and what the step did to them.
@@ -119,22 +112,17 @@ fn look(
 }
 
 impl ElementRow {
-    /// Shows the element's state, if anything about it can have changed.
-    fn show(
+    /// Position and velocity of both ends, if anything about the element can have changed; notes where
+    /// they are.
+    fn see(
         &mut self,
         time: f64,
         bodies: &[BodyRow],
         sets: &Query<&RapierRigidBodySet>,
-        readout: &mut Mut<SpringReadout>,
-        rest_lengths: [Option<Rest>; 2],
-        commands: &mut Commands,
-    ) {
-        if self.fault.is_some() {
-            return;
-        }
-        let held = self.held.iter().all(|held| held.movable().is_none());
-        if !self.active && !held {
-            return;
+    ) -> Option<[(DVec3, DVec3); 2]> {
+        let held = || self.held.iter().all(|held| held.movable().is_none());
+        if self.fault.is_some() || !(self.active || held()) {
+            return None;
         }
         let points = self
             .held
@@ -146,7 +134,6 @@ impl ElementRow {
             self.parameters.rest_length = Some(length);
             self.captured = true;
         }
-        report(self, commands);
         for (place, (held, point)) in self
             .memory
             .places
@@ -163,13 +150,7 @@ impl ElementRow {
                 Held::Body { .. } => point.0,
             });
         }
-        if std::mem::take(&mut self.captured) && self.passing.is_none() {
-            for mut rest_length in rest_lengths.into_iter().flatten() {
-                *rest_length = self.parameters.rest_length;
-            }
-        }
-        let new = self.read_out(points, time);
-        readout.set_if_neq(new);
+        Some(points)
     }
 
     fn read_out(&self, [a, b]: [(DVec3, DVec3); 2], time: f64) -> SpringReadout {

@@ -1,6 +1,6 @@
 //! The only room that knows Rapier: bodies and elements into flat arrays, forces back.
 //!
-//! One step runs [`prepare::prepare`] → [`solve::solve`] → (Rapier steps) → [`measure::measure`].
+//! One step runs [`prepare::prepare`] → [`forces::read_users`] → [`solve::solve`] → (Rapier steps) → [`measure::measure`].
 //! [`scene`] holds what is kept between; [`find`] fills it where [`watch`] or an element says that it
 //! changed. A lone element goes through [`lone`], everything else through [`assembly`].
 
@@ -25,6 +25,7 @@ mod timestep;
 mod watch;
 
 pub use forces::SpringLoad;
+pub(crate) use forces::read_users;
 pub(crate) use measure::measure;
 pub(crate) use prepare::prepare;
 pub(crate) use scene::Scene;

@@ -1,4 +1,4 @@
-//! The step's system: the user's shares, then component by component.
+//! The step's system: component by component.
 
 use super::assembly::{Assembly, Members};
 use super::body::{Engine, FARTHEST_TURN};
@@ -57,7 +57,6 @@ pub(crate) fn solve(
     mut commands: Commands,
 ) {
     let scene = &mut *scene;
-    forces::read_users(scene, &mut loads);
     if scene.renewed {
         forces::release(scene, &mut loads, &mut sets, &mut commands);
     }

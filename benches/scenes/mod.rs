@@ -1,0 +1,189 @@
+//! Scenes of many springs, and a clock around our own systems.
+
+use bevy::ecs::schedule::SingleThreadedExecutor;
+use bevy::prelude::*;
+use bevy::time::TimeUpdateStrategy;
+use bevy_coilover::prelude::*;
+use bevy_rapier3d::prelude::*;
+use std::time::{Duration, Instant};
+
+/// What joins two bodies.
+#[derive(Clone, Copy, Debug)]
+pub enum Link {
+    /// Nothing: each flies on at a speed of its own.
+    Nothing,
+    Ours,
+    Joint,
+}
+
+/// Which springs.
+#[derive(Clone, Copy, Debug)]
+pub enum Scene {
+    /// Pairs of their own, swinging along their line and across it.
+    Isolated,
+    /// The same pairs at rest, asleep.
+    Asleep,
+    /// One long chain, hung at both ends.
+    Chain,
+    /// A cubic lattice with springs along its edges.
+    Lattice,
+}
+
+/// Time spent in our systems since it was last set to zero.
+#[derive(Resource, Default)]
+pub struct Own(pub Duration);
+
+#[derive(Resource)]
+struct Since(Instant);
+
+fn start(mut since: ResMut<Since>) {
+    since.0 = Instant::now();
+}
+
+fn stop(since: Res<Since>, mut own: ResMut<Own>) {
+    own.0 += since.0.elapsed();
+}
+
+impl Scene {
+    /// About `count` springs without gravity, on bodies without colliders; already under way.
+    pub fn app(self, count: u32, link: Link, microsteps: u32) -> App {
+        let mut app = App::new();
+        app.add_plugins((
+            MinimalPlugins,
+            TransformPlugin,
+            RapierPhysicsPlugin::<NoUserData>::default().in_fixed_schedule(),
+            CoiloverPlugin::default().with_microsteps(microsteps),
+        ))
+        .insert_resource(TimestepMode::Fixed {
+            dt: 1.0 / 60.0,
+            substeps: 1,
+        })
+        .insert_resource(Time::<Fixed>::from_hz(60.0))
+        .insert_resource(Since(Instant::now()))
+        .init_resource::<Own>();
+        let before = (
+            start
+                .after(PhysicsSet::SyncBackend)
+                .before(CoiloverSystems::Prepare),
+            start
+                .after(PhysicsSet::Writeback)
+                .before(CoiloverSystems::Readout),
+        );
+        let after = (
+            stop.after(CoiloverSystems::Solve)
+                .before(PhysicsSet::StepSimulation),
+            stop.after(CoiloverSystems::Readout),
+        );
+        app.add_systems(FixedUpdate, (before, after));
+        // So that nothing else runs within our time; the engine has threads of its own.
+        app.edit_schedule(FixedUpdate, |schedule| {
+            schedule.set_executor(SingleThreadedExecutor::new());
+        });
+        let tick = app.world().resource::<Time<Fixed>>().timestep();
+        app.insert_resource(TimeUpdateStrategy::ManualDuration(tick));
+        app.finish();
+        app.cleanup();
+        app.update();
+        match self {
+            Self::Isolated => pairs(app.world_mut(), count, link, true),
+            Self::Asleep => pairs(app.world_mut(), count, link, false),
+            Self::Chain => chain(app.world_mut(), count, link),
+            Self::Lattice => lattice(app.world_mut(), count, link),
+        }
+        let settle = if matches!(self, Self::Asleep) {
+            200
+        } else {
+            20
+        };
+        for _ in 0..settle {
+            app.update();
+        }
+        app
+    }
+}
+
+fn body(world: &mut World, at: Vec3, velocity: Vec3) -> Entity {
+    world
+        .spawn((
+            RigidBody::Dynamic,
+            AdditionalMassProperties::Mass(1.0),
+            GravityScale(0.0),
+            Velocity::linear(velocity),
+            Transform::from_translation(at),
+        ))
+        .id()
+}
+
+fn join(world: &mut World, a: Entity, b: Entity, link: Link) {
+    match link {
+        Link::Nothing => {}
+        Link::Ours => {
+            world.spawn(
+                SpringDamper::new(a, b)
+                    .with_stiffness(40.0)
+                    .with_damping(0.1)
+                    .with_rest_length(1.0),
+            );
+        }
+        Link::Joint => {
+            let joint = SpringJointBuilder::new(1.0, 40.0, 0.1);
+            world.entity_mut(b).insert(ImpulseJoint::new(a, joint));
+        }
+    }
+}
+
+fn pairs(world: &mut World, count: u32, link: Link, moving: bool) {
+    for i in 0..count {
+        let at = Vec3::new((i % 100) as f32 * 4.0, (i / 100) as f32 * 4.0, 0.0);
+        let (stretch, across) = if moving {
+            (1.2, Vec3::new(0.0, 0.3, 0.1))
+        } else {
+            (1.0, Vec3::ZERO)
+        };
+        let a = body(world, at, across);
+        let b = body(world, at + Vec3::X * stretch, -across);
+        join(world, a, b, link);
+    }
+}
+
+fn chain(world: &mut World, count: u32, link: Link) {
+    let mut last = world.spawn(Transform::default()).id();
+    for i in 1..=count {
+        let at = Vec3::X * 1.05 * i as f32;
+        let next = if i < count {
+            body(world, at, Vec3::Y * (i % 2) as f32 * 0.2)
+        } else {
+            world.spawn(Transform::from_translation(at)).id()
+        };
+        join(world, last, next, link);
+        last = next;
+    }
+}
+
+/// The cube whose edges number about `count`.
+fn lattice(world: &mut World, count: u32, link: Link) {
+    let n = ((f64::from(count) / 3.0).cbrt().round() as u32 + 1).max(2);
+    let at = |x: u32, y: u32, z: u32| Vec3::new(x as f32, y as f32, z as f32) * 1.05;
+    let mut bodies = Vec::new();
+    for x in 0..n {
+        for y in 0..n {
+            for z in 0..n {
+                let kick = Vec3::Y * ((x + z) % 2) as f32 * 0.2;
+                bodies.push(body(world, at(x, y, z), kick));
+            }
+        }
+    }
+    let index = |x: u32, y: u32, z: u32| ((x * n + y) * n + z) as usize;
+    for x in 0..n {
+        for y in 0..n {
+            for z in 0..n {
+                let here = bodies[index(x, y, z)];
+                for (nx, ny, nz) in [(x + 1, y, z), (x, y + 1, z), (x, y, z + 1)] {
+                    if nx < n && ny < n && nz < n {
+                        join(world, here, bodies[index(nx, ny, nz)], link);
+                    }
+                }
+            }
+        }
+    }
+}
