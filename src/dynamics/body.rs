@@ -170,7 +170,8 @@ impl Body {
         self.apply_angular(angular, inverse_inertia);
     }
 
-    fn apply_angular(&mut self, impulse: DVec3, inverse_inertia: DMat3) {
+    /// An angular impulse (N m s).
+    pub(crate) fn apply_angular(&mut self, impulse: DVec3, inverse_inertia: DMat3) {
         match &mut self.spin {
             Spin::Still => {}
             Spin::Free { momentum } => *momentum += impulse,

@@ -49,6 +49,9 @@ pub(crate) struct Component {
     pub bodies: Vec<Body>,
     pub elements: Vec<Element>,
     pub memo: Memo,
+    /// Velocities are not mapped to the true ones and back: what delivers the motion can order only the
+    /// stepped ones.
+    pub stepped: bool,
 }
 
 impl Component {
@@ -143,7 +146,8 @@ impl Component {
         let guard = alone
             .then(|| Guard::begin(&self.elements[0], &self.bodies, step))
             .flatten();
-        if alone {
+        let mapped = alone && !self.stepped;
+        if mapped {
             kick::map_velocity(
                 &self.elements[0],
                 &mut self.bodies,
@@ -162,7 +166,7 @@ impl Component {
             self.drift(step / 2.0);
             self.aim(step);
         }
-        if alone {
+        if mapped {
             kick::map_velocity(
                 &self.elements[0],
                 &mut self.bodies,

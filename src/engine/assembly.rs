@@ -67,6 +67,7 @@ impl Assembly {
         component.bodies.clear();
         component.elements.clear();
         self.start.clear();
+        component.stepped = false;
         self.state = State::Resting;
         for (slot, b) in members.bodies.iter().enumerate() {
             let row = &mut bodies[*b];
@@ -74,7 +75,12 @@ impl Assembly {
             let Some(body) = step.movable(set, row.handle, stale) else {
                 return;
             };
-            let free = read(body, step.engine.gravity, &row.user, row.turns);
+            let mut free = read(body, step.engine.gravity, &row.user, row.turns);
+            if let Some(link) = row.link {
+                free.velocity = link.linear.as_dvec3();
+                free.set_angular_velocity(link.angular.as_dvec3());
+            }
+            component.stepped |= step.lag(row.handle, body) > 0.0;
             component.bodies.push(free);
             self.start.push(free);
         }
@@ -113,6 +119,40 @@ impl Assembly {
             };
             let mobility = held::mobility(row, support, &self.start[slot], load.0);
             self.component.bodies[slot] = held::held(&self.start[slot], mobility);
+        }
+        if self.component.stepped {
+            self.look_back(step, members, bodies, set);
+        }
+    }
+
+    /// Sees links of multibodies where they were a little earlier: see [`Step::lag`].
+    fn look_back(
+        &mut self,
+        step: &Step,
+        members: &Members,
+        bodies: &[BodyRow],
+        set: &RigidBodySet,
+    ) {
+        for (slot, b) in members.bodies.iter().enumerate() {
+            let row = &bodies[*b];
+            let lag = set.get(row.handle).map_or(0.0, |b| step.lag(row.handle, b));
+            if lag == 0.0 {
+                continue;
+            }
+            if row.link.is_none() {
+                // Later the velocity is that of then, too; before the first step it is of now.
+                let load = self.component.load_on(slot);
+                let body = &mut self.component.bodies[slot];
+                let inverse_inertia = body.inverse_inertia();
+                body.apply_external(-lag, inverse_inertia);
+                body.apply(-lag * load.0, DVec3::ZERO, inverse_inertia);
+                body.apply_angular(-lag * load.1, inverse_inertia);
+                body.given = (DVec3::ZERO, DVec3::ZERO);
+                body.drift(-lag);
+                body.position -= 0.5 * lag * lag * (body.inverse_mass * load.0 + body.acceleration);
+            } else {
+                self.component.bodies[slot].drift(-lag);
+            }
         }
     }
 
@@ -159,7 +199,12 @@ impl Assembly {
                 let (start, end) = (&self.start[slot], &self.component.bodies[slot]);
                 let terms = step.terms(row.handle, body);
                 raised_iterations = terms.raised_iterations;
-                row.expected = Some(Expected::new(start, end, step.plan.time));
+                let expected = Expected::new(start, end, step.plan.time);
+                row.expected = Some(if terms.takes_impulses {
+                    expected
+                } else {
+                    expected.of_link(&terms)
+                });
                 share = if end.mobility < 1.0 {
                     held::deliver(body, start, end.given, &terms)
                 } else {

@@ -19,9 +19,9 @@ use std::cell::{Cell, OnceCell};
 
 /// Linear and angular velocity, or change of it.
 #[derive(Clone, Copy, Debug, Default)]
-struct Twist {
-    linear: Vec3,
-    angular: Vec3,
+pub(super) struct Twist {
+    pub linear: Vec3,
+    pub angular: Vec3,
 }
 
 impl Twist {
@@ -44,6 +44,8 @@ pub(super) struct Expected {
     /// The elements' impulse and angular impulse.
     given: Twist,
     time: f32,
+    /// Substeps of a link of a multibody, whose velocity the engine shows one substep late.
+    link: Option<u32>,
 }
 
 /// Mobility above which a body counts as free.
@@ -59,6 +61,7 @@ impl Expected {
             free_change: straight(pulled),
             given: straight(given),
             time: time as f32,
+            link: None,
         }
     }
 
@@ -75,15 +78,33 @@ impl Expected {
             ),
             given: Twist::new(end.given.0, end.given.1),
             time: time as f32,
+            link: None,
         }
     }
 
+    /// The same of a link of a multibody.
+    pub(super) fn of_link(mut self, terms: &Terms) -> Self {
+        self.link = Some(terms.schedule.substeps).filter(|n| *n > 1);
+        self
+    }
+
+    /// Velocities that a link really has, told from those that the engine shows: what it had at the
+    /// start, and all of the change of which one substep is not shown yet.
+    fn of_late(&self, shown: Twist) -> Option<Twist> {
+        let n = self.link? as f32;
+        let whole = |from: Vec3, to: Vec3| from + (to - from) * (n / (n - 1.0));
+        Some(Twist {
+            linear: whole(self.start.linear, shown.linear),
+            angular: whole(self.start.angular, shown.angular),
+        })
+    }
+
     /// What the load did, in terms of a free body's velocities before the engine's own damping.
-    fn change(&self, body: &RapierBody) -> Twist {
+    fn change(&self, now: &Twist, body: &RapierBody) -> Twist {
         let undamped = |v: Vec3, damping: f32| v * (1.0 + self.time * damping);
         Twist {
-            linear: undamped(body.linvel(), body.linear_damping()) - self.start.linear,
-            angular: undamped(body.angvel(), body.angular_damping()) - self.start.angular,
+            linear: undamped(now.linear, body.linear_damping()) - self.start.linear,
+            angular: undamped(now.angular, body.angular_damping()) - self.start.angular,
         }
     }
 
@@ -152,7 +173,12 @@ pub(super) fn observe(
     let Some(expected) = row.expected.take() else {
         return;
     };
-    let change = expected.change(body);
+    let shown = Twist {
+        linear: body.linvel(),
+        angular: body.angvel(),
+    };
+    row.link = expected.of_late(shown);
+    let change = expected.change(&row.link.unwrap_or(shown), body);
     if expected.was_met(&change) {
         row.support = Support::None;
         row.mobility = 1.0;

@@ -38,7 +38,8 @@ const LOCKED: LockedAxes = LockedAxes::TRANSLATION_LOCKED;
 /// The centre of mass of an ordinary movable body.
 fn point(row: &BodyRow, index: usize, body: &RapierBody, step: &Step) -> Option<Point> {
     let properties = &body.mass_properties().local_mprops;
-    if row.support != Support::None || body.locked_axes().intersects(LOCKED) {
+    let ordinary = row.support == Support::None && step.lag(row.handle, body) == 0.0;
+    if !ordinary || body.locked_axes().intersects(LOCKED) {
         return None;
     }
     let mut position = body.position().translation.as_dvec3();

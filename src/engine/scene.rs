@@ -4,7 +4,7 @@ use super::assembly::Assembly;
 use super::check::{Fault, Parameters};
 use super::forces::Share;
 use super::group::Groups;
-use super::held::{Expected, Support};
+use super::held::{Expected, Support, Twist};
 use super::sleep::Rest;
 use crate::dynamics::kick::Memo;
 use crate::dynamics::step::Outcome;
@@ -112,6 +112,8 @@ pub(super) struct BodyRow {
     pub support: Support,
     /// What the coming step is to do.
     pub expected: Option<Expected>,
+    /// Velocities of a link of a multibody, which the engine shows too late.
+    pub link: Option<Twist>,
     /// Centre of mass and its velocity after the last step.
     pub now: (DVec3, DVec3),
 }
@@ -133,6 +135,7 @@ impl BodyRow {
             mobility: 1.0,
             support: Support::Unknown,
             expected: None,
+            link: None,
             now: (DVec3::ZERO, DVec3::ZERO),
         }
     }

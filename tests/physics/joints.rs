@@ -158,3 +158,42 @@ fn a_wheel_on_a_slider_is_the_quarter_car_again() {
     assert!(worst < 0.02, "{worst}");
     println!("slider: largest error {worst:.4} of the sag");
 }
+
+#[test]
+fn a_spring_between_two_links_of_a_multibody_keeps_its_frequency_and_its_energy() {
+    // Two carts on one rail, the second hung from the first: reduced coordinates, so the engine knows no
+    // free bodies there. Between them a spring; their centre of mass stays where it is.
+    for (k, c) in [(40.0_f32, 0.0_f32), (400.0, 0.0), (400.0, 4.0)] {
+        let masses = [2.0_f32, 1.0];
+        let mut lab = Lab::weightless();
+        let rail = lab.spawn((RigidBody::Fixed, Transform::default()));
+        // Links start where their joint's coordinate is zero.
+        let slider = |at: f32| PrismaticJointBuilder::new(Vec3::X).local_anchor1(Vec3::X * at);
+        let first = lab.spawn((
+            body(masses[0], Vec3::ZERO),
+            MultibodyJoint::new(rail, slider(0.0).build().into()),
+        ));
+        let second = lab.spawn((
+            body(masses[1], Vec3::X * 1.1),
+            MultibodyJoint::new(first, slider(1.1).build().into()),
+        ));
+        lab.spawn(
+            SpringDamper::new(first, second)
+                .with_stiffness(k)
+                .with_damping(c)
+                .with_rest_length(1.0),
+        );
+        let effective = f64::from(masses[0] * masses[1] / (masses[0] + masses[1]));
+        let omega = (f64::from(k) / effective).sqrt();
+        let zeta = f64::from(c) / (2.0 * omega * effective);
+        let mut worst = 0.0_f64;
+        for i in 1..=300 {
+            lab.tick();
+            let length = f64::from((lab.position(second) - lab.position(first)).x);
+            let wanted = exact(omega, zeta, 0.1, 0.0, f64::from(i) * f64::from(DT));
+            worst = worst.max((length - 1.0 - wanted).abs() / 0.1);
+        }
+        println!("multibody, k {k} c {c}: largest error {worst:.4} of the amplitude");
+        assert!(worst < 0.02, "k {k} c {c}: {worst}");
+    }
+}
