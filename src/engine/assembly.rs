@@ -5,6 +5,7 @@ use super::check::Fault;
 use super::forces::Share;
 use super::held::{self, Expected, Support};
 use super::jointed;
+use super::passive::Ledger;
 use super::scene::{BodyRow, ElementRow, Held};
 use super::sleep::omega_of;
 use super::step::Step;
@@ -23,6 +24,7 @@ pub(crate) struct Assembly {
     start: Vec<Body>,
     state: State,
     outcome: Outcome,
+    ledger: Ledger,
 }
 
 /// What there is to do.
@@ -51,6 +53,11 @@ impl Assembly {
         } else {
             0
         }
+    }
+
+    /// Readies it for another component.
+    pub(super) fn forget(&mut self) {
+        self.ledger.clear();
     }
 
     /// Reads bodies and elements, and decides whether there is anything to do.
@@ -101,6 +108,18 @@ impl Assembly {
         }
         if !awake {
             return;
+        }
+        if disturbed {
+            self.ledger.clear();
+        }
+        let handles = || members.bodies.iter().map(|b| bodies[*b].handle);
+        if handles().any(|handle| set.get(handle).is_some_and(|b| !b.colliders().is_empty())) {
+            // It can touch something.
+            let rows = members.bodies.iter().map(|b| &bodies[*b]);
+            let time = step.plan.time;
+            self.ledger
+                .settle(&component.elements, &mut self.start, rows, time);
+            component.bodies.clone_from(&self.start);
         }
         self.state = if sound && !component.elements.is_empty() {
             State::Ready
@@ -206,7 +225,7 @@ impl Assembly {
                     expected.of_link(&terms)
                 });
                 share = if end.mobility < 1.0 {
-                    held::deliver(body, start, end.given, &terms)
+                    held::deliver(body, start, end.given, row.support, &terms)
                 } else {
                     deliver(body, start, end, &terms, &step.engine)
                 };

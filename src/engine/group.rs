@@ -1,6 +1,6 @@
 //! Which elements have to be solved together.
 
-use super::assembly::Assembly;
+use super::assembly::{Assembly, Members};
 use super::scene::{BodyRow, ElementRow, Held};
 use bevy::prelude::Entity;
 use std::ops::Range;
@@ -106,18 +106,22 @@ impl Groups {
         assemblies.resize_with(count, Assembly::default);
     }
 
+    /// Gives a lone element's group an assembly of its own after all.
+    pub(super) fn promote(&mut self, group: usize, assemblies: &mut Vec<Assembly>) {
+        self.list[group].assembly = Some(assemblies.len());
+        assemblies.push(Assembly::default());
+    }
+
     pub(super) fn list(&self) -> &[Group] {
         &self.list
     }
 
-    /// Indices of a group's elements.
-    pub(super) fn elements(&self, group: &Group) -> &[usize] {
-        &self.elements[group.elements.clone()]
-    }
-
-    /// Indices of a group's bodies.
-    pub(super) fn bodies(&self, group: &Group) -> &[usize] {
-        &self.bodies[group.bodies.clone()]
+    /// Indices of a group's elements and bodies.
+    pub(super) fn members(&self, group: &Group) -> Members<'_> {
+        Members {
+            elements: &self.elements[group.elements.clone()],
+            bodies: &self.bodies[group.bodies.clone()],
+        }
     }
 }
 

@@ -9,12 +9,13 @@
 use super::scene::BodyRow;
 use super::step::Terms;
 use crate::dynamics::body::{Body, Spin};
+use crate::dynamics::delivery::force_for;
 use bevy::math::{DVec3, Vec3};
 use bevy_rapier3d::parry;
 use bevy_rapier3d::parry::bounding_volume::{Aabb, BoundingVolume};
 use bevy_rapier3d::prelude::{ExternalForce, RapierContextJoints, RapierContextSimulation};
 use bevy_rapier3d::rapier::dynamics::{RigidBody as RapierBody, RigidBodyHandle, RigidBodySet};
-use bevy_rapier3d::rapier::geometry::{ColliderHandle, ColliderSet};
+use bevy_rapier3d::rapier::geometry::{Collider, ColliderHandle, ColliderSet};
 use std::cell::{Cell, OnceCell};
 
 /// Linear and angular velocity, or change of it.
@@ -43,23 +44,36 @@ pub(super) struct Expected {
     free_change: Twist,
     /// The elements' impulse and angular impulse.
     given: Twist,
+    /// What these do alone to a free body.
+    own_change: Twist,
     time: f32,
     /// Substeps of a link of a multibody, whose velocity the engine shows one substep late.
     link: Option<u32>,
 }
 
+/// Share of the elements' load that must be left after outside forces for mobility to be measured.
+const BALANCE: f64 = 0.02;
+
 /// Mobility above which a body counts as free.
 const FREE: f64 = 0.999;
 
 impl Expected {
-    /// A free body that does not turn: from one velocity to another, given an impulse.
-    pub(super) fn straight(from: DVec3, to: DVec3, pulled: DVec3, given: DVec3, time: f64) -> Self {
+    /// A free body that does not turn: from one velocity to another, given an impulse that changes it by
+    /// its `own`, while outside forces change it by `pulled`.
+    pub(super) fn straight(
+        [from, to]: [DVec3; 2],
+        own: DVec3,
+        pulled: DVec3,
+        given: DVec3,
+        time: f64,
+    ) -> Self {
         let straight = |v: DVec3| Twist::new(v, DVec3::ZERO);
         Self {
             start: straight(from),
             ordered: Some(straight(to)),
-            free_change: straight(pulled),
+            free_change: straight(own + pulled),
             given: straight(given),
+            own_change: straight(own),
             time: time as f32,
             link: None,
         }
@@ -68,14 +82,19 @@ impl Expected {
     /// `free` is the body at the start of the step with its full mass, `end` after it.
     pub(super) fn new(free: &Body, end: &Body, time: f64) -> Self {
         let inverse_inertia = free.inverse_inertia();
+        let own = (
+            free.inverse_mass * end.given.0,
+            inverse_inertia * end.given.1,
+        );
         Self {
             start: Twist::new(free.velocity, free.angular_velocity()),
             ordered: (end.mobility == 1.0)
                 .then(|| Twist::new(end.velocity, end.angular_velocity())),
             free_change: Twist::new(
-                free.inverse_mass * end.given.0 + time * free.acceleration,
-                inverse_inertia * (end.given.1 + time * free.torque),
+                own.0 + time * free.acceleration,
+                own.1 + time * (inverse_inertia * free.torque),
             ),
+            own_change: Twist::new(own.0, own.1),
             given: Twist::new(end.given.0, end.given.1),
             time: time as f32,
             link: None,
@@ -134,7 +153,7 @@ impl Expected {
 
     /// Share of the free motion along the elements' load that was left; none if the load was too small
     /// to tell.
-    fn share(&self, change: &Twist) -> Option<f64> {
+    fn share(&self, change: &Twist, support: Support) -> Option<f64> {
         let dot = |a: Vec3, b: Vec3| a.as_dvec3().dot(b.as_dvec3());
         let length = |v: Vec3| v.as_dvec3().length();
         let given = &self.given;
@@ -143,7 +162,13 @@ impl Expected {
         let free = along(&self.free_change);
         let scale = length(given.linear) * length(self.free_change.linear)
             + length(given.angular) * length(self.free_change.angular);
-        (free.abs() > 0.05 * scale && scale > 0.0).then(|| (along(change) / free).clamp(0.0, 1.0))
+        // Where elements and weight balance, what is left is the noise of the engine's joints.
+        let noise = match support {
+            Support::Joint => BALANCE * along(&self.own_change),
+            _ => 0.0,
+        };
+        let tells = free.abs() > (0.05 * scale).max(noise);
+        (tells && scale > 0.0).then(|| (along(change) / free).clamp(0.0, 1.0))
     }
 }
 
@@ -159,17 +184,21 @@ pub(super) enum Support {
     Joint,
     /// Joints to fixed ground before the first step, which leave this share of a free body's motion.
     Tied(f64),
-    /// Contacts, which push this way and hold only against the opposite.
-    Contact(DVec3),
+    /// Contacts, which push this way and hold only against the opposite; all of them with fixed bodies or
+    /// not.
+    Contact { push: DVec3, on_fixed: bool },
+}
+
+/// What is known of a Rapier context after its step.
+pub(super) struct Context<'a> {
+    pub simulation: &'a RapierContextSimulation,
+    pub joints: &'a RapierContextJoints,
+    pub colliders: &'a ColliderSet,
+    pub bodies: &'a RigidBodySet,
 }
 
 /// Takes in what the engine's step did to a body.
-pub(super) fn observe(
-    row: &mut BodyRow,
-    body: &RapierBody,
-    simulation: &RapierContextSimulation,
-    joints: &RapierContextJoints,
-) {
+pub(super) fn observe(row: &mut BodyRow, body: &RapierBody, context: &Context) {
     let Some(expected) = row.expected.take() else {
         return;
     };
@@ -184,26 +213,31 @@ pub(super) fn observe(
         row.mobility = 1.0;
         return;
     }
-    row.support = support(row.handle, body, simulation, joints);
+    row.support = support(row.handle, body, context);
     if row.support == Support::None {
         row.mobility = 1.0;
-    } else if let Some(share) = expected.share(&change) {
+    } else if let Some(share) = expected.share(&change, row.support) {
         row.mobility = if share > FREE { 1.0 } else { share };
     }
 }
 
 /// Joints, or contacts that pushed in the last step.
-fn support(
-    handle: RigidBodyHandle,
-    body: &RapierBody,
-    simulation: &RapierContextSimulation,
-    joints: &RapierContextJoints,
-) -> Support {
+fn support(handle: RigidBodyHandle, body: &RapierBody, context: &Context) -> Support {
+    let Context {
+        simulation,
+        joints,
+        colliders,
+        bodies,
+    } = context;
     let mut attached = joints.impulse_joints.attached_enabled_joints(handle);
     if joints.multibody_joints.rigid_body_link(handle).is_some() || attached.next().is_some() {
         return Support::Joint;
     }
-    let mut push = DVec3::ZERO;
+    let (mut push, mut on_fixed) = (DVec3::ZERO, true);
+    let is_fixed = |collider: ColliderHandle| {
+        let parent = colliders.get(collider).and_then(Collider::parent);
+        parent.is_none_or(|parent| bodies.get(parent).is_some_and(RapierBody::is_fixed))
+    };
     for collider in body.colliders() {
         for pair in simulation.narrow_phase.contact_pairs_with(*collider) {
             // Normals point from the first collider to the second.
@@ -212,10 +246,22 @@ fn support(
             } else {
                 1.0
             };
-            push += sign * pair.total_impulse().as_dvec3();
+            let impulse = pair.total_impulse().as_dvec3();
+            push += sign * impulse;
+            let other = if pair.collider1 == *collider {
+                pair.collider2
+            } else {
+                pair.collider1
+            };
+            on_fixed &= impulse == DVec3::ZERO || is_fixed(other);
         }
     }
-    push.try_normalize().map_or(Support::None, Support::Contact)
+    contact(push, on_fixed)
+}
+
+fn contact(push: DVec3, on_fixed: bool) -> Support {
+    push.try_normalize()
+        .map_or(Support::None, |push| Support::Contact { push, on_fixed })
 }
 
 /// What cannot be moved, to see what bodies stand on that the engine has not stepped yet: it finds
@@ -270,7 +316,7 @@ impl Ground {
                 }
             }
         }
-        push.try_normalize().map_or(Support::None, Support::Contact)
+        contact(push, true)
     }
 }
 
@@ -297,8 +343,8 @@ pub(super) fn mobility(row: &BodyRow, support: Support, free: &Body, force: DVec
         Support::None | Support::Unknown => 1.0,
         Support::Joint => row.mobility,
         Support::Tied(share) => share,
-        Support::Contact(push) => {
-            let weight = crate::dynamics::delivery::force_for(free.acceleration, free.inverse_mass);
+        Support::Contact { push, .. } => {
+            let weight = force_for(free.acceleration, free.inverse_mass);
             if (force + weight).dot(push) >= 0.0 {
                 // It is being lifted off, and a contact does not pull.
                 1.0
@@ -328,28 +374,35 @@ pub(super) fn held(free: &Body, mobility: f64) -> Body {
 }
 
 /// Delivery to a body whose motion is not ours to order: the elements' mean force. An impulse at the
-/// start holds the first of n substeps still, whatever the constraints leave of mass and direction.
+/// start holds the first of n substeps still, whatever the constraints leave of mass and direction. Joints
+/// answer weight and the user's force as well, so these are held still with it; a contact would be left.
 pub(super) fn deliver(
     body: &mut RapierBody,
     free: &Body,
     given: (DVec3, DVec3),
+    support: Support,
     terms: &Terms,
 ) -> ExternalForce {
-    let schedule = &terms.schedule;
-    let n = f64::from(schedule.substeps);
-    let mut share = 1.0 / schedule.time;
-    if terms.takes_impulses && schedule.substeps > 1 {
+    let time = terms.schedule.time;
+    let n = f64::from(terms.schedule.substeps);
+    let outside = match support {
+        Support::Contact { .. } => (DVec3::ZERO, DVec3::ZERO),
+        _ => (force_for(free.acceleration, free.inverse_mass), free.torque),
+    };
+    let mut force = (given.0 / time, given.1 / time);
+    if terms.takes_impulses && terms.schedule.substeps > 1 {
         let back = 1.0 / (n - 1.0);
-        let linvel = free.velocity - back * (free.inverse_mass * given.0);
+        let total = (force.0 + outside.0, force.1 + outside.1);
+        let linvel = free.velocity - back * time * (free.inverse_mass * total.0);
         body.set_linvel(linvel.as_vec3(), false);
         if free.spin != Spin::Still {
-            let angvel = free.angular_velocity() - back * (free.inverse_inertia() * given.1);
+            let angvel = free.angular_velocity() - back * time * (free.inverse_inertia() * total.1);
             body.set_angvel(angvel.as_vec3(), false);
         }
-        share *= n * back;
+        force = (force.0 + back * total.0, force.1 + back * total.1);
     }
     ExternalForce {
-        force: (share * given.0).as_vec3(),
-        torque: (share * given.1).as_vec3(),
+        force: force.0.as_vec3(),
+        torque: force.1.as_vec3(),
     }
 }

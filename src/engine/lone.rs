@@ -29,18 +29,24 @@ struct Point {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Handled {
     Done,
-    /// Out of the ordinary.
+    /// Out of the ordinary in this step.
     No,
+    /// Out of the ordinary for as long as can be seen.
+    Never,
 }
 
 const LOCKED: LockedAxes = LockedAxes::TRANSLATION_LOCKED;
 
 /// The centre of mass of an ordinary movable body.
-fn point(row: &BodyRow, index: usize, body: &RapierBody, step: &Step) -> Option<Point> {
+fn point(row: &BodyRow, index: usize, body: &RapierBody, step: &Step) -> Result<Point, Handled> {
     let properties = &body.mass_properties().local_mprops;
-    let ordinary = row.support == Support::None && step.lag(row.handle, body) == 0.0;
-    if !ordinary || body.locked_axes().intersects(LOCKED) {
-        return None;
+    if step.lag(row.handle, body) > 0.0 || body.locked_axes().intersects(LOCKED) {
+        return Err(Handled::Never);
+    }
+    match row.support {
+        Support::None => {}
+        Support::Unknown => return Err(Handled::No),
+        Support::Joint | Support::Tied(_) | Support::Contact { .. } => return Err(Handled::Never),
     }
     let mut position = body.position().translation.as_dvec3();
     if properties.local_com != bevy::math::Vec3::ZERO {
@@ -48,7 +54,7 @@ fn point(row: &BodyRow, index: usize, body: &RapierBody, step: &Step) -> Option<
         position += rotation * properties.local_com.as_dvec3();
     }
     let inverse_mass = f64::from(properties.inv_mass);
-    Some(Point {
+    Ok(Point {
         body: Some(index),
         position,
         velocity: body.linvel().as_dvec3(),
@@ -94,10 +100,11 @@ impl Step<'_> {
                     ..
                 } => set
                     .get(handle)
+                    .ok_or(Handled::No)
                     .and_then(|body| point(&bodies[index], index, body, self)),
                 _ => {
                     let (from, to) = self.path(held, set);
-                    Some(Point {
+                    Ok(Point {
                         position: from,
                         velocity: (to - from) / time,
                         ..Point::default()
@@ -105,8 +112,8 @@ impl Step<'_> {
                 }
             };
             match found {
-                Some(point) => *point_at = point,
-                None => return Handled::No,
+                Ok(point) => *point_at = point,
+                Err(reason) => return reason,
             }
         }
         let [a, b] = points;
@@ -188,9 +195,9 @@ impl Step<'_> {
         let pulled = time * point.acceleration;
         let to = point.velocity + pulled + sped;
         row.expected = Some(Expected::straight(
-            point.velocity,
-            to,
-            point.inverse_mass * given + pulled,
+            [point.velocity, to],
+            point.inverse_mass * given,
+            pulled,
             given,
             time,
         ));

@@ -1,7 +1,7 @@
 //! After the engine's step: what each element shows.
 
 use super::body::{is_movable, point_of};
-use super::held::observe;
+use super::held::{Context, observe};
 use super::prepare::{IsElement, report};
 use super::scene::{BodyRow, ElementRow, Held, Scene};
 use crate::element::{Spring, SpringDamper};
@@ -10,13 +10,20 @@ use bevy::math::DVec3;
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
 
+/// What of a Rapier context tells how its step went.
+type ContextParts<'a> = (
+    &'a RapierContextSimulation,
+    &'a RapierContextJoints,
+    &'a RapierContextColliders,
+);
+
 /// Writes readouts, captured rest lengths, and faults found while solving.
 pub(crate) fn measure(
     mut scene: ResMut<Scene>,
     sets: Query<&RapierRigidBodySet>,
     mut readouts: Query<(Entity, &mut SpringReadout), IsElement>,
     mut springs: Query<(Option<&mut Spring>, Option<&mut SpringDamper>), IsElement>,
-    contexts: Query<(&RapierContextSimulation, &RapierContextJoints)>,
+    contexts: Query<ContextParts>,
     mut commands: Commands,
 ) {
     let scene = &mut *scene;
@@ -73,30 +80,32 @@ fn write_back(
 }
 
 /// Sees where the stepped bodies are, and what the step did to them.
-fn look(
-    scene: &mut Scene,
-    sets: &Query<&RapierRigidBodySet>,
-    contexts: &Query<(&RapierContextSimulation, &RapierContextJoints)>,
-) {
-    let mut known: Option<(Entity, _, _, _)> = None;
+fn look(scene: &mut Scene, sets: &Query<&RapierRigidBodySet>, contexts: &Query<ContextParts>) {
+    let mut known: Option<(Entity, Context)> = None;
     for row in &mut scene.bodies {
         if row.expected.is_none() {
             continue;
         }
         if known.as_ref().is_none_or(|known| known.0 != row.context) {
             known = match (sets.get(row.context), contexts.get(row.context)) {
-                (Ok(set), Ok((simulation, joints))) => {
-                    Some((row.context, &set.bodies, simulation, joints))
-                }
+                (Ok(set), Ok((simulation, joints, colliders))) => Some((
+                    row.context,
+                    Context {
+                        simulation,
+                        joints,
+                        colliders: &colliders.colliders,
+                        bodies: &set.bodies,
+                    },
+                )),
                 _ => None,
             };
         }
-        let Some((_, bodies, simulation, joints)) = known else {
+        let Some((_, context)) = &known else {
             continue;
         };
-        match bodies.get(row.handle) {
+        match context.bodies.get(row.handle) {
             Some(body) => {
-                observe(row, body, simulation, joints);
+                observe(row, body, context);
                 let mut center = body.position().translation.as_dvec3();
                 let local = body.local_center_of_mass();
                 if local != Vec3::ZERO {

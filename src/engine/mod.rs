@@ -15,6 +15,7 @@ mod held;
 mod jointed;
 mod lone;
 mod measure;
+mod passive;
 mod prepare;
 mod scene;
 mod setup;

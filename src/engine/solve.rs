@@ -1,6 +1,6 @@
 //! The step's system: component by component.
 
-use super::assembly::{Assembly, Members};
+use super::assembly::Assembly;
 use super::body::{Engine, FARTHEST_TURN};
 use super::forces::{self, SpringLoad};
 use super::held::Ground;
@@ -105,13 +105,12 @@ impl Scene {
             stale,
             ..
         } = self;
-        let members = |group| Members {
-            elements: groups.elements(group),
-            bodies: groups.bodies(group),
-        };
-        let here = || groups.list().iter().filter(|g| g.context == context);
-        for group in here() {
-            let members = members(group);
+        let mut special = Vec::new();
+        for (g, group) in groups.list().iter().enumerate() {
+            if group.context != context {
+                continue;
+            }
+            let members = groups.members(group);
             if let Some(index) = group.assembly {
                 assemblies[index].gather(step, &members, elements, bodies, set, stale);
                 continue;
@@ -120,17 +119,24 @@ impl Scene {
                 continue;
             };
             let handled = step.lone(&mut elements[*element], bodies, members.bodies, set, stale);
-            if handled == Handled::No {
+            if handled != Handled::Done {
                 spare.gather(step, &members, elements, bodies, set, stale);
                 spare.advance(step.plan.time, step.accuracy);
                 spare.deliver(step, &members, elements, bodies, set);
+                spare.forget();
+            }
+            if handled == Handled::Never {
+                special.push(g);
             }
         }
         advance(assemblies, step.plan.time, step.accuracy);
-        for group in here() {
+        for group in groups.list().iter().filter(|g| g.context == context) {
             if let Some(index) = group.assembly {
-                assemblies[index].deliver(step, &members(group), elements, bodies, set);
+                assemblies[index].deliver(step, &groups.members(group), elements, bodies, set);
             }
+        }
+        for group in special {
+            groups.promote(group, assemblies);
         }
     }
 }

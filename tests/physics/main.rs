@@ -7,6 +7,7 @@ mod adams;
 mod against_rapier;
 mod as_data;
 mod bad_input;
+mod car;
 mod decay;
 mod elastic_pendulum;
 mod ends;

@@ -112,13 +112,13 @@ fn sag_and_motion_are_those_of_the_chassis_on_a_fixed_base() {
 
 /// Drops the car from 1 m; the energy at the start and at the top of each bounce, J, and the height of
 /// the first top, m.
-fn bounces(damping: f32, dt: f32) -> (Vec<f64>, f64) {
+fn bounces(damping: f32, dt: f32, height: f32) -> (Vec<f64>, f64) {
     let engine = Engine { dt, ..default() };
     let mut car = car(
         Lab::with(CoiloverPlugin::default(), engine),
         60e3,
         damping,
-        RADIUS + 1.0,
+        RADIUS + height,
         REST,
     );
     let energy = |car: &Car| {
@@ -159,20 +159,28 @@ fn bounces(damping: f32, dt: f32) -> (Vec<f64>, f64) {
 #[test]
 fn a_wheel_that_lands_and_bounces_gains_nothing() {
     for c in [0.0, 300.0] {
-        let (tops, coarse) = bounces(c, DT);
-        let (_, fine) = bounces(c, 1.0 / 240.0);
+        let (tops, coarse) = bounces(c, DT, 1.0);
+        let (_, fine) = bounces(c, 1.0 / 240.0, 1.0);
         println!(
             "dropped from 1 m, c {c}: energies {tops:.0?} J, first peak {coarse:.3} m, at 1/240 s {fine:.3} m"
         );
-        assert!(tops.len() > 2);
-        for pair in tops.windows(2) {
-            assert!(pair[1] <= pair[0] * 1.002, "c {c}: {pair:?} J");
-        }
         assert!(
             (coarse / fine - 1.0).abs() < 0.05,
             "c {c}: {coarse} and {fine} m"
         );
     }
+    // A step meets the ground anywhere in its course, and the heights decide where.
+    let mut worst = 0.0_f64;
+    for i in -20..20 {
+        let height = 1.0 + 0.0057 * i as f32;
+        let (tops, _) = bounces(0.0, DT, height);
+        assert!(tops.len() > 2);
+        for pair in tops.windows(2) {
+            worst = worst.max(pair[1] / pair[0]);
+            assert!(pair[1] <= pair[0] * 1.001, "from {height} m: {pair:?} J");
+        }
+    }
+    println!("of 40 heights, the bounce that lost least kept {worst:.4} of its energy");
 }
 
 #[test]
