@@ -4,330 +4,226 @@
 //! also across them where they are in tension,
 //!
 //! ```text
-//! (M + h/2 C + (θ + η) h² K) a = f(q, v) + f_outside + (θ h² k + h/2 c)·a_turning along each line
+//! (M + h/2 C + θ h² K) a = f(q, v) + f_outside + (θ h² k + h/2 c)·a_turning along each line
 //! ```
 //!
-//! θ places the stiffest mode exactly while it is resolved and is 1/4 beyond; η adds damping only to
-//! modes that the step can no longer resolve. The matrix is symmetric and positive definite.
+//! θ places the stiffest mode exactly while it is resolved and is 1/4 beyond: there the step is the implicit
+//! midpoint rule, which keeps the energy of any linear motion however stiff. Modes that the step cannot
+//! resolve are damped a little, as those of a lone element are.
 
 use super::body::{Body, Spin};
 use super::element::{Element, Line, Motion};
 use super::kick;
+use super::poles::{RESOLVED_PHASE, UNRESOLVED_DECAY};
+use super::system::{Effort, NOBODY, Strut, System, Twists};
 use bevy::math::DVec3;
-use nalgebra::{DMatrix, DVector};
 
 /// (ω h)² of the stiffest mode up to which it is placed exactly.
 const PLACED: f64 = 9.0;
-/// (ω h)² of the stiffest mode beyond which unresolved modes are damped.
+/// (ω h)² of the stiffest mode beyond which a network steps finer.
 pub(crate) const RESOLVED: f64 = 4.0;
-/// How strongly.
-const UNRESOLVED_DAMPING: f64 = 0.1;
 
-/// The coupled kick of a component: where each body's unknown accelerations stand.
+/// The coupled kick of a component, with memory that is kept from step to step.
+#[derive(Clone, Default)]
 pub(crate) struct Network {
-    /// First unknown of each body, and how many it has: 3, or 6 where it turns.
-    slots: Vec<(usize, usize)>,
-    size: usize,
+    rows: Vec<Row>,
+    system: System,
+    right: Twists,
+    /// The last solution, from which the next one starts.
+    acceleration: Twists,
+    trial: Vec<Body>,
+    /// For each body, the stiffness of its elements over its mass: the Gershgorin bound on ω².
+    stiffness: Vec<f64>,
+    damping: Vec<f64>,
+    /// What the solves since the last [`Network::take_effort`] took at most.
+    effort: Option<Effort>,
 }
 
-/// One direction in which an element pulls its ends together: along its line, or across it.
-struct Strut {
-    /// Index of the line it belongs to.
-    line: usize,
-    direction: DVec3,
-    /// Row of the Jacobian: linear and angular part at each end's body.
-    row: [(Option<usize>, DVec3, DVec3); 2],
-    /// Force before the solve, N.
-    load: f64,
-    /// What the turning of the line adds to it, N per m/s².
-    turning: f64,
-    /// What the relative acceleration adds to it, N per m/s².
-    weight: f64,
-}
-
-/// How implicit the kick is.
+/// One element within a kick.
 #[derive(Clone, Copy)]
-struct Blend {
-    theta: f64,
-    eta: f64,
-    step: f64,
-}
-
-impl Blend {
-    fn new(z_max: f64, step: f64) -> Self {
-        Self {
-            theta: placement(z_max),
-            eta: if z_max > RESOLVED {
-                UNRESOLVED_DAMPING
-            } else {
-                0.0
-            },
-            step,
-        }
-    }
-
-    /// The struts of one element on its line.
-    fn struts(&self, element: &Element, line: &Line, before: &Motion, index: usize) -> Vec<Strut> {
-        let (h, h2) = (self.step, self.step * self.step);
-        let (k, c) = (element.stiffness, element.damping);
-        let rate = line.backward_rate(before, h);
-        let tension = k * (line.length - element.rest_length) + c * rate;
-        let implicit = (self.theta + self.eta) * h2;
-        let damping = damper_placement(c * h * line.inverse_mass);
-        let mut struts = vec![Strut {
-            line: index,
-            direction: line.direction,
-            row: jacobian(line, line.direction),
-            load: tension + self.eta * h * k * rate,
-            // The half drift counted h²/8 of the turning as stretch already.
-            turning: (self.theta * h2 - h2 / 8.0) * k + damping * h * c,
-            weight: implicit * k + damping * h * c,
-        }];
-        let across = across(element, line, tension);
-        if across > 0.0 {
-            let (t1, t2) = line.direction.any_orthonormal_pair();
-            struts.extend([t1, t2].map(|t| Strut {
-                line: index,
-                direction: t,
-                row: jacobian(line, t),
-                load: self.eta * h * across * before.lateral.dot(t),
-                turning: 0.0,
-                weight: implicit * across,
-            }));
-        }
-        struts
-    }
-}
-
-/// Linear and angular parts of one direction at both ends.
-fn jacobian(line: &Line, direction: DVec3) -> [(Option<usize>, DVec3, DVec3); 2] {
-    let [a, b] = &line.holds;
-    [
-        (a.body, -direction, -a.arm.cross(direction)),
-        (b.body, direction, b.arm.cross(direction)),
-    ]
+struct Row {
+    element: usize,
+    line: Line,
+    before: Motion,
+    /// Force on its ends before the solve, world frame.
+    load: DVec3,
+    /// What the turning of the line adds to it along the line, N per m/s².
+    turning: f64,
+    /// The turning itself, m/s².
+    turns: f64,
 }
 
 impl Network {
-    /// Bound on (ω h)² of the component's stiffest mode.
-    pub(crate) fn stiffest(elements: &[Element], bodies: &[Body], step: f64) -> f64 {
-        step * step * bound(elements, bodies, |element| element.stiffness)
+    /// Bounds on (ω h)² of the stiffest mode, and on 2γh of the most damped one.
+    pub(crate) fn bounds(
+        &mut self,
+        elements: &[Element],
+        bodies: &[Body],
+        step: f64,
+    ) -> (f64, f64) {
+        self.measure(elements, bodies, step);
+        self.bounds_of_rows(elements, bodies.len(), step)
     }
 
-    /// Bound on 2γh of its most damped mode.
-    pub(crate) fn most_damped(elements: &[Element], bodies: &[Body], step: f64) -> f64 {
-        step * bound(elements, bodies, |element| element.damping)
+    /// Where the lines are and what they do.
+    fn measure(&mut self, elements: &[Element], bodies: &[Body], step: f64) {
+        self.rows.clear();
+        self.rows
+            .extend(elements.iter().enumerate().filter_map(|(index, element)| {
+                let line = element.line(bodies)?;
+                Some(Row {
+                    element: index,
+                    line,
+                    before: line.motion(element, bodies, step),
+                    load: DVec3::ZERO,
+                    turning: 0.0,
+                    turns: 0.0,
+                })
+            }));
     }
 
-    fn new(bodies: &[Body]) -> Self {
-        let mut size = 0;
-        let slots = bodies
-            .iter()
-            .map(|body| {
-                let count = if body.spin == Spin::Still { 3 } else { 6 };
-                size += count;
-                (size - count, count)
-            })
-            .collect();
-        Self { slots, size }
+    fn bounds_of_rows(&mut self, elements: &[Element], bodies: usize, step: f64) -> (f64, f64) {
+        for sums in [&mut self.stiffness, &mut self.damping] {
+            sums.clear();
+            sums.resize(bodies, 0.0);
+        }
+        for Row { element, line, .. } in &self.rows {
+            let element = &elements[*element];
+            let w = line
+                .holds
+                .map(|h| h.inverse_mass_along(line.direction).sqrt());
+            for (end, hold) in line.holds.iter().enumerate() {
+                if let Some(body) = hold.body {
+                    let share = w[end] * (w[0] + w[1]);
+                    self.stiffness[body] += element.stiffness * share;
+                    self.damping[body] += element.damping * share;
+                }
+            }
+        }
+        let largest = |sums: &[f64]| sums.iter().copied().fold(0.0, f64::max);
+        (
+            step * step * largest(&self.stiffness),
+            step * largest(&self.damping),
+        )
     }
 
     /// The kick at the half drift: all elements and outside forces together.
-    pub(crate) fn kick(elements: &[Element], bodies: &mut [Body], step: f64) {
-        let blend = Blend::new(Self::stiffest(elements, bodies, step), step);
-        let network = Self::new(bodies);
-        let lines: Vec<(&Element, Line, Motion)> = elements
-            .iter()
-            .filter_map(|element| {
-                let line = element.line(bodies)?;
-                Some((element, line, line.motion(element, bodies, step)))
-            })
-            .collect();
-        let struts: Vec<Strut> = lines
-            .iter()
-            .enumerate()
-            .flat_map(|(i, (element, line, before))| blend.struts(element, line, before, i))
-            .collect();
+    pub(crate) fn kick(
+        &mut self,
+        elements: &[Element],
+        bodies: &mut [Body],
+        step: f64,
+        budget: u32,
+    ) {
+        self.measure(elements, bodies, step);
+        let (z_max, _) = self.bounds_of_rows(elements, bodies.len(), step);
+        self.system.begin(bodies);
+        self.add_struts(elements, bodies, step, placement(z_max));
+        self.system.prepare();
 
-        let mut matrix = DMatrix::zeros(network.size, network.size);
-        for strut in &struts {
-            network.add(&mut matrix, strut);
+        for row in &mut self.rows {
+            row.turns = row.before.turning + row.before.arms;
         }
-        network.add_inertia(&mut matrix, bodies);
-        let Some(factor) = matrix.cholesky() else {
-            // Cannot happen for finite input; without it the component just flies on.
-            return kick::external(bodies, step);
-        };
-
-        let solve = |turning: &[f64]| {
-            let mut right = network.outside(bodies);
-            for strut in &struts {
-                network.load(&mut right, strut, turning[strut.line]);
-            }
-            network.clear_locked(&mut right, bodies);
-            factor.solve(&right)
-        };
-        let act = |bodies: &mut [Body], acceleration: &DVector<f64>, turning: &[f64]| {
-            for strut in &struts {
-                let force = strut.load
-                    + strut.turning * turning[strut.line]
-                    + strut.weight * network.along(acceleration, strut);
-                let pull = -step * force * strut.direction;
-                lines[strut.line].1.impulse(bodies, pull);
-            }
-            kick::external(bodies, step);
-        };
-        let first: Vec<f64> = lines.iter().map(|(.., m)| m.turning + m.arms).collect();
-        let mut trial = bodies.to_vec();
-        act(&mut trial, &solve(&first), &first);
-        // The mean of before and after the kick keeps the step its own mirror image in time.
-        let mean: Vec<f64> = lines
-            .iter()
-            .zip(&first)
-            .map(|((element, line, _), before)| {
-                let after = line.motion(element, &trial, step);
-                0.5 * (before + after.turning + after.arms)
-            })
-            .collect();
-        act(bodies, &solve(&mean), &mean);
+        self.solve(bodies, budget);
+        let mut trial = std::mem::take(&mut self.trial);
+        trial.clear();
+        trial.extend_from_slice(bodies);
+        self.act(&mut trial, step);
+        for row in &mut self.rows {
+            // The mean of before and after the kick keeps the step its own mirror image in time.
+            let after = row.line.motion(&elements[row.element], &trial, step);
+            row.turns = 0.5 * (row.turns + after.turning + after.arms);
+        }
+        self.trial = trial;
+        self.solve(bodies, budget);
+        self.act(bodies, step);
+        self.system.end();
     }
 
-    /// Linear and angular unknowns of a body; none of the latter where it does not turn.
-    fn parts(&self, body: usize) -> impl Iterator<Item = (usize, usize)> {
-        let (at, count) = self.slots[body];
-        (0..count).map(move |k| (k, at + k))
+    /// The most that the solves took since this was last asked.
+    pub(crate) fn take_effort(&mut self) -> Option<Effort> {
+        self.effort.take()
     }
 
-    /// Adds the outer product of a strut's row with itself.
-    fn add(&self, matrix: &mut DMatrix<f64>, strut: &Strut) {
-        for (body_i, linear_i, angular_i) in &strut.row {
-            for (body_j, linear_j, angular_j) in &strut.row {
-                let (Some(i), Some(j)) = (body_i, body_j) else {
-                    continue;
-                };
-                for (k, r) in self.parts(*i) {
-                    for (l, c) in self.parts(*j) {
-                        matrix[(r, c)] += strut.weight
-                            * entry(*linear_i, *angular_i, k)
-                            * entry(*linear_j, *angular_j, l);
-                    }
-                }
-            }
+    fn add_struts(&mut self, elements: &[Element], bodies: &[Body], step: f64, theta: f64) {
+        let h2 = step * step;
+        for row in &mut self.rows {
+            let (element, line, before) = (&elements[row.element], &row.line, &row.before);
+            let k = element.stiffness;
+            let stiffest = line
+                .holds
+                .iter()
+                .filter_map(|hold| Some(self.stiffness[hold.body?]))
+                .fold(0.0, f64::max);
+            let settling = settling(h2 * stiffest) * step;
+            let c = element.damping + settling * k;
+            let rate = line.backward_rate(before, step);
+            let tension = k * (line.length - element.rest_length) + c * rate;
+            let damping = damper_placement(c * step * line.inverse_mass) * step * c;
+            let across = across(element, line, tension);
+            // The half drift counted h²/8 of the turning as stretch already.
+            row.turning = (theta - 0.125) * h2 * k + damping;
+            row.load = tension * line.direction + settling * across * before.lateral;
+            let body = |end: usize| line.holds[end].body;
+            let arm = |end: usize| match body(end) {
+                Some(index) if bodies[index].spin != Spin::Still => line.holds[end].arm,
+                _ => DVec3::ZERO,
+            };
+            self.system.struts.push(Strut {
+                bodies: [0, 1].map(|end| body(end).unwrap_or(NOBODY)),
+                arms: [0, 1].map(arm),
+                direction: line.direction,
+                along: theta * h2 * k + damping,
+                across: (theta * h2 + 0.5 * settling * step) * across,
+            });
         }
     }
 
-    /// Subtracts a strut's force before the solve from the right side.
-    fn load(&self, right: &mut DVector<f64>, strut: &Strut, turning: f64) {
-        let force = strut.load + strut.turning * turning;
-        for (body, linear, angular) in &strut.row {
-            let Some(body) = body else { continue };
-            for (k, r) in self.parts(*body) {
-                right[r] -= force * entry(*linear, *angular, k);
+    /// Accelerations for the lines' present turning.
+    fn solve(&mut self, bodies: &[Body], budget: u32) {
+        let right = &mut self.right;
+        right.clear(bodies.len(), self.system.turns());
+        for (i, body) in bodies.iter().enumerate() {
+            right.linear[i] = super::delivery::force_for(body.acceleration, body.inverse_mass);
+            if self.system.turns() {
+                right.angular[i] = body.torque;
             }
         }
-    }
-
-    /// Relative acceleration of a strut's ends along it.
-    fn along(&self, acceleration: &DVector<f64>, strut: &Strut) -> f64 {
-        let mut sum = 0.0;
-        for (body, linear, angular) in &strut.row {
-            let Some(body) = body else { continue };
-            for (k, r) in self.parts(*body) {
-                sum += acceleration[r] * entry(*linear, *angular, k);
-            }
+        for (row, strut) in self.rows.iter().zip(&self.system.struts) {
+            strut.add(right, -row.force());
         }
-        sum
+        let effort = self
+            .system
+            .solve(&mut self.right, &mut self.acceleration, budget);
+        let sum = self.effort.get_or_insert(effort);
+        sum.iterations = sum.iterations.max(effort.iterations);
+        sum.converged &= effort.converged;
     }
 
-    /// Mass and inertia on the diagonal blocks; locked axes become unit rows of their own.
-    fn add_inertia(&self, matrix: &mut DMatrix<f64>, bodies: &[Body]) {
-        for (body, (at, count)) in bodies.iter().zip(&self.slots) {
-            for k in 0..3 {
-                let w = body.inverse_mass[k];
-                if w > 0.0 {
-                    matrix[(at + k, at + k)] += 1.0 / w;
-                } else {
-                    self.lock(matrix, at + k);
-                }
-            }
-            if *count == 6 {
-                let mut inverse = body.inverse_inertia();
-                let locked = [0, 1, 2].map(|k| inverse.col(k)[k] == 0.0);
-                for k in (0..3).filter(|k| locked[*k]) {
-                    inverse.col_mut(k)[k] = 1.0;
-                }
-                let inertia = inverse.inverse();
-                for r in 0..3 {
-                    for c in 0..3 {
-                        matrix[(at + 3 + r, at + 3 + c)] += inertia.col(c)[r];
-                    }
-                }
-                for k in (0..3).filter(|k| locked[*k]) {
-                    self.lock(matrix, at + 3 + k);
-                }
-            }
+    /// What the solution does to the bodies. Forces come in pairs along the lines, so both momenta are
+    /// kept however exact it is.
+    fn act(&self, bodies: &mut [Body], step: f64) {
+        for (row, strut) in self.rows.iter().zip(&self.system.struts) {
+            let force = row.force() + strut.force(strut.relative(&self.acceleration));
+            row.line.impulse(bodies, -step * force);
         }
-    }
-
-    fn lock(&self, matrix: &mut DMatrix<f64>, index: usize) {
-        matrix.row_mut(index).fill(0.0);
-        matrix.column_mut(index).fill(0.0);
-        matrix[(index, index)] = 1.0;
-    }
-
-    fn clear_locked(&self, right: &mut DVector<f64>, bodies: &[Body]) {
-        for (body, (at, count)) in bodies.iter().zip(&self.slots) {
-            for k in (0..3).filter(|k| body.inverse_mass[*k] == 0.0) {
-                right[at + k] = 0.0;
-            }
-            if *count == 6 {
-                let inverse = body.inverse_inertia();
-                for k in (0..3).filter(|k| inverse.col(*k)[*k] == 0.0) {
-                    right[at + 3 + k] = 0.0;
-                }
-            }
-        }
-    }
-
-    /// Outside forces and torques.
-    fn outside(&self, bodies: &[Body]) -> DVector<f64> {
-        let mut right = DVector::zeros(self.size);
-        for (body, (at, count)) in bodies.iter().zip(&self.slots) {
-            for k in 0..3 {
-                if body.inverse_mass[k] > 0.0 {
-                    right[at + k] = body.acceleration[k] / body.inverse_mass[k];
-                }
-                if *count == 6 {
-                    right[at + 3 + k] = body.torque[k];
-                }
-            }
-        }
-        right
+        kick::external(bodies, step);
     }
 }
 
-/// Gershgorin bound on M⁻¹K or M⁻¹C, block by body.
-fn bound(elements: &[Element], bodies: &[Body], constant: impl Fn(&Element) -> f64) -> f64 {
-    let mut sums = vec![0.0_f64; bodies.len()];
-    for element in elements {
-        let Some(line) = element.line(bodies) else {
-            continue;
-        };
-        let w = line
-            .holds
-            .map(|h| h.inverse_mass_along(line.direction).sqrt());
-        for (end, hold) in line.holds.iter().enumerate() {
-            if let Some(body) = hold.body {
-                sums[body] += constant(element) * w[end] * (w[0] + w[1]);
-            }
-        }
+impl Row {
+    fn force(&self) -> DVec3 {
+        self.load + self.turning * self.turns * self.line.direction
     }
-    sums.into_iter().fold(0.0, f64::max)
 }
 
-/// Component k of six.
-fn entry(linear: DVec3, angular: DVec3, k: usize) -> f64 {
-    if k < 3 { linear[k] } else { angular[k - 3] }
+/// Damping time, in steps, of stiffness-proportional damping that takes the [`UNRESOLVED_DECAY`] of a lone
+/// element from a mode with z = (ω h)²; less from slower ones.
+fn settling(z: f64) -> f64 {
+    if z <= RESOLVED_PHASE * RESOLVED_PHASE {
+        return 0.0;
+    }
+    2.0 * UNRESOLVED_DECAY * (1.0 - RESOLVED_PHASE * RESOLVED_PHASE / z) / z
 }
 
 /// Stiffness across the line: a spring in tension pulls a displaced end back.

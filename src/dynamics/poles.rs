@@ -9,7 +9,7 @@ pub(crate) const RESOLVED_PHASE: f64 = 2.5;
 /// Decay exponent per step that is added to motion of unresolved phase. The engine rounds positions to
 /// f32, and a spring of ω h = 100 makes of every rounding a hundred times as much speed; without this
 /// a minute of it would heat a swinging rod by several per cent.
-const UNRESOLVED_DECAY: f64 = 0.01;
+pub(crate) const UNRESOLVED_DECAY: f64 = 0.01;
 
 /// Decay exponent per step up to which one step is the true flow.
 const RESOLVED_DECAY: f64 = 2.0;

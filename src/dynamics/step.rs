@@ -44,11 +44,12 @@ pub(crate) struct Outcome {
 }
 
 /// Bodies that elements connect, with those elements: what has to be solved together.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Default)]
 pub(crate) struct Component {
     pub bodies: Vec<Body>,
     pub elements: Vec<Element>,
     pub memo: Memo,
+    pub(super) network: Network,
     /// Velocities are not mapped to the true ones and back: what delivers the motion can order only the
     /// stepped ones.
     pub stepped: bool,
@@ -110,26 +111,21 @@ impl Component {
         sum
     }
 
-    fn resolved(&self, step: f64) -> bool {
-        match self.elements.as_slice() {
-            [element] if self.is_alone() => {
-                kick::resolved(element, &self.bodies, step, EXTRAPOLATION_LIMIT)
-            }
-            elements => {
-                Network::stiffest(elements, &self.bodies, step)
-                    < EXTRAPOLATION_LIMIT * EXTRAPOLATION_LIMIT
-                    && Network::most_damped(elements, &self.bodies, step) < EXTRAPOLATION_LIMIT
-            }
+    fn resolved(&mut self, step: f64) -> bool {
+        if self.is_alone() {
+            return kick::resolved(&self.elements[0], &self.bodies, step, EXTRAPOLATION_LIMIT);
         }
+        let (z, g) = self.network.bounds(&self.elements, &self.bodies, step);
+        z < EXTRAPOLATION_LIMIT * EXTRAPOLATION_LIMIT && g < EXTRAPOLATION_LIMIT
     }
 
     /// How many times finer a network has to step for its stiffest mode to need no damping; once where
     /// that is out of reach.
-    fn extra_steps(&self, step: f64) -> u32 {
+    fn extra_steps(&mut self, step: f64) -> u32 {
         if self.is_alone() {
             return 1;
         }
-        let z = Network::stiffest(&self.elements, &self.bodies, step);
+        let (z, _) = self.network.bounds(&self.elements, &self.bodies, step);
         let finer = (z / RESOLVED).sqrt().ceil();
         if finer <= f64::from(EXTRA_STEPS) {
             finer.max(1.0) as u32
@@ -146,6 +142,7 @@ impl Component {
         let guard = alone
             .then(|| Guard::begin(&self.elements[0], &self.bodies, step))
             .flatten();
+        let budget = 200;
         let mapped = alone && !self.stepped;
         if mapped {
             kick::map_velocity(
@@ -161,7 +158,8 @@ impl Component {
             if alone {
                 kick::kick(&self.elements[0], &mut self.bodies, step, &mut self.memo);
             } else {
-                Network::kick(&self.elements, &mut self.bodies, step);
+                self.network
+                    .kick(&self.elements, &mut self.bodies, step, budget);
             }
             self.drift(step / 2.0);
             self.aim(step);

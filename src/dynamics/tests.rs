@@ -76,8 +76,8 @@ fn pendulum_error(file: &str, k: f64, c: f64, accuracy: Accuracy) -> f64 {
     let g = DVec3::new(0.0, -9.81, 0.0);
     let mut pendulum = Component {
         bodies: vec![point(1.0, DVec3::X, g)],
-        memo: default(),
         elements: vec![element(fixed(DVec3::ZERO), held(0, DVec3::ZERO), k, c, 1.0)],
+        ..default()
     };
     let rows = reference(file);
     let mut worst = 0.0_f64;
@@ -120,7 +120,6 @@ fn dumbbell(stiffness: f64) -> Component {
             turning(a, DVec3::new(0.2, 0.3, 0.45), DVec3::new(1.0, -2.0, 0.5)),
             turning(b, DVec3::new(0.02, 0.05, 0.06), DVec3::new(-1.0, 0.5, 3.0)),
         ],
-        memo: default(),
         elements: vec![element(
             held(0, DVec3::new(0.4, 0.2, 0.1)),
             held(1, DVec3::new(-0.3, 0.1, 0.2)),
@@ -128,6 +127,7 @@ fn dumbbell(stiffness: f64) -> Component {
             0.0,
             1.0,
         )],
+        ..default()
     }
 }
 
@@ -264,7 +264,6 @@ fn chain_of_ten_swings_as_the_reference() {
         bodies: (1..=10)
             .map(|i| point(0.1, DVec3::X * 0.2 * f64::from(i), g))
             .collect(),
-        memo: default(),
         elements: (0..10)
             .map(|i: usize| {
                 let a = if i == 0 {
@@ -275,6 +274,7 @@ fn chain_of_ten_swings_as_the_reference() {
                 element(a, held(i, DVec3::ZERO), 100.0, 0.5, 0.2)
             })
             .collect(),
+        ..default()
     };
     let error = |setting| network_error(file, &[4, 9], chain(), setting);
     let (one, four, extrapolated) = (
@@ -298,7 +298,6 @@ fn damped_chain_of_a_thousand_to_one_masses_settles_at_any_stiffness() {
                 .enumerate()
                 .map(|(i, m)| point(*m, DVec3::NEG_Y * (i + 1) as f64, g))
                 .collect(),
-            memo: default(),
             elements: (0..4)
                 .map(|i: usize| {
                     let a = if i == 0 {
@@ -309,6 +308,7 @@ fn damped_chain_of_a_thousand_to_one_masses_settles_at_any_stiffness() {
                     element(a, held(i, DVec3::ZERO), k, 0.6 * (k * 1e3).sqrt(), 1.0)
                 })
                 .collect(),
+            ..default()
         };
         for _ in 0..6000 {
             net.advance(DT, accuracy(1, false));

@@ -1,0 +1,460 @@
+//! The linear system of a network: masses on the diagonal, and one strut for each element.
+//!
+//! Symmetric and positive definite. Small ones are factorised, large ones go through conjugate gradients
+//! without a matrix, preconditioned by the inverse of each body's own block, from the last solution.
+
+use super::body::{Body, Spin};
+use bevy::math::{DMat3, DVec3};
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn, Matrix6, Vector6};
+
+/// Unknowns up to which a factorisation is the cheaper way.
+const DENSE: usize = 96;
+
+/// Residual, relative to the right side, at which iterations end.
+const TOLERANCE: f64 = 1e-10;
+
+/// No body: that end is a point that moves as something else decides.
+pub(super) const NOBODY: usize = usize::MAX;
+
+/// What an element adds to the matrix.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Strut {
+    pub bodies: [usize; 2],
+    /// From the centres of mass to the ends, world frame.
+    pub arms: [DVec3; 2],
+    pub direction: DVec3,
+    /// Force that a relative acceleration along the line adds, N per m/s².
+    pub along: f64,
+    /// The same across it.
+    pub across: f64,
+}
+
+/// Linear and angular part for every body; no angular ones where nothing turns.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Twists {
+    pub linear: Vec<DVec3>,
+    pub angular: Vec<DVec3>,
+}
+
+/// What a solution took.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Effort {
+    /// 0 for a factorisation.
+    pub iterations: u32,
+    pub converged: bool,
+}
+
+#[derive(Clone, Default)]
+pub(super) struct System {
+    pub struts: Vec<Strut>,
+    mass: Vec<DVec3>,
+    inertia: Vec<DMat3>,
+    /// 1 on axes that are free, 0 on locked ones.
+    free: Twists,
+    turns: bool,
+    blocks: Vec<DMat3>,
+    blocks_turning: Vec<Matrix6<f64>>,
+    matrix: DMatrix<f64>,
+    factor: Option<Cholesky<f64, Dyn>>,
+    vector: DVector<f64>,
+    residual: Twists,
+    preconditioned: Twists,
+    search: Twists,
+    image: Twists,
+}
+
+impl Strut {
+    /// Relative motion of the ends.
+    pub(super) fn relative(&self, x: &Twists) -> DVec3 {
+        let at = |end: usize| match self.bodies[end] {
+            NOBODY => DVec3::ZERO,
+            body if self.arms[end] == DVec3::ZERO => x.linear[body],
+            body => x.linear[body] + x.angular[body].cross(self.arms[end]),
+        };
+        at(1) - at(0)
+    }
+
+    /// Force for a relative acceleration.
+    pub(super) fn force(&self, r: DVec3) -> DVec3 {
+        self.across * r + (self.along - self.across) * self.direction.dot(r) * self.direction
+    }
+
+    /// Adds a force on end B and its opposite on end A.
+    pub(super) fn add(&self, to: &mut Twists, force: DVec3) {
+        for (end, sign) in [-1.0, 1.0].into_iter().enumerate() {
+            let body = self.bodies[end];
+            if body == NOBODY {
+                continue;
+            }
+            to.linear[body] += sign * force;
+            if self.arms[end] != DVec3::ZERO {
+                to.angular[body] += self.arms[end].cross(sign * force);
+            }
+        }
+    }
+
+    /// The matrix of [`Self::force`].
+    fn matrix(&self) -> DMat3 {
+        let u = self.direction;
+        let outer = DMat3::from_cols(u * u.x, u * u.y, u * u.z);
+        DMat3::from_diagonal(DVec3::splat(self.across)) + outer * (self.along - self.across)
+    }
+}
+
+/// r ↦ a × r.
+fn cross(a: DVec3) -> DMat3 {
+    DMat3::from_cols(
+        DVec3::new(0.0, a.z, -a.y),
+        DVec3::new(-a.z, 0.0, a.x),
+        DVec3::new(a.y, -a.x, 0.0),
+    )
+}
+
+impl Twists {
+    pub(super) fn clear(&mut self, bodies: usize, turns: bool) {
+        self.linear.clear();
+        self.linear.resize(bodies, DVec3::ZERO);
+        self.angular.clear();
+        self.angular
+            .resize(if turns { bodies } else { 0 }, DVec3::ZERO);
+    }
+
+    fn fits(&self, bodies: usize, turns: bool) -> bool {
+        self.linear.len() == bodies && self.angular.len() == if turns { bodies } else { 0 }
+    }
+
+    fn dot(&self, other: &Self) -> f64 {
+        let sum = |a: &[DVec3], b: &[DVec3]| a.iter().zip(b).map(|(a, b)| a.dot(*b)).sum::<f64>();
+        sum(&self.linear, &other.linear) + sum(&self.angular, &other.angular)
+    }
+
+    /// self = by·self + other·times.
+    fn combine(&mut self, by: f64, other: &Self, times: f64) {
+        let all = |a: &mut [DVec3], b: &[DVec3]| {
+            for (a, b) in a.iter_mut().zip(b) {
+                *a = by * *a + times * *b;
+            }
+        };
+        all(&mut self.linear, &other.linear);
+        all(&mut self.angular, &other.angular);
+    }
+
+    fn mask(&mut self, free: &Self) {
+        for (a, b) in self.linear.iter_mut().zip(&free.linear) {
+            *a *= *b;
+        }
+        for (a, b) in self.angular.iter_mut().zip(&free.angular) {
+            *a *= *b;
+        }
+    }
+
+    fn copy(&mut self, other: &Self) {
+        self.linear.clone_from(&other.linear);
+        self.angular.clone_from(&other.angular);
+    }
+}
+
+impl System {
+    /// Takes in masses and inertias, and forgets all struts.
+    pub(super) fn begin(&mut self, bodies: &[Body]) {
+        self.struts.clear();
+        self.turns = bodies.iter().any(|body| body.spin != Spin::Still);
+        self.mass.clear();
+        self.inertia.clear();
+        self.free.clear(bodies.len(), self.turns);
+        for (i, body) in bodies.iter().enumerate() {
+            let w = body.inverse_mass;
+            let free = DVec3::select(w.cmpgt(DVec3::ZERO), DVec3::ONE, DVec3::ZERO);
+            self.free.linear[i] = free;
+            self.mass
+                .push(DVec3::select(w.cmpgt(DVec3::ZERO), w.recip(), DVec3::ONE));
+            if self.turns {
+                let mut inverse = body.inverse_inertia();
+                let mut free = DVec3::ONE;
+                for k in 0..3 {
+                    if inverse.col(k)[k] == 0.0 {
+                        inverse.col_mut(k)[k] = 1.0;
+                        free[k] = 0.0;
+                    }
+                }
+                self.free.angular[i] = free;
+                self.inertia.push(inverse.inverse());
+            }
+        }
+        self.factor = None;
+    }
+
+    pub(super) fn turns(&self) -> bool {
+        self.turns
+    }
+
+    fn unknowns(&self) -> usize {
+        self.mass.len() * if self.turns { 6 } else { 3 }
+    }
+
+    pub(super) fn is_dense(&self) -> bool {
+        self.unknowns() <= DENSE
+    }
+
+    /// Readies the solution for the struts as they are now.
+    pub(super) fn prepare(&mut self) {
+        if self.is_dense() {
+            self.factorise();
+        } else {
+            self.invert_blocks();
+        }
+    }
+
+    /// Solves for `right`, from `x` as it is.
+    pub(super) fn solve(&mut self, right: &mut Twists, x: &mut Twists, budget: u32) -> Effort {
+        right.mask(&self.free);
+        if !x.fits(self.mass.len(), self.turns) {
+            x.clear(self.mass.len(), self.turns);
+        }
+        if let Some(factor) = &self.factor {
+            scatter(right, &mut self.vector);
+            factor.solve_mut(&mut self.vector);
+            gather(&self.vector, x);
+            return Effort {
+                iterations: 0,
+                converged: true,
+            };
+        }
+        self.iterate(right, x, budget)
+    }
+
+    /// y = A x.
+    fn apply(&self, x: &Twists, y: &mut Twists) {
+        y.clear(self.mass.len(), self.turns);
+        for ((y, x), m) in y.linear.iter_mut().zip(&x.linear).zip(&self.mass) {
+            *y = *m * *x;
+        }
+        for ((y, x), inertia) in y.angular.iter_mut().zip(&x.angular).zip(&self.inertia) {
+            *y = *inertia * *x;
+        }
+        for strut in &self.struts {
+            strut.add(y, strut.force(strut.relative(x)));
+        }
+        y.mask(&self.free);
+    }
+
+    fn iterate(&mut self, right: &Twists, x: &mut Twists, budget: u32) -> Effort {
+        let (mut r, mut z, mut p, mut q) = (
+            std::mem::take(&mut self.residual),
+            std::mem::take(&mut self.preconditioned),
+            std::mem::take(&mut self.search),
+            std::mem::take(&mut self.image),
+        );
+        x.mask(&self.free);
+        self.precondition(right, &mut z);
+        let target = TOLERANCE * TOLERANCE * right.dot(&z);
+        self.apply(x, &mut r);
+        r.combine(-1.0, right, 1.0);
+        self.precondition(&r, &mut z);
+        let mut rz = r.dot(&z);
+        p.copy(&z);
+        let mut iterations = 0;
+        while rz > target && iterations < budget {
+            self.apply(&p, &mut q);
+            let step = rz / p.dot(&q);
+            x.combine(1.0, &p, step);
+            r.combine(1.0, &q, -step);
+            self.precondition(&r, &mut z);
+            let next = r.dot(&z);
+            p.combine(next / rz, &z, 1.0);
+            rz = next;
+            iterations += 1;
+        }
+        (self.residual, self.preconditioned, self.search, self.image) = (r, z, p, q);
+        Effort {
+            iterations,
+            // Short of the target by so little is rounding.
+            converged: rz <= target * 1e4,
+        }
+    }
+
+    fn precondition(&self, r: &Twists, z: &mut Twists) {
+        z.clear(self.mass.len(), self.turns);
+        if !self.turns {
+            for ((z, r), block) in z.linear.iter_mut().zip(&r.linear).zip(&self.blocks) {
+                *z = *block * *r;
+            }
+            return;
+        }
+        for (i, block) in self.blocks_turning.iter().enumerate() {
+            let v = block * stack(r.linear[i], r.angular[i]);
+            z.linear[i] = DVec3::new(v[0], v[1], v[2]);
+            z.angular[i] = DVec3::new(v[3], v[4], v[5]);
+        }
+    }
+
+    /// The inverse of each body's own block.
+    fn invert_blocks(&mut self) {
+        self.blocks.clear();
+        self.blocks_turning.clear();
+        if !self.turns {
+            self.blocks
+                .extend(self.mass.iter().map(|m| DMat3::from_diagonal(*m)));
+            for strut in &self.struts {
+                let own = strut.matrix();
+                for body in strut.bodies.into_iter().filter(|b| *b != NOBODY) {
+                    self.blocks[body] += own;
+                }
+            }
+            for (block, free) in self.blocks.iter_mut().zip(&self.free.linear) {
+                lock(block, *free);
+                *block = block.inverse();
+            }
+            return;
+        }
+        for (mass, inertia) in self.mass.iter().zip(&self.inertia) {
+            let mut block = Matrix6::zeros();
+            put(&mut block, 0, 0, DMat3::from_diagonal(*mass));
+            put(&mut block, 3, 3, *inertia);
+            self.blocks_turning.push(block);
+        }
+        for strut in &self.struts {
+            let own = strut.matrix();
+            for (body, arm) in strut.bodies.into_iter().zip(strut.arms) {
+                if body == NOBODY {
+                    continue;
+                }
+                let (lever, block) = (cross(arm), &mut self.blocks_turning[body]);
+                put(block, 0, 0, own);
+                put(block, 0, 3, own * -lever);
+                put(block, 3, 0, lever * own);
+                put(block, 3, 3, lever * own * -lever);
+            }
+        }
+        for (i, block) in self.blocks_turning.iter_mut().enumerate() {
+            let free = stack(self.free.linear[i], self.free.angular[i]);
+            for k in (0..6).filter(|k| free[*k] == 0.0) {
+                block.row_mut(k).fill(0.0);
+                block.column_mut(k).fill(0.0);
+                block[(k, k)] = 1.0;
+            }
+            *block = block
+                .cholesky()
+                .map_or_else(Matrix6::identity, |c| c.inverse());
+        }
+    }
+
+    fn factorise(&mut self) {
+        let n = self.unknowns();
+        let width = if self.turns { 6 } else { 3 };
+        let mut matrix = std::mem::take(&mut self.matrix);
+        if matrix.nrows() != n {
+            matrix = DMatrix::zeros(n, n);
+            self.vector = DVector::zeros(n);
+        }
+        matrix.fill(0.0);
+        for (i, mass) in self.mass.iter().enumerate() {
+            put(
+                &mut matrix,
+                width * i,
+                width * i,
+                DMat3::from_diagonal(*mass),
+            );
+            if self.turns {
+                put(&mut matrix, width * i + 3, width * i + 3, self.inertia[i]);
+            }
+        }
+        for strut in &self.struts {
+            let own = strut.matrix();
+            for (i, row) in strut.bodies.into_iter().enumerate() {
+                for (j, column) in strut.bodies.into_iter().enumerate() {
+                    if row == NOBODY || column == NOBODY {
+                        continue;
+                    }
+                    let own = if i == j { own } else { own * -1.0 };
+                    let (r, c) = (width * row, width * column);
+                    put(&mut matrix, r, c, own);
+                    if self.turns {
+                        let (a, b) = (cross(strut.arms[i]), cross(strut.arms[j]));
+                        put(&mut matrix, r, c + 3, own * -b);
+                        put(&mut matrix, r + 3, c, a * own);
+                        put(&mut matrix, r + 3, c + 3, a * own * -b);
+                    }
+                }
+            }
+        }
+        for i in 0..self.mass.len() {
+            for k in 0..3 {
+                if self.free.linear[i][k] == 0.0 {
+                    lock_row(&mut matrix, width * i + k);
+                }
+                if self.turns && self.free.angular[i][k] == 0.0 {
+                    lock_row(&mut matrix, width * i + 3 + k);
+                }
+            }
+        }
+        self.factor = Cholesky::new(matrix);
+    }
+
+    /// Takes the factorisation's memory back for the next one.
+    pub(super) fn end(&mut self) {
+        if let Some(factor) = self.factor.take() {
+            self.matrix = factor.unpack_dirty();
+        }
+    }
+}
+
+fn lock(block: &mut DMat3, free: DVec3) {
+    for k in (0..3).filter(|k| free[*k] == 0.0) {
+        for other in 0..3 {
+            block.col_mut(k)[other] = 0.0;
+            block.col_mut(other)[k] = 0.0;
+        }
+        block.col_mut(k)[k] = 1.0;
+    }
+}
+
+fn lock_row(matrix: &mut DMatrix<f64>, index: usize) {
+    matrix.row_mut(index).fill(0.0);
+    matrix.column_mut(index).fill(0.0);
+    matrix[(index, index)] = 1.0;
+}
+
+/// Adds a block to a matrix.
+fn put<M: std::ops::IndexMut<(usize, usize), Output = f64>>(
+    matrix: &mut M,
+    row: usize,
+    column: usize,
+    block: DMat3,
+) {
+    for c in 0..3 {
+        for r in 0..3 {
+            matrix[(row + r, column + c)] += block.col(c)[r];
+        }
+    }
+}
+
+fn stack(linear: DVec3, angular: DVec3) -> Vector6<f64> {
+    Vector6::new(
+        linear.x, linear.y, linear.z, angular.x, angular.y, angular.z,
+    )
+}
+
+fn scatter(from: &Twists, to: &mut DVector<f64>) {
+    let width = if from.angular.is_empty() { 3 } else { 6 };
+    for (i, linear) in from.linear.iter().enumerate() {
+        for k in 0..3 {
+            to[width * i + k] = linear[k];
+            if width == 6 {
+                to[width * i + 3 + k] = from.angular[i][k];
+            }
+        }
+    }
+}
+
+fn gather(from: &DVector<f64>, to: &mut Twists) {
+    let width = if to.angular.is_empty() { 3 } else { 6 };
+    for i in 0..to.linear.len() {
+        for k in 0..3 {
+            to.linear[i][k] = from[width * i + k];
+            if width == 6 {
+                to.angular[i][k] = from[width * i + 3 + k];
+            }
+        }
+    }
+}
