@@ -45,6 +45,9 @@ impl CoiloverPlugin {
             settings: CoiloverSettings {
                 microsteps: 1,
                 extrapolation: false,
+                tolerance: None,
+                max_microsteps: 256,
+                max_iterations: 200,
                 schedule: schedule.intern(),
             },
         }
@@ -53,6 +56,25 @@ impl CoiloverPlugin {
     /// Sets the accuracy dial: micro-steps per engine step (default 1; 0 counts as 1).
     pub const fn with_microsteps(mut self, microsteps: u32) -> Self {
         self.settings.microsteps = microsteps;
+        self
+    }
+
+    /// Steps as finely as keeps the error of position that is added near `tolerance` metres per simulated
+    /// second, instead of by a fixed count. Zero, negative and NaN mean no tolerance.
+    pub const fn with_tolerance(mut self, tolerance: f32) -> Self {
+        self.settings.tolerance = Some(tolerance);
+        self
+    }
+
+    /// Caps the micro-steps of an engine step (default 256).
+    pub const fn with_max_microsteps(mut self, most: u32) -> Self {
+        self.settings.max_microsteps = most;
+        self
+    }
+
+    /// Caps the iterations of one solve of a large network (default 200).
+    pub const fn with_max_iterations(mut self, most: u32) -> Self {
+        self.settings.max_iterations = most;
         self
     }
 

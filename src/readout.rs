@@ -1,6 +1,6 @@
 //! What a game reads back from an element.
 
-use crate::dynamics::step::{Method, Outcome};
+use crate::dynamics::tolerance::{Method, Outcome};
 use bevy::prelude::*;
 
 /// The state of an element after the last step, on every element without asking. SI units.
@@ -54,8 +54,6 @@ pub enum SpringMethod {
     None,
     /// Alone on its ends: solved in closed form.
     ClosedForm,
-    /// In a network: forces alone, since the step is short for the network's stiffest mode.
-    Explicit,
     /// In a network: one factorisation for all.
     Direct,
     /// In a large network: conjugate gradients.
@@ -71,7 +69,6 @@ impl SpringReadout {
     pub(crate) fn note(&mut self, outcome: &Outcome) {
         self.method = match outcome.method {
             Method::None => SpringMethod::None,
-            Method::Free => SpringMethod::Explicit,
             Method::ClosedForm => SpringMethod::ClosedForm,
             Method::Direct => SpringMethod::Direct,
             Method::Iterative => SpringMethod::Iterative,

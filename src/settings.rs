@@ -1,6 +1,6 @@
 //! What a game can set.
 
-use crate::dynamics::step::Accuracy;
+use crate::dynamics::tolerance::Accuracy;
 use bevy::ecs::intern::Interned;
 use bevy::ecs::schedule::ScheduleLabel;
 use bevy::prelude::*;
@@ -13,6 +13,15 @@ pub struct CoiloverSettings {
     /// Combine one and two times as many micro-steps to fourth order wherever the motion is resolved,
     /// and take three times as many plain ones elsewhere.
     pub extrapolation: bool,
+    /// Error of position that may be added, m per simulated second; `None` for a fixed count of
+    /// micro-steps. With a tolerance the two settings above do not count: every component takes as many
+    /// micro-steps in every step as its own error asks for.
+    pub tolerance: Option<f32>,
+    /// Most micro-steps of one engine step, at least 1. Where that is too few,
+    /// [`SpringReadout::capped`](crate::SpringReadout::capped) says so.
+    pub max_microsteps: u32,
+    /// Most iterations of one solve of a large network, at least 1; told likewise.
+    pub max_iterations: u32,
     pub(crate) schedule: Interned<dyn ScheduleLabel>,
 }
 
@@ -21,6 +30,12 @@ impl CoiloverSettings {
         Accuracy {
             microsteps: self.microsteps.max(1),
             extrapolate: self.extrapolation,
+            tolerance: self
+                .tolerance
+                .filter(|t| t.is_finite() && *t > 0.0)
+                .map(f64::from),
+            max_microsteps: self.max_microsteps.max(1),
+            max_iterations: self.max_iterations.max(1),
         }
     }
 }

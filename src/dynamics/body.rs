@@ -185,6 +185,36 @@ impl Body {
         self.apply_angular(time * self.torque, inverse_inertia);
     }
 
+    /// Takes a share of another's velocities.
+    pub(crate) fn slow_to(&mut self, other: &Self, share: f64) {
+        self.velocity = share * other.velocity;
+        self.spin = match other.spin {
+            Spin::Still => Spin::Still,
+            Spin::Free { momentum } => Spin::Free {
+                momentum: share * momentum,
+            },
+            Spin::Locked { velocity } => Spin::Locked {
+                velocity: share * velocity,
+            },
+        };
+    }
+
+    /// Works out what elements must have given it since it was `start`.
+    pub(crate) fn receive(&mut self, start: &Self, time: f64) {
+        let turned = match (self.spin, start.spin) {
+            (Spin::Free { momentum: now }, Spin::Free { momentum: then }) => now - then,
+            // Along free axes; along others nothing turns it.
+            (Spin::Locked { velocity: now }, Spin::Locked { velocity: then }) => {
+                super::delivery::torque_for(now - then, start.inverse_inertia())
+            }
+            _ => DVec3::ZERO,
+        };
+        self.given = (
+            self.mass() * (self.velocity - start.velocity - time * self.acceleration),
+            turned - time * self.torque,
+        );
+    }
+
     pub(crate) fn is_finite(&self) -> bool {
         self.position.is_finite()
             && self.velocity.is_finite()

@@ -1,15 +1,17 @@
 //! The mathematics of springs and dampers: no ECS, no engine, f64 throughout, SI units.
 //!
-//! Read in the order in which a step runs: [`body`] drifts, [`element`] measures the line between the
-//! ends, [`poles`] gives the exact coefficients, [`kick`] acts for a lone element and [`network`] for
-//! elements that share bodies (the linear
-//! algebra is in [`system`]), [`pair`] for a lone element on bodies that do not turn, [`guard`] keeps strong damping
-//! honest, [`step`] repeats that as micro-steps, and [`delivery`] says which impulse
-//! and force make the engine arrive there.
+//! Read in the order in which a step runs. [`tolerance`] decides how finely to step, [`step`] holds what has
+//! to be solved together. [`body`] drifts, [`element`] measures the line between the ends, [`poles`] gives
+//! the exact coefficients; [`kick`] acts for a lone element, [`pair`] for one on bodies that do not turn,
+//! [`network`] for elements that share bodies, with the linear algebra in [`system`]. [`guard`] keeps strong
+//! damping honest, and [`bound`] a network, by their [`energy`]. [`delivery`] says which impulse and force
+//! make the engine arrive there.
 
 pub(crate) mod body;
+mod bound;
 pub(crate) mod delivery;
 pub(crate) mod element;
+pub(crate) mod energy;
 pub(crate) mod guard;
 pub(crate) mod kick;
 pub(crate) mod network;
@@ -17,6 +19,7 @@ pub(crate) mod pair;
 pub(crate) mod poles;
 pub(crate) mod step;
 mod system;
+pub(crate) mod tolerance;
 
 #[cfg(test)]
 mod tests;

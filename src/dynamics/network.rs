@@ -35,7 +35,7 @@ pub(crate) struct Network {
     /// For each body, the stiffness of its elements over its mass: the Gershgorin bound on ω².
     stiffness: Vec<f64>,
     damping: Vec<f64>,
-    /// What the solves since the last [`Network::take_effort`] took at most.
+    /// How the solves since the last [`Network::take_effort`] went.
     effort: Option<Effort>,
 }
 
@@ -140,9 +140,50 @@ impl Network {
         self.system.end();
     }
 
-    /// The most that the solves took since this was last asked.
-    pub(crate) fn take_effort(&mut self) -> Option<Effort> {
-        self.effort.take()
+    /// Velocities after a step of the linearised implicit Euler rule, which only loses energy in what is
+    /// linear; see [`super::bound`]. The bodies come in memory that is to be given back.
+    pub(crate) fn settle(
+        &mut self,
+        elements: &[Element],
+        bodies: &[Body],
+        step: f64,
+        budget: u32,
+    ) -> Vec<Body> {
+        self.measure(elements, bodies, step);
+        self.system.begin(bodies);
+        for row in &mut self.rows {
+            let (element, line, before) = (&elements[row.element], &row.line, &row.before);
+            let late = element.damping + step * element.stiffness;
+            let tension = element.stiffness * (line.length - element.rest_length);
+            let across = across(element, line, tension);
+            row.load =
+                (tension + late * before.axial) * line.direction + step * across * before.lateral;
+            row.turning = 0.0;
+            let (along, across) = (step * late, step * step * across);
+            self.system.struts.push(strut(line, bodies, along, across));
+        }
+        self.system.prepare();
+        self.solve(bodies, budget);
+        let mut moved = std::mem::take(&mut self.trial);
+        moved.clear();
+        moved.extend_from_slice(bodies);
+        self.act(&mut moved, step);
+        self.system.end();
+        moved
+    }
+
+    /// Takes the memory of [`Self::settle`] back.
+    pub(crate) fn give_back(&mut self, moved: Vec<Body>) {
+        self.trial = moved;
+    }
+
+    /// Whether solves since this was last asked went by iterations, and whether all came to an end.
+    pub(crate) fn take_effort(&mut self) -> (bool, bool) {
+        let effort = self.effort.take();
+        (
+            !self.system.is_dense(),
+            effort.is_none_or(|effort| effort.converged),
+        )
     }
 
     fn add_struts(&mut self, elements: &[Element], bodies: &[Body], step: f64, theta: f64) {
@@ -164,18 +205,9 @@ impl Network {
             // The half drift counted h²/8 of the turning as stretch already.
             row.turning = (theta - 0.125) * h2 * k + damping;
             row.load = tension * line.direction + settling * across * before.lateral;
-            let body = |end: usize| line.holds[end].body;
-            let arm = |end: usize| match body(end) {
-                Some(index) if bodies[index].spin != Spin::Still => line.holds[end].arm,
-                _ => DVec3::ZERO,
-            };
-            self.system.struts.push(Strut {
-                bodies: [0, 1].map(|end| body(end).unwrap_or(NOBODY)),
-                arms: [0, 1].map(arm),
-                direction: line.direction,
-                along: theta * h2 * k + damping,
-                across: (theta * h2 + 0.5 * settling * step) * across,
-            });
+            let across = (theta * h2 + 0.5 * settling * step) * across;
+            let along = theta * h2 * k + damping;
+            self.system.struts.push(strut(line, bodies, along, across));
         }
     }
 
@@ -196,7 +228,6 @@ impl Network {
             .system
             .solve(&mut self.right, &mut self.acceleration, budget);
         let sum = self.effort.get_or_insert(effort);
-        sum.iterations = sum.iterations.max(effort.iterations);
         sum.converged &= effort.converged;
     }
 
@@ -208,6 +239,21 @@ impl Network {
             row.line.impulse(bodies, -step * force);
         }
         kick::external(bodies, step);
+    }
+}
+
+/// An element in the linear system.
+fn strut(line: &Line, bodies: &[Body], along: f64, across: f64) -> Strut {
+    let arm = |end: usize| match line.holds[end].body {
+        Some(index) if bodies[index].spin != Spin::Still => line.holds[end].arm,
+        _ => DVec3::ZERO,
+    };
+    Strut {
+        bodies: [0, 1].map(|end| line.holds[end].body.unwrap_or(NOBODY)),
+        arms: [0, 1].map(arm),
+        direction: line.direction,
+        along,
+        across,
     }
 }
 

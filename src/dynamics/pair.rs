@@ -6,11 +6,10 @@
 
 use super::kick::Memo;
 use super::poles::{Poles, RESOLVED_PHASE};
-use super::step::Accuracy;
+use super::step::EXTRAPOLATION_LIMIT;
+use super::tolerance::{Motion, VELOCITY_COUNTS};
 use bevy::math::DVec3;
 
-/// Phase per coarse step up to which the fourth-order combination converges.
-const EXTRAPOLATION_LIMIT: f64 = 1.5;
 /// c h/m above which a step's energy is watched; see [`super::guard`].
 const STRONG: f64 = 0.5;
 
@@ -55,6 +54,56 @@ struct Line {
     pushed: f64,
 }
 
+/// A pair in motion, for [`super::tolerance`] to drive.
+pub(crate) struct Moving<'a> {
+    pub pair: &'a Pair,
+    pub state: Separation,
+    pub memo: &'a mut Memo,
+    saved: [Separation; 3],
+}
+
+impl<'a> Moving<'a> {
+    pub(crate) fn new(pair: &'a Pair, state: Separation, memo: &'a mut Memo) -> Self {
+        Self {
+            pair,
+            state,
+            memo,
+            saved: [state; 3],
+        }
+    }
+}
+
+impl Motion for Moving<'_> {
+    fn save(&mut self, slot: usize) {
+        self.saved[slot] = self.state;
+    }
+
+    fn load(&mut self, slot: usize) {
+        self.state = self.saved[slot];
+    }
+
+    fn run(&mut self, time: f64, count: u32) -> u32 {
+        self.pair
+            .microsteps(&mut self.state, time, count, self.memo);
+        count
+    }
+
+    fn distance(&self, slot: usize) -> f64 {
+        let (a, b) = (&self.state, &self.saved[slot]);
+        (a.d - b.d).length() + VELOCITY_COUNTS * (a.v - b.v).length()
+    }
+
+    fn extrapolate(&mut self, slot: usize) {
+        let coarse = self.saved[slot];
+        self.state.d += (self.state.d - coarse.d) / 3.0;
+        self.state.v += (self.state.v - coarse.v) / 3.0;
+    }
+
+    fn is_resolved(&mut self, step: f64) -> bool {
+        self.pair.resolved(&self.state, step)
+    }
+}
+
 impl Separation {
     pub(crate) fn new(d: DVec3, v: DVec3, direction: Option<DVec3>) -> Self {
         Self {
@@ -70,33 +119,6 @@ impl Pair {
     /// (ω h)².
     fn stiffness_number(&self, step: f64) -> f64 {
         self.stiffness * self.inverse_mass * step * step
-    }
-
-    /// Advances the separation by one engine step; says how many kicks that took.
-    pub(crate) fn advance(
-        &self,
-        state: &mut Separation,
-        time: f64,
-        accuracy: Accuracy,
-        memo: &mut Memo,
-    ) -> u32 {
-        let count = accuracy.microsteps.max(1);
-        if !accuracy.extrapolate {
-            self.microsteps(state, time, count, memo);
-            return count;
-        }
-        if !self.resolved(state, time / f64::from(count)) {
-            // The same three kicks, spent on plain micro-steps, which never diverge.
-            self.microsteps(state, time, 3 * count, memo);
-            return 3 * count;
-        }
-        let mut coarse = *state;
-        self.microsteps(&mut coarse, time, count, memo);
-        self.microsteps(state, time, 2 * count, memo);
-        // Even powers only, so a third of the difference is the leading error.
-        state.d += (state.d - coarse.d) / 3.0;
-        state.v += (state.v - coarse.v) / 3.0;
-        3 * count
     }
 
     fn microsteps(&self, state: &mut Separation, time: f64, count: u32, memo: &mut Memo) {

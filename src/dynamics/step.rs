@@ -1,93 +1,98 @@
-//! From one engine step to the next: micro-steps, and the fourth-order combination of two step sizes.
+//! From one engine step to the next: the bodies and elements that have to be solved together.
 
 use super::body::{Body, Spin, turn};
+use super::bound::Bound;
 use super::element::Element;
 use super::guard::Guard;
 use super::kick::{self, Map, Memo};
 use super::network::{Network, RESOLVED};
+use super::tolerance::{Accuracy, Controller, Method, Motion, Outcome, VELOCITY_COUNTS};
 use bevy::math::DVec3;
 
 /// Phase per coarse step up to which the fourth-order combination converges.
-const EXTRAPOLATION_LIMIT: f64 = 1.5;
+pub(super) const EXTRAPOLATION_LIMIT: f64 = 1.5;
 
 /// Most that a network steps finer by itself to resolve a stiff mode.
 const EXTRA_STEPS: u32 = 4;
 
-/// How finely to step.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Accuracy {
-    pub microsteps: u32,
-    pub extrapolate: bool,
-}
-
-/// How a component was solved.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) enum Method {
-    #[default]
-    None,
-    Free,
-    ClosedForm,
-    Direct,
-    Iterative,
-}
-
-/// What a step took.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Outcome {
-    pub method: Method,
-    /// Kicks actually made.
-    pub microsteps: u32,
-    pub extrapolated: bool,
-    pub error: Option<f64>,
-    pub iterations: u32,
-    pub capped: bool,
-}
-
-/// Bodies that elements connect, with those elements: what has to be solved together.
+/// Bodies that elements connect, with those elements: what has to be solved together. Kept from step to
+/// step by whoever fills it, so that nothing is allocated anew.
 #[derive(Clone, Default)]
 pub(crate) struct Component {
     pub bodies: Vec<Body>,
     pub elements: Vec<Element>,
-    pub memo: Memo,
-    pub(super) network: Network,
     /// Velocities are not mapped to the true ones and back: what delivers the motion can order only the
     /// stepped ones.
     pub stepped: bool,
+    pub(super) memory: Memory,
+}
+
+/// What is kept from step to step.
+#[derive(Clone, Default)]
+pub(super) struct Memory {
+    memo: Memo,
+    network: Network,
+    controller: Controller,
+    bound: Bound,
+    saved: [Saved; 3],
+    max_iterations: u32,
+}
+
+/// A copy of the state.
+#[derive(Clone, Default)]
+struct Saved {
+    bodies: Vec<Body>,
+    elements: Vec<Element>,
 }
 
 impl Component {
     /// Advances by one engine step of `time` seconds.
     pub(crate) fn advance(&mut self, time: f64, accuracy: Accuracy) -> Outcome {
-        self.advance_old(time, accuracy);
-        Outcome::default()
+        self.memory.max_iterations = accuracy.max_iterations.max(1);
+        let alone = self.is_alone();
+        if !alone {
+            let Memory { bound, saved, .. } = &mut self.memory;
+            bound.begin(&self.elements, &self.bodies);
+            let start = &mut saved[0];
+            start.bodies.clone_from(&self.bodies);
+            start.elements.clone_from(&self.elements);
+        }
+        let mut controller = std::mem::take(&mut self.memory.controller);
+        let mut outcome = controller.drive(self, time, accuracy);
+        self.memory.controller = controller;
+        outcome.method = Method::ClosedForm;
+        if alone {
+            return outcome;
+        }
+        self.keep_bound(time);
+        let (iterates, converged) = self.memory.network.take_effort();
+        outcome.method = if iterates {
+            Method::Iterative
+        } else {
+            Method::Direct
+        };
+        outcome.capped |= !converged;
+        outcome
     }
 
-    fn advance_old(&mut self, time: f64, accuracy: Accuracy) {
-        let count = accuracy.microsteps.max(1);
-        if !accuracy.extrapolate {
-            return self.microsteps(time, count);
+    /// Takes what a network has gained in energy; where that cannot be had from its motion, the step is
+    /// taken again in the way that only loses energy.
+    fn keep_bound(&mut self, time: f64) {
+        let mut bound = std::mem::take(&mut self.memory.bound);
+        if !bound.hold(&self.elements, &mut self.bodies, time) {
+            self.load(0);
+            let motion = self.memory.network.settle(
+                &self.elements,
+                &self.bodies,
+                time,
+                self.memory.max_iterations,
+            );
+            self.yield_to(&motion, time, &bound);
+            self.memory.network.give_back(motion);
+            bound.hold(&self.elements, &mut self.bodies, time);
         }
-        if !self.resolved(time / f64::from(count)) {
-            // The same three kicks, spent on plain micro-steps, which never diverge.
-            return self.microsteps(time, 3 * count);
-        }
-        let mut coarse = self.clone();
-        coarse.microsteps(time, count);
-        self.microsteps(time, 2 * count);
-        // Even powers only, so a third of the difference is the leading error.
-        for (fine, coarse) in self.bodies.iter_mut().zip(&coarse.bodies) {
-            fine.position += (fine.position - coarse.position) / 3.0;
-            fine.velocity += (fine.velocity - coarse.velocity) / 3.0;
-            let apart = (fine.rotation * coarse.rotation.inverse()).to_scaled_axis();
-            match (&mut fine.spin, coarse.spin) {
-                (Spin::Free { momentum: f }, Spin::Free { momentum: c })
-                | (Spin::Locked { velocity: f }, Spin::Locked { velocity: c }) => {
-                    *f += (*f - c) / 3.0;
-                    fine.rotation = (turn(apart / 3.0) * fine.rotation).normalize();
-                }
-                _ => {}
-            }
-        }
+        bound.end(&self.elements, &self.bodies, time);
+        self.memory.bound = bound;
     }
 
     /// Force (N) and torque (N m) of all elements on a body as they stand.
@@ -111,21 +116,14 @@ impl Component {
         sum
     }
 
-    fn resolved(&mut self, step: f64) -> bool {
-        if self.is_alone() {
-            return kick::resolved(&self.elements[0], &self.bodies, step, EXTRAPOLATION_LIMIT);
-        }
-        let (z, g) = self.network.bounds(&self.elements, &self.bodies, step);
-        z < EXTRAPOLATION_LIMIT * EXTRAPOLATION_LIMIT && g < EXTRAPOLATION_LIMIT
-    }
-
-    /// How many times finer a network has to step for its stiffest mode to need no damping; once where
-    /// that is out of reach.
+    /// How many times finer a network has to step for its stiffest mode to be resolved; once where that
+    /// is out of reach.
     fn extra_steps(&mut self, step: f64) -> u32 {
         if self.is_alone() {
             return 1;
         }
-        let (z, _) = self.network.bounds(&self.elements, &self.bodies, step);
+        let network = &mut self.memory.network;
+        let (z, _) = network.bounds(&self.elements, &self.bodies, step);
         let finer = (z / RESOLVED).sqrt().ceil();
         if finer <= f64::from(EXTRA_STEPS) {
             finer.max(1.0) as u32
@@ -134,47 +132,42 @@ impl Component {
         }
     }
 
-    fn microsteps(&mut self, time: f64, count: u32) {
-        let count = count * self.extra_steps(time / f64::from(count));
-        let step = time / f64::from(count);
-        let alone = self.is_alone();
-        self.aim(step);
-        let guard = alone
-            .then(|| Guard::begin(&self.elements[0], &self.bodies, step))
-            .flatten();
-        let budget = 200;
-        let mapped = alone && !self.stepped;
-        if mapped {
-            kick::map_velocity(
-                &self.elements[0],
-                &mut self.bodies,
-                step,
-                Map::ToStepped,
-                &mut self.memo,
-            );
-        }
+    /// Micro-steps of one element alone.
+    fn run_alone(&mut self, step: f64, count: u32) {
+        let guard = Guard::begin(&self.elements[0], &self.bodies, step);
+        self.map(step, Map::ToStepped);
         for _ in 0..count {
             self.drift(step / 2.0);
-            if alone {
-                kick::kick(&self.elements[0], &mut self.bodies, step, &mut self.memo);
-            } else {
-                self.network
-                    .kick(&self.elements, &mut self.bodies, step, budget);
-            }
+            let memo = &mut self.memory.memo;
+            kick::kick(&self.elements[0], &mut self.bodies, step, memo);
             self.drift(step / 2.0);
             self.aim(step);
         }
-        if mapped {
-            kick::map_velocity(
-                &self.elements[0],
-                &mut self.bodies,
-                step,
-                Map::ToTrue,
-                &mut self.memo,
-            );
-        }
+        self.map(step, Map::ToTrue);
         if let Some(guard) = guard {
-            guard.end(&self.elements[0], &mut self.bodies, time);
+            guard.end(&self.elements[0], &mut self.bodies, step * f64::from(count));
+        }
+    }
+
+    fn map(&mut self, step: f64, map: Map) {
+        if !self.stepped {
+            let memo = &mut self.memory.memo;
+            kick::map_velocity(&self.elements[0], &mut self.bodies, step, map, memo);
+        }
+    }
+
+    /// Micro-steps of elements that share bodies.
+    fn run_network(&mut self, step: f64, count: u32) {
+        for _ in 0..count {
+            self.drift(step / 2.0);
+            let Memory {
+                network,
+                max_iterations,
+                ..
+            } = &mut self.memory;
+            network.kick(&self.elements, &mut self.bodies, step, *max_iterations);
+            self.drift(step / 2.0);
+            self.aim(step);
         }
     }
 
@@ -204,5 +197,97 @@ impl Component {
                 end.drift(time);
             }
         }
+    }
+
+    /// Moves with these velocities, as far as the stored energy allows.
+    fn yield_to(&mut self, motion: &[Body], time: f64, bound: &Bound) {
+        let mut share = 1.0;
+        for _ in 0..HALVINGS {
+            for (body, moved) in self.bodies.iter_mut().zip(motion) {
+                body.slow_to(moved, share);
+            }
+            self.drift(time);
+            self.aim(time);
+            if bound.allows(&self.elements, &self.bodies, time) {
+                break;
+            }
+            share *= 0.5;
+            self.load(0);
+        }
+        for (body, start) in self.bodies.iter_mut().zip(&self.memory.saved[0].bodies) {
+            body.receive(start, time);
+        }
+    }
+}
+
+/// Tries at moving less far; then nothing moves at all.
+const HALVINGS: u32 = 12;
+
+impl Motion for Component {
+    fn save(&mut self, slot: usize) {
+        let saved = &mut self.memory.saved[slot];
+        saved.bodies.clone_from(&self.bodies);
+        saved.elements.clone_from(&self.elements);
+    }
+
+    fn load(&mut self, slot: usize) {
+        let saved = &self.memory.saved[slot];
+        self.bodies.clone_from(&saved.bodies);
+        self.elements.clone_from(&saved.elements);
+    }
+
+    fn run(&mut self, time: f64, count: u32) -> u32 {
+        let count = count * self.extra_steps(time / f64::from(count));
+        let step = time / f64::from(count);
+        self.aim(step);
+        if self.is_alone() {
+            self.run_alone(step, count);
+        } else {
+            self.run_network(step, count);
+        }
+        count
+    }
+
+    fn distance(&self, slot: usize) -> f64 {
+        let mut worst = 0.0_f64;
+        for (a, b) in self.bodies.iter().zip(&self.memory.saved[slot].bodies) {
+            let mut apart = (a.position - b.position).length()
+                + VELOCITY_COUNTS * (a.velocity - b.velocity).length();
+            if a.spin != Spin::Still {
+                let radius = (a.inertia.max_element() * a.inverse_mass.max_element()).sqrt();
+                let turned = (a.rotation * b.rotation.inverse()).to_scaled_axis();
+                let spun = a.angular_velocity() - b.angular_velocity();
+                apart += radius * (turned.length() + VELOCITY_COUNTS * spun.length());
+            }
+            worst = worst.max(apart);
+        }
+        worst
+    }
+
+    fn extrapolate(&mut self, slot: usize) {
+        for (fine, coarse) in self.bodies.iter_mut().zip(&self.memory.saved[slot].bodies) {
+            fine.position += (fine.position - coarse.position) / 3.0;
+            fine.velocity += (fine.velocity - coarse.velocity) / 3.0;
+            fine.given.0 += (fine.given.0 - coarse.given.0) / 3.0;
+            fine.given.1 += (fine.given.1 - coarse.given.1) / 3.0;
+            let apart = (fine.rotation * coarse.rotation.inverse()).to_scaled_axis();
+            match (&mut fine.spin, coarse.spin) {
+                (Spin::Free { momentum: f }, Spin::Free { momentum: c })
+                | (Spin::Locked { velocity: f }, Spin::Locked { velocity: c }) => {
+                    *f += (*f - c) / 3.0;
+                    fine.rotation = (turn(apart / 3.0) * fine.rotation).normalize();
+                }
+                _ => {}
+            }
+        }
+    }
+
+    fn is_resolved(&mut self, step: f64) -> bool {
+        if self.is_alone() {
+            return kick::resolved(&self.elements[0], &self.bodies, step, EXTRAPOLATION_LIMIT);
+        }
+        let network = &mut self.memory.network;
+        let (z, g) = network.bounds(&self.elements, &self.bodies, step);
+        z < EXTRAPOLATION_LIMIT * EXTRAPOLATION_LIMIT && g < EXTRAPOLATION_LIMIT
     }
 }

@@ -36,11 +36,9 @@ pub(super) struct Twists {
     pub angular: Vec<DVec3>,
 }
 
-/// What a solution took.
+/// How a solution went.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Effort {
-    /// 0 for a factorisation.
-    pub iterations: u32,
     pub converged: bool,
 }
 
@@ -215,10 +213,7 @@ impl System {
             scatter(right, &mut self.vector);
             factor.solve_mut(&mut self.vector);
             gather(&self.vector, x);
-            return Effort {
-                iterations: 0,
-                converged: true,
-            };
+            return Effort { converged: true };
         }
         self.iterate(right, x, budget)
     }
@@ -267,7 +262,6 @@ impl System {
         }
         (self.residual, self.preconditioned, self.search, self.image) = (r, z, p, q);
         Effort {
-            iterations,
             // Short of the target by so little is rounding.
             converged: rz <= target * 1e4,
         }

@@ -3,7 +3,8 @@
 use super::body::{Body, Spin};
 use super::delivery::Schedule;
 use super::element::{Element, End};
-use super::step::{Accuracy, Component};
+use super::step::Component;
+use super::tolerance::Accuracy;
 use bevy::math::{DQuat, DVec3};
 use bevy::prelude::default;
 
@@ -61,6 +62,9 @@ fn accuracy(microsteps: u32, extrapolate: bool) -> Accuracy {
     Accuracy {
         microsteps,
         extrapolate,
+        tolerance: None,
+        max_microsteps: 256,
+        max_iterations: 200,
     }
 }
 

@@ -8,8 +8,8 @@ use super::forces::Share;
 use super::held::{Expected, Support};
 use super::scene::{BodyRow, ElementRow, Held};
 use super::step::Step;
-use crate::dynamics::pair::{Pair, Separation};
-use crate::dynamics::step::{Method, Outcome};
+use crate::dynamics::pair::{Moving, Pair, Separation};
+use crate::dynamics::tolerance::{Method, Outcome};
 use bevy::math::DVec3;
 use bevy_rapier3d::prelude::ExternalForce;
 use bevy_rapier3d::rapier::dynamics::{LockedAxes, RigidBody as RapierBody, RigidBodySet};
@@ -147,16 +147,17 @@ impl Step<'_> {
             rounding,
         };
         let start = Separation::new(d, b.velocity - a.velocity, row.memory.direction);
-        let mut end = start;
-        let kicks = pair.advance(&mut end, time, self.accuracy, &mut row.memory.memo);
+        let memory = &mut row.memory;
+        let mut moving = Moving::new(&pair, start, &mut memory.memo);
+        let outcome = memory.controller.drive(&mut moving, time, self.accuracy);
+        let end = moving.state;
         if !(end.d.is_finite() && end.v.is_finite()) {
             return Handled::No;
         }
         row.memory.direction = end.direction;
         row.outcome = Outcome {
             method: Method::ClosedForm,
-            microsteps: kicks,
-            ..Outcome::default()
+            ..outcome
         };
         // What the element adds to the free motion of the separation.
         let moved = end.d - start.d - time * (start.v + 0.5 * time * pair.outside);

@@ -7,8 +7,9 @@
 
 use super::held::Support;
 use super::scene::BodyRow;
-use crate::dynamics::body::{Body, Spin};
+use crate::dynamics::body::Body;
 use crate::dynamics::element::{Element, End};
+use crate::dynamics::energy::{Energy, take};
 use bevy::math::DVec3;
 
 /// (ω h)² up to which an element's energy at the ends of steps says something about the motion between.
@@ -63,10 +64,11 @@ impl Ledger {
                 .iter()
                 .flat_map(|element| element.ends)
                 .all(|end| !matches!(end, End::Path { velocity, .. } if velocity != DVec3::ZERO));
-        let state = energy_of(elements, bodies).filter(|_| known);
-        let Some((energy, motion)) = state else {
+        if !known {
             return self.clear();
-        };
+        }
+        let state = Energy::of(elements, bodies);
+        let (energy, motion) = (state.sum(), state.motion);
         if let Some(before) = self.energy.filter(|_| touched) {
             self.debt = (self.debt + energy - before).max(0.0);
         }
@@ -75,52 +77,10 @@ impl Ledger {
         } else {
             0.0
         };
+        for body in bodies {
+            body.given = (DVec3::ZERO, DVec3::ZERO);
+        }
         self.debt -= taken;
         self.energy = Some(energy - taken);
     }
-}
-
-/// Mechanical energy, and how much of it is motion.
-fn energy_of(elements: &[Element], bodies: &[Body]) -> Option<(f64, f64)> {
-    let mass =
-        |inverse: DVec3| DVec3::select(inverse.cmpgt(DVec3::ZERO), inverse.recip(), DVec3::ZERO);
-    let (mut motion, mut place) = (0.0, 0.0);
-    for body in bodies {
-        let mass = mass(body.inverse_mass);
-        motion += 0.5 * (mass * body.velocity).dot(body.velocity);
-        place -= (mass * body.acceleration).dot(body.position);
-        let turning = body.angular_velocity();
-        motion += match body.spin {
-            Spin::Still => 0.0,
-            Spin::Free { momentum } => 0.5 * momentum.dot(turning),
-            // Of a body with a locked axis the others share no inertia with it.
-            Spin::Locked { .. } => return None,
-        };
-    }
-    for element in elements {
-        let stretch = element.line(bodies)?.length.abs() - element.rest_length;
-        place += 0.5 * element.stiffness * stretch * stretch;
-    }
-    Some((motion + place, motion))
-}
-
-/// Takes so much energy out of the motion along the elements, as far as there is any; returns how much.
-fn take(elements: &[Element], bodies: &mut [Body], surplus: f64) -> f64 {
-    let mut left = surplus;
-    for element in elements {
-        let Some(line) = element.line(bodies).filter(|line| line.inverse_mass > 0.0) else {
-            continue;
-        };
-        let rate = line.motion(element, bodies, 0.0).axial;
-        let taken = left.min(0.5 * rate * rate / line.inverse_mass);
-        let after = (rate * rate - 2.0 * line.inverse_mass * taken)
-            .max(0.0)
-            .sqrt();
-        line.push(bodies, (after.copysign(rate) - rate) / line.inverse_mass);
-        left -= taken;
-    }
-    for body in bodies {
-        body.given = (DVec3::ZERO, DVec3::ZERO);
-    }
-    surplus - left
 }

@@ -7,7 +7,7 @@ use super::group::Groups;
 use super::held::{Expected, Support, Twist};
 use super::sleep::Rest;
 use crate::dynamics::kick::Memo;
-use crate::dynamics::step::Outcome;
+use crate::dynamics::tolerance::{Controller, Outcome};
 use bevy::ecs::entity::EntityHashMap;
 use bevy::math::DVec3;
 use bevy::prelude::*;
@@ -81,8 +81,9 @@ pub(super) struct Memory {
     pub places: [Option<DVec3>; 2],
     /// The bodies' scales, held against the rounding noise of their transforms.
     pub scales: [Option<DVec3>; 2],
-    /// The last coefficients.
+    /// The last coefficients, and how exact they were.
     pub memo: Memo,
+    pub controller: Controller,
 }
 
 /// One movable body that elements act on.

@@ -8,7 +8,7 @@ use super::lone::Handled;
 use super::scene::Scene;
 use super::step::Step;
 use super::timestep::Plan;
-use crate::dynamics::step::Accuracy;
+use crate::dynamics::tolerance::Accuracy;
 use crate::settings::CoiloverSettings;
 use bevy::ecs::entity_disabling::Disabled;
 use bevy::ecs::query::Allow;

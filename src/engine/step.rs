@@ -5,7 +5,7 @@ use super::held::Ground;
 use super::scene::{ElementRow, Held};
 use super::timestep::Plan;
 use crate::dynamics::delivery::Schedule;
-use crate::dynamics::step::Accuracy;
+use crate::dynamics::tolerance::Accuracy;
 use bevy::math::DVec3;
 use bevy_rapier3d::prelude::*;
 use bevy_rapier3d::rapier::dynamics::{RigidBody as RapierBody, RigidBodyHandle, RigidBodySet};

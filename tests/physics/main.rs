@@ -22,6 +22,7 @@ mod quarter_car;
 mod repeatability;
 mod sleeping;
 mod spinning_pair;
+mod stability;
 mod static_sag;
 mod user_force;
 #[cfg(feature = "visual")]

@@ -1,0 +1,101 @@
+//! A network never has more energy than it was given.
+//!
+//! The coupled step keeps the energy of small motions at any stiffness; of large ones, where lines turn
+//! far within a step, only to the order of the step. So the sum is watched. A surplus is taken out of the
+//! motion along the elements; where there is not so much motion, the step is taken again by the implicit
+//! Euler rule, moving only as far as the energy at hand allows.
+
+use super::body::Body;
+use super::element::{Element, End};
+use super::energy::{Energy, take};
+use bevy::math::DVec3;
+
+/// Share of kinetic and stored energy by which the sum may seem to be too large: what a step of second order
+/// shows at its ends is not constant, only bounded.
+const SWAY: f64 = 0.02;
+
+/// Rounds of taking.
+const ROUNDS: usize = 4;
+
+/// What a network may have.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Bound {
+    /// Energy given so far: at first what it had, then what others than its elements changed.
+    given: Option<f64>,
+    /// What it had at the end of the last step.
+    last: f64,
+    /// Work that moving ends can have done in this step, at most.
+    work: f64,
+}
+
+impl Bound {
+    /// Sees what was done to the network since the last step.
+    pub(crate) fn begin(&mut self, elements: &[Element], bodies: &[Body]) {
+        // What contacts and joints hold is not ours to account for.
+        if bodies.iter().any(|body| body.mobility < 1.0) {
+            self.given = None;
+            return;
+        }
+        let now = Energy::of(elements, bodies).sum();
+        self.given = Some(self.given.map_or(now, |given| given + now - self.last));
+        self.work = power(elements, bodies);
+    }
+
+    /// Takes a surplus out of the motion; says whether that was enough.
+    pub(crate) fn hold(&mut self, elements: &[Element], bodies: &mut [Body], time: f64) -> bool {
+        let Some(given) = self.given else {
+            return true;
+        };
+        self.work = self.work.max(power(elements, bodies));
+        let most =
+            |energy: &Energy| given + time * self.work + SWAY * (energy.motion + energy.stored);
+        for _ in 0..ROUNDS {
+            let energy = Energy::of(elements, bodies);
+            let surplus = energy.sum() - most(&energy);
+            if surplus <= 0.0 {
+                return true;
+            }
+            if !surplus.is_finite() || surplus > energy.motion {
+                return false;
+            }
+            if take(elements, bodies, surplus) < 0.01 * surplus {
+                return false;
+            }
+        }
+        false
+    }
+
+    /// Whether the stored energy alone is within the bound.
+    pub(crate) fn allows(&self, elements: &[Element], bodies: &[Body], time: f64) -> bool {
+        let energy = Energy::of(elements, bodies);
+        self.given
+            .is_none_or(|given| energy.stored + energy.place <= given + time * self.work)
+    }
+
+    /// Notes what the step ends with.
+    pub(crate) fn end(&mut self, elements: &[Element], bodies: &[Body], time: f64) {
+        self.last = Energy::of(elements, bodies).sum();
+        if let Some(given) = &mut self.given {
+            *given += time * self.work;
+        }
+    }
+}
+
+/// Power of ends that something else moves, at most, W.
+fn power(elements: &[Element], bodies: &[Body]) -> f64 {
+    let mut sum = 0.0;
+    for element in elements {
+        for end in &element.ends {
+            if let End::Path { velocity, .. } = end
+                && *velocity != DVec3::ZERO
+                && let Some(line) = element.line(bodies)
+            {
+                let rate = line.motion(element, bodies, 0.0).axial;
+                let stretch = line.length - element.rest_length;
+                let tension = element.stiffness * stretch + element.damping * rate;
+                sum += tension.abs() * velocity.length();
+            }
+        }
+    }
+    sum
+}

@@ -1,0 +1,293 @@
+//! How finely to step: a fixed count, or as finely as a tolerance asks.
+//!
+//! Plain micro-steps have an error C₂/n², the combination of m and 2m an error C₄/m⁴ for 3m kicks. Now and
+//! then a step is taken with m, 2m and 4m, which tells both; between, the cheaper of the two that keeps the
+//! tolerance is taken. The probing step itself keeps its most exact result.
+
+/// What is asked of a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Accuracy {
+    pub microsteps: u32,
+    pub extrapolate: bool,
+    /// Error of position that may be added, m per simulated second; then the two above do not count.
+    pub tolerance: Option<f64>,
+    pub max_microsteps: u32,
+    /// Most iterations of one solve of a large network.
+    pub max_iterations: u32,
+}
+
+/// How a component was solved.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum Method {
+    #[default]
+    None,
+    ClosedForm,
+    Direct,
+    Iterative,
+}
+
+/// What a step took.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Outcome {
+    pub method: Method,
+    /// Kicks made.
+    pub microsteps: u32,
+    /// Estimate of the error of position that the step added, m.
+    pub error: Option<f64>,
+    /// A cap kept the step from being as fine or as exact as was asked.
+    pub capped: bool,
+}
+
+/// A motion that can be run over the step again and again, from copies of its state.
+pub(crate) trait Motion {
+    /// Copies the state into a slot, of three.
+    fn save(&mut self, slot: usize);
+    /// Takes it back.
+    fn load(&mut self, slot: usize);
+    /// Runs over the step in so many micro-steps; returns the kicks.
+    fn run(&mut self, time: f64, count: u32) -> u32;
+    /// Distance to the state in a slot, m.
+    fn distance(&self, slot: usize) -> f64;
+    /// Adds a third of the difference to the state in a slot: removes the leading error of one with half
+    /// as many steps, since only even powers of the step occur.
+    fn extrapolate(&mut self, slot: usize);
+    /// Whether a micro-step of so long resolves the motion, so that extrapolation converges.
+    fn is_resolved(&mut self, step: f64) -> bool;
+}
+
+/// Time over which a velocity that is wrong becomes a position that is wrong, s.
+pub(crate) const VELOCITY_COUNTS: f64 = 0.15;
+
+/// Share of the tolerance that is planned for.
+const SAFETY: f64 = 0.7;
+
+/// Steps from probe to probe, where little is needed and elsewhere.
+const CALM: u32 = 24;
+const BUSY: u32 = 8;
+
+/// Memory of a motion's errors.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Controller {
+    /// Error constants, m/s: plain, and of the combination where that is valid.
+    known: Option<(f64, Option<f64>)>,
+    age: u32,
+}
+
+/// One way to take a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Plan {
+    Plain(u32),
+    Extrapolated(u32),
+}
+
+impl Controller {
+    /// Takes a motion through a step.
+    pub(crate) fn drive(
+        &mut self,
+        motion: &mut impl Motion,
+        time: f64,
+        accuracy: Accuracy,
+    ) -> Outcome {
+        let Some(tolerance) = accuracy.tolerance else {
+            return fixed(motion, time, accuracy);
+        };
+        let most = accuracy.max_microsteps.max(1);
+        let (mut outcome, plan) = match self.known.filter(|_| self.age > 0) {
+            Some(known) => {
+                self.age -= 1;
+                let (plan, capped) = cheapest(known, SAFETY * tolerance, most);
+                let outcome = Outcome {
+                    microsteps: take(motion, time, plan),
+                    error: Some(time * error_of(known, plan)),
+                    capped,
+                    ..Outcome::default()
+                };
+                (outcome, plan)
+            }
+            None => self.probe(motion, time, tolerance, most),
+        };
+        outcome.capped |= error_of(self.known.unwrap_or_default(), plan) > tolerance;
+        outcome
+    }
+
+    /// Takes the step with three counts and learns from it.
+    fn probe(
+        &mut self,
+        motion: &mut impl Motion,
+        time: f64,
+        tolerance: f64,
+        most: u32,
+    ) -> (Outcome, Plan) {
+        let m = match self.known {
+            Some(known) => match cheapest(known, SAFETY * tolerance, most).0 {
+                Plan::Plain(n) => (n / 4).max(1),
+                Plan::Extrapolated(m) => (m / 2).max(1),
+            },
+            None => 1,
+        };
+        motion.save(0);
+        let mut kicks = motion.run(time, m);
+        motion.save(1);
+        motion.load(0);
+        kicks += motion.run(time, 2 * m);
+        let count = f64::from(m);
+        let plain = 4.0 / 3.0 * motion.distance(1) * count * count / time;
+        if !motion.is_resolved(time / count) {
+            self.known = Some((plain, None));
+        } else {
+            motion.save(2);
+            motion.extrapolate(1);
+            motion.save(1);
+            motion.load(0);
+            kicks += motion.run(time, 4 * m);
+            motion.extrapolate(2);
+            let fine = 16.0 / 15.0 * motion.distance(1) * count.powi(4) / time;
+            self.known = Some((plain, Some(fine)));
+        }
+        let known = self.known.unwrap_or_default();
+        let (plan, _) = cheapest(known, SAFETY * tolerance, most);
+        let calm = plan == Plan::Plain(1) && known.0 < 0.25 * tolerance;
+        self.age = if calm { CALM } else { BUSY };
+        let taken = match known.1 {
+            Some(_) => Plan::Extrapolated(2 * m),
+            None => Plan::Plain(2 * m),
+        };
+        let mut error = error_of(known, taken);
+        if error > tolerance && taken != plan {
+            // Not fine enough even so.
+            motion.load(0);
+            kicks += take(motion, time, plan);
+            error = error_of(known, plan);
+        }
+        let outcome = Outcome {
+            microsteps: kicks,
+            error: Some(time * error),
+            ..Outcome::default()
+        };
+        (outcome, if error > tolerance { plan } else { taken })
+    }
+}
+
+/// As many micro-steps as are asked for.
+fn fixed(motion: &mut impl Motion, time: f64, accuracy: Accuracy) -> Outcome {
+    let asked = accuracy.microsteps.max(1);
+    let count = asked.min(accuracy.max_microsteps.max(1));
+    let plan = if !accuracy.extrapolate {
+        Plan::Plain(count)
+    } else if motion.is_resolved(time / f64::from(count)) {
+        Plan::Extrapolated(count)
+    } else {
+        // The same three kicks, spent on plain micro-steps, which never diverge.
+        Plan::Plain(3 * count)
+    };
+    Outcome {
+        microsteps: take(motion, time, plan),
+        capped: count < asked,
+        ..Outcome::default()
+    }
+}
+
+fn take(motion: &mut impl Motion, time: f64, plan: Plan) -> u32 {
+    match plan {
+        Plan::Plain(n) => motion.run(time, n),
+        Plan::Extrapolated(m) => {
+            motion.save(0);
+            let coarse = motion.run(time, m);
+            motion.save(1);
+            motion.load(0);
+            let fine = motion.run(time, 2 * m);
+            motion.extrapolate(1);
+            coarse + fine
+        }
+    }
+}
+
+/// Error of a plan, m/s.
+fn error_of((plain, fine): (f64, Option<f64>), plan: Plan) -> f64 {
+    match (plan, fine) {
+        (Plan::Extrapolated(m), Some(fine)) => fine / f64::from(m).powi(4),
+        (Plan::Plain(n) | Plan::Extrapolated(n), _) => plain / f64::from(n).powi(2),
+    }
+}
+
+/// The plan with the fewest kicks that keeps the tolerance, and whether the cap kept it from doing so.
+fn cheapest((plain, fine): (f64, Option<f64>), tolerance: f64, most: u32) -> (Plan, bool) {
+    let wanted = |ratio: f64| ratio.max(1.0).ceil().min(1e6) as u32;
+    let n = wanted((plain / tolerance).sqrt());
+    let extrapolated = fine.map(|fine| wanted((fine / tolerance).sqrt().sqrt()));
+    match extrapolated {
+        Some(m) if 3 * m < n => (
+            Plan::Extrapolated(m.min((most / 3).max(1))),
+            m > (most / 3).max(1),
+        ),
+        _ => (Plan::Plain(n.min(most)), n > most),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A motion whose error is C/n² + D/n⁴ per step.
+    struct Model {
+        errors: (f64, f64),
+        now: f64,
+        slots: [f64; 3],
+        kicks: u32,
+    }
+
+    impl Motion for Model {
+        fn save(&mut self, slot: usize) {
+            self.slots[slot] = self.now;
+        }
+        fn load(&mut self, slot: usize) {
+            self.now = self.slots[slot];
+        }
+        fn run(&mut self, time: f64, count: u32) -> u32 {
+            let n = f64::from(count);
+            self.now += time * (self.errors.0 / n.powi(2) + self.errors.1 / n.powi(4));
+            self.kicks += count;
+            count
+        }
+        fn distance(&self, slot: usize) -> f64 {
+            (self.now - self.slots[slot]).abs()
+        }
+        fn extrapolate(&mut self, slot: usize) {
+            self.now += (self.now - self.slots[slot]) / 3.0;
+        }
+        fn is_resolved(&mut self, _: f64) -> bool {
+            true
+        }
+    }
+
+    #[test]
+    fn the_tolerance_is_kept_with_few_kicks() {
+        for (errors, tolerance, most) in [
+            ((1e-3, 1e-4), 1e-2, 1.5),
+            ((1e-1, 1e-3), 1e-2, 5.5),
+            ((1.0, 1e-2), 1e-3, 9.0),
+            ((1.0, 1.0), 1e-4, 60.0),
+        ] {
+            let mut model = Model {
+                errors,
+                now: 0.0,
+                slots: [0.0; 3],
+                kicks: 0,
+            };
+            let mut controller = Controller::default();
+            let accuracy = Accuracy {
+                microsteps: 1,
+                extrapolate: false,
+                tolerance: Some(tolerance),
+                max_microsteps: 256,
+                max_iterations: 1,
+            };
+            for _ in 0..240 {
+                controller.drive(&mut model, 1.0 / 240.0, accuracy);
+            }
+            assert!(model.now.abs() <= tolerance, "{errors:?}: {}", model.now);
+            let kicks = f64::from(model.kicks) / 240.0;
+            assert!(kicks < most, "{errors:?} at {tolerance}: {kicks} kicks");
+        }
+    }
+}
