@@ -65,6 +65,41 @@ impl Bound {
         false
     }
 
+    /// Slows all motion, about the common centre of mass where nothing else holds the network, until the
+    /// bound is kept; for where the stored energy alone keeps it.
+    pub(crate) fn slow(&self, elements: &[Element], bodies: &mut [Body], time: f64) {
+        let Some(given) = self.given else {
+            return;
+        };
+        let energy = Energy::of(elements, bodies);
+        let room = given + time * self.work - energy.stored - energy.place;
+        if energy.motion <= room || energy.motion <= 0.0 {
+            return;
+        }
+        let held = elements
+            .iter()
+            .flat_map(|element| element.ends)
+            .any(|end| matches!(end, End::Path { .. }));
+        let (mass, momentum) = bodies.iter().fold((DVec3::ZERO, DVec3::ZERO), |sum, body| {
+            (sum.0 + body.mass(), sum.1 + body.mass() * body.velocity)
+        });
+        let common = if held || mass.min_element() <= 0.0 {
+            DVec3::ZERO
+        } else {
+            momentum / mass
+        };
+        let carried = 0.5 * (mass * common).dot(common);
+        let share = ((room - carried).max(0.0) / (energy.motion - carried).max(f64::MIN_POSITIVE))
+            .min(1.0)
+            .sqrt();
+        for body in bodies {
+            let mut slowed = *body;
+            slowed.velocity -= common;
+            body.slow_to(&slowed, share);
+            body.velocity += common;
+        }
+    }
+
     /// Whether the stored energy alone is within the bound.
     pub(crate) fn allows(&self, elements: &[Element], bodies: &[Body], time: f64) -> bool {
         let energy = Energy::of(elements, bodies);

@@ -89,7 +89,6 @@ impl Component {
             );
             self.yield_to(&motion, time, &bound);
             self.memory.network.give_back(motion);
-            bound.hold(&self.elements, &mut self.bodies, time);
         }
         bound.end(&self.elements, &self.bodies, time);
         self.memory.bound = bound;
@@ -214,6 +213,7 @@ impl Component {
             share *= 0.5;
             self.load(0);
         }
+        bound.slow(&self.elements, &mut self.bodies, time);
         for (body, start) in self.bodies.iter_mut().zip(&self.memory.saved[0].bodies) {
             body.receive(start, time);
         }
