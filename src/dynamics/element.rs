@@ -219,6 +219,12 @@ impl Element {
 }
 
 impl Line {
+    /// Largest coordinate of its ends, which says how coarse their f32 is.
+    pub(crate) fn reach(&self) -> f64 {
+        let [a, b] = self.holds.map(|hold| hold.position.abs().max_element());
+        a.max(b)
+    }
+
     /// What the line does at the bodies' present velocities; `step` resolves the turning.
     pub(crate) fn motion(&self, element: &Element, bodies: &[Body], step: f64) -> Motion {
         let [a, b] = [0, 1].map(|i| element.ends[i].motion(&self.holds[i], bodies));

@@ -196,16 +196,22 @@ impl Network {
                 .iter()
                 .filter_map(|hold| Some(self.stiffness[hold.body?]))
                 .fold(0.0, f64::max);
-            let settling = settling(h2 * stiffest) * step;
-            let c = element.damping + settling * k;
+            let settle = settling(h2 * stiffest) * step;
+            let c = element.damping + settle * k;
             let rate = line.backward_rate(before, step);
             let tension = k * (line.length - element.rest_length) + c * rate;
             let damping = damper_placement(c * step * line.inverse_mass) * step * c;
             let across = across(element, line, tension);
+            let freest: f64 = line
+                .holds
+                .iter()
+                .map(|h| h.inverse_mass.max_element())
+                .sum();
+            let settle_across = settling(2.0 * h2 * across * freest) * step;
             // The half drift counted h²/8 of the turning as stretch already.
             row.turning = (theta - 0.125) * h2 * k + damping;
-            row.load = tension * line.direction + settling * across * before.lateral;
-            let across = (theta * h2 + 0.5 * settling * step) * across;
+            row.load = tension * line.direction + settle_across * across * before.lateral;
+            let across = (theta * h2 + 0.5 * settle_across * step) * across;
             let along = theta * h2 * k + damping;
             self.system.struts.push(strut(line, bodies, along, across));
         }

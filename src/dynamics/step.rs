@@ -87,7 +87,7 @@ impl Component {
                 time,
                 self.memory.max_iterations,
             );
-            self.yield_to(&motion, time, &bound);
+            self.yield_to(&motion, time, &mut bound);
             self.memory.network.give_back(motion);
         }
         bound.end(&self.elements, &self.bodies, time);
@@ -199,7 +199,7 @@ impl Component {
     }
 
     /// Moves with these velocities, as far as the stored energy allows.
-    fn yield_to(&mut self, motion: &[Body], time: f64, bound: &Bound) {
+    fn yield_to(&mut self, motion: &[Body], time: f64, bound: &mut Bound) {
         let mut share = 1.0;
         for _ in 0..HALVINGS {
             for (body, moved) in self.bodies.iter_mut().zip(motion) {
