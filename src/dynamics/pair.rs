@@ -82,15 +82,24 @@ impl Motion for Moving<'_> {
         self.state = self.saved[slot];
     }
 
-    fn run(&mut self, time: f64, count: u32) -> u32 {
+    fn least(&mut self, _: f64) -> u32 {
+        1
+    }
+
+    fn run(&mut self, time: f64, count: u32) {
         self.pair
             .microsteps(&mut self.state, time, count, self.memo);
-        count
     }
 
     fn distance(&self, slot: usize) -> f64 {
         let (a, b) = (&self.state, &self.saved[slot]);
-        (a.d - b.d).length() + VELOCITY_COUNTS * (a.v - b.v).length()
+        let (moved, sped) = (a.d - b.d, a.v - b.v);
+        let along = a.direction.unwrap_or(DVec3::ZERO);
+        let axial = sped.dot(along);
+        // Along the line a wrong velocity swings back within a period.
+        let omega = (self.pair.stiffness * self.pair.inverse_mass).sqrt();
+        let counts = VELOCITY_COUNTS.min(omega.recip());
+        moved.length() + counts * axial.abs() + VELOCITY_COUNTS * (sped - axial * along).length()
     }
 
     fn extrapolate(&mut self, slot: usize) {

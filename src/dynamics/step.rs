@@ -115,22 +115,6 @@ impl Component {
         sum
     }
 
-    /// How many times finer a network has to step for its stiffest mode to be resolved; once where that
-    /// is out of reach.
-    fn extra_steps(&mut self, step: f64) -> u32 {
-        if self.is_alone() {
-            return 1;
-        }
-        let network = &mut self.memory.network;
-        let (z, _) = network.bounds(&self.elements, &self.bodies, step);
-        let finer = (z / RESOLVED).sqrt().ceil();
-        if finer <= f64::from(EXTRA_STEPS) {
-            finer.max(1.0) as u32
-        } else {
-            1
-        }
-    }
-
     /// Micro-steps of one element alone.
     fn run_alone(&mut self, step: f64, count: u32) {
         let guard = Guard::begin(&self.elements[0], &self.bodies, step);
@@ -236,8 +220,22 @@ impl Motion for Component {
         self.elements.clone_from(&saved.elements);
     }
 
-    fn run(&mut self, time: f64, count: u32) -> u32 {
-        let count = count * self.extra_steps(time / f64::from(count));
+    /// As many as resolve a network's stiffest mode; one where that is out of reach.
+    fn least(&mut self, time: f64) -> u32 {
+        if self.is_alone() {
+            return 1;
+        }
+        let network = &mut self.memory.network;
+        let (z, _) = network.bounds(&self.elements, &self.bodies, time);
+        let finer = (z / RESOLVED).sqrt().ceil();
+        if finer <= f64::from(EXTRA_STEPS) {
+            finer.max(1.0) as u32
+        } else {
+            1
+        }
+    }
+
+    fn run(&mut self, time: f64, count: u32) {
         let step = time / f64::from(count);
         self.aim(step);
         if self.is_alone() {
@@ -245,7 +243,6 @@ impl Motion for Component {
         } else {
             self.run_network(step, count);
         }
-        count
     }
 
     fn distance(&self, slot: usize) -> f64 {

@@ -44,8 +44,10 @@ pub(crate) trait Motion {
     fn save(&mut self, slot: usize);
     /// Takes it back.
     fn load(&mut self, slot: usize);
-    /// Runs over the step in so many micro-steps; returns the kicks.
-    fn run(&mut self, time: f64, count: u32) -> u32;
+    /// Micro-steps that it needs in any case.
+    fn least(&mut self, time: f64) -> u32;
+    /// Runs over the step in so many micro-steps.
+    fn run(&mut self, time: f64, count: u32);
     /// Distance to the state in a slot, m.
     fn distance(&self, slot: usize) -> f64;
     /// Adds a third of the difference to the state in a slot: removes the leading error of one with half
@@ -58,9 +60,6 @@ pub(crate) trait Motion {
 /// Time over which a velocity that is wrong becomes a position that is wrong, s.
 pub(crate) const VELOCITY_COUNTS: f64 = 0.15;
 
-/// Share of the tolerance that is planned for.
-const SAFETY: f64 = 0.7;
-
 /// Steps from probe to probe, where little is needed and elsewhere.
 const CALM: u32 = 24;
 const BUSY: u32 = 8;
@@ -70,7 +69,10 @@ const BUSY: u32 = 8;
 pub(crate) struct Controller {
     /// Error constants, m/s: plain, and of the combination where that is valid.
     known: Option<(f64, Option<f64>)>,
+    /// Steps until the next probe.
     age: u32,
+    /// Probes in a row that found little to do.
+    calm: u32,
 }
 
 /// One way to take a step.
@@ -91,23 +93,21 @@ impl Controller {
         let Some(tolerance) = accuracy.tolerance else {
             return fixed(motion, time, accuracy);
         };
-        let most = accuracy.max_microsteps.max(1);
-        let (mut outcome, plan) = match self.known.filter(|_| self.age > 0) {
+        let least = motion.least(time);
+        let most = accuracy.max_microsteps.max(least);
+        match self.known.filter(|_| self.age > 0) {
             Some(known) => {
                 self.age -= 1;
-                let (plan, capped) = cheapest(known, SAFETY * tolerance, most);
-                let outcome = Outcome {
+                let (plan, capped) = cheapest(known, tolerance, [least, most]);
+                Outcome {
                     microsteps: take(motion, time, plan),
                     error: Some(time * error_of(known, plan)),
                     capped,
                     ..Outcome::default()
-                };
-                (outcome, plan)
+                }
             }
-            None => self.probe(motion, time, tolerance, most),
-        };
-        outcome.capped |= error_of(self.known.unwrap_or_default(), plan) > tolerance;
-        outcome
+            None => self.probe(motion, time, tolerance, [least, most]),
+        }
     }
 
     /// Takes the step with three counts and learns from it.
@@ -116,20 +116,21 @@ impl Controller {
         motion: &mut impl Motion,
         time: f64,
         tolerance: f64,
-        most: u32,
-    ) -> (Outcome, Plan) {
+        [least, most]: [u32; 2],
+    ) -> Outcome {
         let m = match self.known {
-            Some(known) => match cheapest(known, SAFETY * tolerance, most).0 {
-                Plan::Plain(n) => (n / 4).max(1),
-                Plan::Extrapolated(m) => (m / 2).max(1),
+            Some(known) => match cheapest(known, tolerance, [least, most]).0 {
+                Plan::Plain(n) => (n / 4).max(least),
+                Plan::Extrapolated(m) => (m / 2).max(least),
             },
-            None => 1,
+            None => least,
         };
         motion.save(0);
-        let mut kicks = motion.run(time, m);
+        motion.run(time, m);
         motion.save(1);
         motion.load(0);
-        kicks += motion.run(time, 2 * m);
+        motion.run(time, 2 * m);
+        let mut kicks = 3 * m;
         let count = f64::from(m);
         let plain = 4.0 / 3.0 * motion.distance(1) * count * count / time;
         if !motion.is_resolved(time / count) {
@@ -139,15 +140,17 @@ impl Controller {
             motion.extrapolate(1);
             motion.save(1);
             motion.load(0);
-            kicks += motion.run(time, 4 * m);
+            motion.run(time, 4 * m);
+            kicks += 4 * m;
             motion.extrapolate(2);
             let fine = 16.0 / 15.0 * motion.distance(1) * count.powi(4) / time;
             self.known = Some((plain, Some(fine)));
         }
         let known = self.known.unwrap_or_default();
-        let (plan, _) = cheapest(known, SAFETY * tolerance, most);
-        let calm = plan == Plan::Plain(1) && known.0 < 0.25 * tolerance;
-        self.age = if calm { CALM } else { BUSY };
+        let (plan, capped) = cheapest(known, tolerance, [least, most]);
+        let calm = plan == Plan::Plain(least) && known.0 < 0.25 * tolerance;
+        self.calm = if calm { self.calm + 1 } else { 0 };
+        self.age = if self.calm > 2 { CALM } else { BUSY };
         let taken = match known.1 {
             Some(_) => Plan::Extrapolated(2 * m),
             None => Plan::Plain(2 * m),
@@ -159,18 +162,18 @@ impl Controller {
             kicks += take(motion, time, plan);
             error = error_of(known, plan);
         }
-        let outcome = Outcome {
+        Outcome {
             microsteps: kicks,
             error: Some(time * error),
+            capped: capped && error > tolerance,
             ..Outcome::default()
-        };
-        (outcome, if error > tolerance { plan } else { taken })
+        }
     }
 }
 
 /// As many micro-steps as are asked for.
 fn fixed(motion: &mut impl Motion, time: f64, accuracy: Accuracy) -> Outcome {
-    let asked = accuracy.microsteps.max(1);
+    let asked = accuracy.microsteps.max(motion.least(time));
     let count = asked.min(accuracy.max_microsteps.max(1));
     let plan = if !accuracy.extrapolate {
         Plan::Plain(count)
@@ -189,15 +192,18 @@ fn fixed(motion: &mut impl Motion, time: f64, accuracy: Accuracy) -> Outcome {
 
 fn take(motion: &mut impl Motion, time: f64, plan: Plan) -> u32 {
     match plan {
-        Plan::Plain(n) => motion.run(time, n),
+        Plan::Plain(n) => {
+            motion.run(time, n);
+            n
+        }
         Plan::Extrapolated(m) => {
             motion.save(0);
-            let coarse = motion.run(time, m);
+            motion.run(time, m);
             motion.save(1);
             motion.load(0);
-            let fine = motion.run(time, 2 * m);
+            motion.run(time, 2 * m);
             motion.extrapolate(1);
-            coarse + fine
+            3 * m
         }
     }
 }
@@ -211,8 +217,12 @@ fn error_of((plain, fine): (f64, Option<f64>), plan: Plan) -> f64 {
 }
 
 /// The plan with the fewest kicks that keeps the tolerance, and whether the cap kept it from doing so.
-fn cheapest((plain, fine): (f64, Option<f64>), tolerance: f64, most: u32) -> (Plan, bool) {
-    let wanted = |ratio: f64| ratio.max(1.0).ceil().min(1e6) as u32;
+fn cheapest(
+    (plain, fine): (f64, Option<f64>),
+    tolerance: f64,
+    [least, most]: [u32; 2],
+) -> (Plan, bool) {
+    let wanted = |ratio: f64| (ratio.ceil().min(1e6) as u32).max(least);
     let n = wanted((plain / tolerance).sqrt());
     let extrapolated = fine.map(|fine| wanted((fine / tolerance).sqrt().sqrt()));
     match extrapolated {
@@ -243,11 +253,13 @@ mod tests {
         fn load(&mut self, slot: usize) {
             self.now = self.slots[slot];
         }
-        fn run(&mut self, time: f64, count: u32) -> u32 {
+        fn least(&mut self, _: f64) -> u32 {
+            1
+        }
+        fn run(&mut self, time: f64, count: u32) {
             let n = f64::from(count);
             self.now += time * (self.errors.0 / n.powi(2) + self.errors.1 / n.powi(4));
             self.kicks += count;
-            count
         }
         fn distance(&self, slot: usize) -> f64 {
             (self.now - self.slots[slot]).abs()

@@ -24,6 +24,7 @@ mod sleeping;
 mod spinning_pair;
 mod stability;
 mod static_sag;
+mod tolerance;
 mod user_force;
 #[cfg(feature = "visual")]
 mod visual_data;

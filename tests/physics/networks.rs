@@ -10,15 +10,15 @@ use std::f64::consts::PI;
 
 /// What joins the points.
 #[derive(Clone, Copy)]
-enum Link {
+pub enum Link {
     Ours,
     Joint,
 }
 
 /// Points of a mass, some of them fixed, joined pairwise at their first distance.
-struct Net {
-    lab: Lab,
-    points: Vec<Entity>,
+pub struct Net {
+    pub lab: Lab,
+    pub points: Vec<Entity>,
 }
 
 struct Plan<'a> {
@@ -107,10 +107,10 @@ fn error(mut net: Net, file: &str, watched: &[usize]) -> f64 {
     worst
 }
 
-#[test]
-fn chain_of_ten_and_lattice_of_six_follow_the_reference() {
+/// The reference's hanging chain of ten, and the points of it whose motion is known.
+pub fn swing(lab: Lab, link: Link) -> (Net, &'static str, &'static [usize]) {
     let (at, pairs) = chain(10);
-    let swing = Plan {
+    let plan = Plan {
         at: &at,
         fixed: &[0],
         mass: 0.1,
@@ -119,17 +119,13 @@ fn chain_of_ten_and_lattice_of_six_follow_the_reference() {
         damping: 0.5,
     };
     let file = include_str!("../data/chain10_k100_c0.5.csv");
-    let run = |link| error(net(Lab::new(), &swing, link), file, &[5, 10]);
-    let (ours, joint) = (run(Link::Ours), run(Link::Joint));
-    println!(
-        "chain of 10: ours {:.2} mm, SpringJoint {:.1} mm",
-        1e3 * ours,
-        1e3 * joint
-    );
-    assert!(ours <= 8e-3 && joint > 10.0 * ours, "{ours} {joint}");
+    (net(lab, &plan, link), file, &[5, 10])
+}
 
+/// The reference's sheet of 6 × 6 points, hung at two corners.
+pub fn sheet(lab: Lab, link: Link) -> (Net, &'static str, &'static [usize]) {
     let (at, pairs) = lattice(6);
-    let sheet = Plan {
+    let plan = Plan {
         at: &at,
         fixed: &[0, 5],
         mass: 0.05,
@@ -138,8 +134,23 @@ fn chain_of_ten_and_lattice_of_six_follow_the_reference() {
         damping: 0.5,
     };
     let file = include_str!("../data/lattice6_k100_c0.5.csv");
-    let run = |link| error(net(Lab::new(), &sheet, link), file, &[14, 33, 35]);
-    let (ours, joint) = (run(Link::Ours), run(Link::Joint));
+    (net(lab, &plan, link), file, &[14, 33, 35])
+}
+
+#[test]
+fn chain_of_ten_and_lattice_of_six_follow_the_reference() {
+    let run = |scene: fn(Lab, Link) -> _, link| {
+        let (net, file, watched) = scene(Lab::new(), link);
+        error(net, file, watched)
+    };
+    let (ours, joint) = (run(swing, Link::Ours), run(swing, Link::Joint));
+    println!(
+        "chain of 10: ours {:.2} mm, SpringJoint {:.1} mm",
+        1e3 * ours,
+        1e3 * joint
+    );
+    assert!(ours <= 8e-3 && joint > 10.0 * ours, "{ours} {joint}");
+    let (ours, joint) = (run(sheet, Link::Ours), run(sheet, Link::Joint));
     println!(
         "lattice 6×6: ours {:.3} mm, SpringJoint {:.1} mm",
         1e3 * ours,
