@@ -133,7 +133,9 @@ impl Controller {
         let mut kicks = 3 * m;
         let count = f64::from(m);
         let plain = 4.0 / 3.0 * motion.distance(1) * count * count / time;
-        if !motion.is_resolved(time / count) {
+        // The combination costs three times the least: nothing is to be learnt where that many plain ones do.
+        let cheap = plain <= tolerance * f64::from(3 * least).powi(2);
+        if cheap || !motion.is_resolved(time / count) {
             self.known = Some((plain, None));
         } else {
             motion.save(2);
