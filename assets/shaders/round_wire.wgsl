@@ -35,7 +35,7 @@ struct Point {
 }
 
 // Without scale: a point in the coil's own frame, for a coil of this radius, wire radius and length.
-fn tube(radius: f32, wire_radius: f32, length: f32, uv: vec2<f32>, cap: vec2<f32>) -> Point {
+fn tube(radius: f32, wire_radius: f32, length: f32, uv: vec2<f32>) -> Point {
     let turns = round_wire.shape.z;
     let hand = round_wire.style.x;
     let open = round_wire.style.y < 0.5;
@@ -47,7 +47,7 @@ fn tube(radius: f32, wire_radius: f32, length: f32, uv: vec2<f32>, cap: vec2<f32
     var pitch = 0.0;
     var start = 0.0;
     var rise = 0.0;
-    for (var i = 0; i < 3; i += 1) {
+    for (var i = 0u; i < 3u; i += 1u) {
         let slope = end_pitch / (TAU * radius);
         start = select(wire_radius * inverseSqrt(1.0 + slope * slope), 0.0, ground);
         rise = max(length - 2.0 * start, 0.0);
@@ -59,17 +59,12 @@ fn tube(radius: f32, wire_radius: f32, length: f32, uv: vec2<f32>, cap: vec2<f32
     let turn = uv.x * turns;
     let lower = turn <= turns - turn;
     let near = max(min(turn, turns - turn), 0.0);
+    // Selections instead of branches: Mesa's software driver of 2022 crashes on the latter here.
     let more = pitch - end_pitch;
-    var climbed = end_pitch * near;
-    var here = end_pitch;
-    if near > dead + blend {
-        climbed += more * (near - dead - 0.5 * blend);
-        here = pitch;
-    } else if near > dead {
-        let x = near - dead;
-        climbed += more * x * x / (2.0 * blend);
-        here += more * x / blend;
-    }
+    let blended = clamp(near - dead, 0.0, blend);
+    let share = select(blended / max(blend, 1e-6), 1.0, near >= dead + blend);
+    let here = end_pitch + more * share;
+    let climbed = end_pitch * near + more * (0.5 * blended * share + max(near - dead - blend, 0.0));
     let above = start + climbed;
     let height = select(2.0 * start + rise - above, above, lower);
 
@@ -90,29 +85,23 @@ fn tube(radius: f32, wire_radius: f32, length: f32, uv: vec2<f32>, cap: vec2<f32
     let across = cos(TAU * uv.y);
     let along = sin(TAU * uv.y);
     let kept = clamp(along, low, high);
-    var normal = across * outward + along * upward;
-    if along < kept {
-        normal = vec3(0.0, -1.0, 0.0);
-    } else if along > kept {
-        normal = vec3(0.0, 1.0, 0.0);
-    }
+    let round = across * outward + along * upward;
+    let flat_down = select(round, vec3(0.0, -1.0, 0.0), along < kept);
+    let normal = select(flat_down, vec3(0.0, 1.0, 0.0), along > kept);
 
+    // The caps of the ends.
+    let cap = uv.y > 1.5;
+    let rim = center + wire_radius * (across * outward + kept * upward);
+    let middle = center + wire_radius * 0.5 * (low + high) * upward;
     var out: Point;
-    out.position = center + wire_radius * (across * outward + kept * upward);
-    out.normal = normal;
-    out.tangent = vec4(tangent, hand);
-    if cap.y != 0.0 {
-        out.normal = cap.y * tangent;
-        out.tangent = vec4(outward, 1.0);
-        if cap.x < 0.5 {
-            out.position = center + wire_radius * 0.5 * (low + high) * upward;
-        }
-    }
+    out.position = select(rim, middle, uv.y > 3.5);
+    out.normal = select(normal, select(tangent, -tangent, uv.x < 0.5), cap);
+    out.tangent = select(vec4(tangent, hand), vec4(outward, 1.0), cap);
     return out;
 }
 
 // In the world: the model matrix gives place and turn, the lengths of its columns give size and stretch.
-fn placed(model: mat4x4<f32>, uv: vec2<f32>, cap: vec2<f32>) -> Point {
+fn placed(model: mat4x4<f32>, uv: vec2<f32>) -> Point {
     let size = length(model[0].xyz);
     let stretched = length(model[1].xyz);
     let local = tube(
@@ -120,7 +109,6 @@ fn placed(model: mat4x4<f32>, uv: vec2<f32>, cap: vec2<f32>) -> Point {
         round_wire.shape.y * size,
         round_wire.shape.w * stretched,
         uv,
-        cap,
     );
     let turned = mat3x3<f32>(
         model[0].xyz / max(size, 1e-20),
@@ -138,11 +126,10 @@ fn placed(model: mat4x4<f32>, uv: vec2<f32>, cap: vec2<f32>) -> Point {
 fn vertex(in: Vertex) -> VertexOutput {
     var out: VertexOutput;
     let model = mesh_functions::get_world_from_local(in.instance_index);
-    let point = placed(model, in.uv, in.uv_b);
+    let point = placed(model, in.uv);
     out.world_position = vec4(point.position, 1.0);
     out.position = position_world_to_clip(point.position);
     out.uv = in.uv;
-    out.uv_b = in.uv_b;
 
 #ifdef PREPASS_PIPELINE
 #ifdef UNCLIPPED_DEPTH_ORTHO_EMULATION
@@ -157,7 +144,7 @@ fn vertex(in: Vertex) -> VertexOutput {
 #endif
 #ifdef MOTION_VECTOR_PREPASS
     let before = mesh_functions::get_previous_world_from_local(in.instance_index);
-    out.previous_world_position = vec4(placed(before, in.uv, in.uv_b).position, 1.0);
+    out.previous_world_position = vec4(placed(before, in.uv).position, 1.0);
 #endif
 #else
     out.world_normal = point.normal;

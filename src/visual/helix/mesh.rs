@@ -9,10 +9,9 @@ use std::f32::consts::TAU;
 
 /// Builds the mesh of a [`Helix`], as for every primitive of Bevy.
 ///
-/// Besides positions, normals, tangents and UVs (along the wire, around it) the mesh has a second UV set
-/// that says how far from the wire's middle a vertex stands, 1 on the surface, and whether it is on the cap
-/// of the foot (−1), of the top (1), or on neither (0): what
-/// [`RoundWireMaterial`](crate::RoundWireMaterial) needs.
+/// The mesh has positions, normals, tangents, and UVs from 0 to 1 along the wire and around it. On the caps
+/// of its ends the latter is 2 greater at the rim and 4 in the middle, which a texture that repeats does not
+/// see and [`RoundWireMaterial`](crate::RoundWireMaterial) does.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HelixMeshBuilder {
     /// The coil.
@@ -25,6 +24,10 @@ pub struct HelixMeshBuilder {
 
 /// Most segments along a wire, whatever was asked for.
 const MOST_RINGS: f32 = 100_000.0;
+
+/// What the caps of the ends have as second UV: this and more at the rim, that in the middle.
+const CAP_RIM: f32 = 2.0;
+const CAP_MIDDLE: f32 = 4.0;
 
 impl HelixMeshBuilder {
     /// 48 segments a turn, 32 around the wire.
@@ -75,13 +78,7 @@ impl HelixMeshBuilder {
                 let point = wire.surface(&frame, TAU * angle);
                 let tangent = frame.tangent.extend(hand);
                 let uv = Vec2::new(along, angle);
-                out.push(
-                    point.position,
-                    point.normal,
-                    tangent,
-                    uv,
-                    Vec2::new(1.0, 0.0),
-                );
+                out.push(point.position, point.normal, tangent, uv);
             }
         }
         let row = around + 1;
@@ -98,18 +95,12 @@ impl HelixMeshBuilder {
             let normal = end * frame.tangent;
             let tangent = frame.outward.extend(1.0);
             let center = out.positions.len() as u32;
-            let uv = |angle: f32| Vec2::new(along, angle);
-            out.push(
-                wire.middle(&frame),
-                normal,
-                tangent,
-                uv(0.0),
-                Vec2::new(0.0, end),
-            );
+            let middle = Vec2::new(along, CAP_MIDDLE);
+            out.push(wire.middle(&frame), normal, tangent, middle);
             for step in 0..=around {
                 let position = out.positions[(first + step) as usize];
-                let angle = step as f32 / around as f32;
-                out.push(position, normal, tangent, uv(angle), Vec2::new(1.0, end));
+                let uv = Vec2::new(along, CAP_RIM + step as f32 / around as f32);
+                out.push(position, normal, tangent, uv);
             }
             for step in 0..around {
                 let a = center + 1 + step;
@@ -136,17 +127,15 @@ struct Vertices {
     normals: Vec<Vec3>,
     tangents: Vec<Vec4>,
     uvs: Vec<Vec2>,
-    wire: Vec<Vec2>,
     indices: Vec<u32>,
 }
 
 impl Vertices {
-    fn push(&mut self, position: Vec3, normal: Vec3, tangent: Vec4, uv: Vec2, wire: Vec2) {
+    fn push(&mut self, position: Vec3, normal: Vec3, tangent: Vec4, uv: Vec2) {
         self.positions.push(position);
         self.normals.push(normal);
         self.tangents.push(tangent);
         self.uvs.push(uv);
-        self.wire.push(wire);
     }
 
     fn face(&mut self, as_is: bool, [a, b, c]: [u32; 3]) {
@@ -163,7 +152,6 @@ impl Vertices {
         .with_inserted_attribute(Mesh::ATTRIBUTE_NORMAL, self.normals)
         .with_inserted_attribute(Mesh::ATTRIBUTE_TANGENT, self.tangents)
         .with_inserted_attribute(Mesh::ATTRIBUTE_UV_0, self.uvs)
-        .with_inserted_attribute(Mesh::ATTRIBUTE_UV_1, self.wire)
         .with_inserted_indices(Indices::U32(self.indices))
     }
 }
