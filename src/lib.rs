@@ -52,6 +52,7 @@ pub mod prelude {
     #[cfg(feature = "visual")]
     pub use crate::{
         Coil, CoiloverVisualPlugin, CoiloverVisualSystems, Handedness, Helix, HelixEnds, RoundWire,
-        RoundWireMaterial, ShowSpringGizmos, SpringGizmos, SpringSkin, Telescope, coilover,
+        RoundWireMaterial, ShowSpringGizmos, SpringGizmos, SpringSkin, Telescope, WoundCoil,
+        coilover,
     };
 }
