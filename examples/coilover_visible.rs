@@ -64,9 +64,12 @@ fn setup(mut commands: Commands) {
             .with_rest_length(REST),
         Anchors::new(Vec3::Y * 0.14, Vec3::NEG_Y * 0.1),
         wound.coil,
-        Telescope::new(0.034, 0.011)
-            .with_stroke(0.26)
-            .with_fittings(),
+        Telescope {
+            tube_length: Some(0.3),
+            ..Telescope::new(0.034, 0.012)
+                .with_stroke(0.26)
+                .with_fittings()
+        },
         Track::default(),
     ));
 }
