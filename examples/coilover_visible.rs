@@ -22,8 +22,8 @@ fn main() -> AppExit {
         },
         seconds: 4.0,
         check,
-        eye: Vec3::new(0.55, 0.95, 1.55),
-        target: Vec3::new(0.0, 0.5, 0.0),
+        eye: Vec3::new(0.45, 0.85, 1.3),
+        target: Vec3::new(0.0, 0.47, 0.0),
     })
 }
 

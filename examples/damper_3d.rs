@@ -22,8 +22,8 @@ fn main() -> AppExit {
         },
         seconds: 2.0,
         check,
-        eye: Vec3::new(0.6, 1.9, 4.2),
-        target: Vec3::new(0.0, 0.9, 0.0),
+        eye: Vec3::new(0.1, 1.8, 3.8),
+        target: Vec3::new(-0.6, 0.75, 0.0),
     })
 }
 

@@ -1,6 +1,7 @@
 //! Do springs out of sight cost less, and are they right as soon as they are seen?
 
 use crate::canvas::*;
+use bevy::gizmos::config::GizmoConfigStore;
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use std::collections::HashSet;
@@ -74,4 +75,33 @@ fn a_coil_gets_coarser_as_it_gets_smaller_on_the_screen() {
     }
     println!("vertices of a coil of five turns: {vertices:?}");
     assert!(vertices.windows(2).all(|w| w[1] < w[0]), "{vertices:?}");
+}
+
+#[test]
+fn gizmos_are_drawn_where_they_are_asked_for_and_nowhere_else() {
+    let coloured = |all: bool, own: Option<ShowSpringGizmos>| {
+        let mut canvas = Canvas::new()?;
+        let world = canvas.app.world_mut();
+        let mut store = world.resource_mut::<GizmoConfigStore>();
+        store.config_mut::<SpringGizmos>().1.all = all;
+        let (a, b) = ends(world, Vec3::NEG_Y * 0.5, Vec3::Y * 0.5);
+        let pull = SpringReadout {
+            spring_force: 40.0,
+            ..default()
+        };
+        let mut element = world.spawn((Spring::new(a, b).with_rest_length(0.6), pull));
+        if let Some(own) = own {
+            element.insert(own);
+        }
+        let picture = canvas.shoot();
+        Some(extent(&picture, |pixel, _| is_drawn(pixel)).count)
+    };
+    let (on, off) = (Some(ShowSpringGizmos(true)), Some(ShowSpringGizmos(false)));
+    let Some(nothing) = coloured(false, None) else {
+        return;
+    };
+    assert_eq!(nothing, 0);
+    assert!(coloured(false, on) > Some(100));
+    assert!(coloured(true, None) > Some(100));
+    assert_eq!(coloured(true, off), Some(0));
 }
