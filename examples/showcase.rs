@@ -8,7 +8,7 @@ mod stage;
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
-use stage::{Paint, Shape, Stage};
+use stage::{Finding, Paint, Shape, Stage, Track, tracks};
 use std::f32::consts::TAU;
 
 const GRAVITY: f32 = 9.81;
@@ -33,7 +33,7 @@ fn main() -> AppExit {
                 .add_systems(FixedUpdate, record.after(CoiloverSystems::Readout));
         },
         seconds: 10.0,
-        report,
+        check,
         eye: Vec3::new(1.4, 2.5, 8.3),
         target: Vec3::new(0.25, 1.42, 0.0),
     })
@@ -42,8 +42,6 @@ fn main() -> AppExit {
 /// What the read-outs gave, tick by tick.
 #[derive(Resource, Default)]
 struct Trace {
-    /// Time (s) and length (m) of the hanging coilover.
-    hanging: Vec<(f32, f32)>,
     /// Momentum of the spinning pair about its centre: first and last, kg m²/s.
     spin: Option<(Vec3, Vec3)>,
     /// Energy of the pair: least and most, J.
@@ -51,9 +49,6 @@ struct Trace {
     /// Shortening of the rig's coilovers while the posts rested, m.
     sag: Option<f32>,
 }
-
-#[derive(Component)]
-struct Hanging;
 
 #[derive(Component)]
 struct Spinner(Vec3);
@@ -92,7 +87,8 @@ fn hang(mut commands: Commands) {
             .with_damping(DAMPING)
             .with_rest_length(1.1),
         Anchors::new(Vec3::NEG_Y * 0.07, Vec3::Y * 0.22),
-        Hanging,
+        Track::default(),
+        Telescope::default().with_fittings(),
     ));
 }
 
@@ -158,10 +154,7 @@ fn spin(mut commands: Commands) {
 
 fn rig(mut commands: Commands) {
     let center = Vec3::new(2.5, 0.0, 0.0);
-    commands.spawn((
-        Transform::from_xyz(0.0, -0.05, 0.0),
-        Shape::Cuboid(Vec3::new(40.0, 0.1, 40.0), Paint::Floor),
-    ));
+    commands.spawn(stage::floor());
     let car = commands
         .spawn((
             RigidBody::Dynamic,
@@ -220,15 +213,11 @@ fn move_posts(time: Res<Time>, mut posts: Query<(&Post, &mut Transform)>) {
 fn record(
     time: Res<Time>,
     mut trace: ResMut<Trace>,
-    hanging: Query<&SpringReadout, With<Hanging>>,
     corners: Query<(&SpringReadout, &SpringDamper), With<Corner>>,
     bodies: Query<(&Spinner, &AdditionalMassProperties, &Transform, &Velocity)>,
     pair: Query<&SpringReadout, With<PairSpring>>,
 ) {
     let t = time.elapsed_secs();
-    if let Ok(readout) = hanging.single() {
-        trace.hanging.push((t, readout.length));
-    }
     if (4.9..5.0).contains(&t) {
         let short = corners
             .iter()
@@ -251,41 +240,23 @@ fn record(
     trace.energy = Some((least.min(energy), most.max(energy)));
 }
 
-fn report(world: &mut World) -> Vec<String> {
-    let trace = world.resource::<Trace>();
-    let mut lines = Vec::new();
-
+fn check(world: &mut World) -> Vec<Finding> {
     let rest = 1.1 + MASS * GRAVITY / STIFFNESS;
-    let crossings: Vec<f32> = trace
-        .hanging
-        .windows(2)
-        .filter(|w| w[0].1 < rest && w[1].1 >= rest)
-        .map(|w| w[0].0 + (rest - w[0].1) / (w[1].1 - w[0].1) * (w[1].0 - w[0].0))
-        .collect();
-    if let [first, .., last] = crossings[..] {
-        let measured = (crossings.len() - 1) as f32 / (last - first);
-        let decay = DAMPING / (2.0 * MASS);
-        let theory = (STIFFNESS / MASS - decay * decay).sqrt() / TAU;
-        lines.push(format!(
-            "hanging body: measured {measured:.5} Hz, theory {theory:.5} Hz ({:+.4} %)",
-            100.0 * (measured / theory - 1.0)
-        ));
-    }
+    let decay = DAMPING / (2.0 * MASS);
+    let theory = (STIFFNESS / MASS - decay * decay).sqrt() / TAU;
+    let measured = tracks(world)[0].frequency(rest);
+    let mut out = vec![Finding::close("hanging body", measured, theory, "Hz", 1e-3)];
+
+    let trace = world.resource::<Trace>();
     if let (Some((first, last)), Some((least, most))) = (trace.spin, trace.energy) {
-        lines.push(format!(
-            "spinning pair: angular momentum {:.5} kg m²/s, drift {:.1e} of it; energy between {least:.4} and {most:.4} J",
-            first.length(),
-            (last - first).length() / first.length()
-        ));
+        let drift = (last - first).length() / first.length();
+        let what = "spinning pair, angular momentum: drift";
+        out.push(Finding::small(what, drift, 1e-3, "of it"));
+        let span = (most - least) / most;
+        out.push(Finding::small("its energy: range", span, 1e-2, "of it"));
     }
-    if let Some(sag) = trace.sag {
-        let theory = CAR * GRAVITY / (4.0 * CAR_STIFFNESS);
-        lines.push(format!(
-            "four-post rig: sag at rest {:.3} mm, theory {:.3} mm ({:+.4} %)",
-            1e3 * sag,
-            1e3 * theory,
-            100.0 * (sag / theory - 1.0)
-        ));
-    }
-    lines
+    let sag = trace.sag.unwrap_or(f32::NAN);
+    let theory = CAR * GRAVITY / (4.0 * CAR_STIFFNESS);
+    out.push(Finding::close("four-post rig, sag", sag, theory, "m", 1e-3));
+    out
 }

@@ -15,7 +15,11 @@ pub use plugin::{CoiloverPlugin, CoiloverSystems};
 pub use readout::{SpringMethod, SpringReadout};
 pub use settings::CoiloverSettings;
 #[cfg(feature = "visual")]
-pub use visual::{Coil, CoiloverVisualPlugin, CoiloverVisualSystems, Telescope, coilover};
+pub use visual::{
+    Coil, CoiloverVisualPlugin, CoiloverVisualSystems, Handedness, Helix, HelixEnds, HelixError,
+    HelixMeshBuilder, RoundWire, RoundWireMaterial, ShowSpringGizmos, SpringGizmos, SpringSkin,
+    Telescope, WoundCoil, coilover,
+};
 
 use bevy::app::{PluginGroup, PluginGroupBuilder};
 
@@ -46,5 +50,9 @@ pub mod prelude {
         Spring, SpringDamper, SpringFault, SpringLoad, SpringMethod, SpringReadout,
     };
     #[cfg(feature = "visual")]
-    pub use crate::{Coil, CoiloverVisualPlugin, CoiloverVisualSystems, Telescope, coilover};
+    pub use crate::{
+        Coil, CoiloverVisualPlugin, CoiloverVisualSystems, Handedness, Helix, HelixEnds, RoundWire,
+        RoundWireMaterial, ShowSpringGizmos, SpringGizmos, SpringSkin, Telescope, WoundCoil,
+        coilover,
+    };
 }

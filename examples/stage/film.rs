@@ -2,24 +2,15 @@
 
 use super::means::Film;
 use super::{DT, Stage, look, offscreen, physics, say};
-use bevy::asset::RenderAssetUsages;
-use bevy::camera::RenderTarget;
-use bevy::image::Image;
 use bevy::prelude::*;
-use bevy::render::render_resource::{TextureFormat, TextureUsages};
-use bevy::render::view::screenshot::{Screenshot, ScreenshotCaptured, save_to_disk};
-use std::path::PathBuf;
+use bevy_coilover::prelude::*;
+use std::path::{Path, PathBuf};
 
 const SIZE: (u32, u32) = (1280, 720);
 /// Frames of a film.
 const FRAMES: u32 = 48;
-/// Updates in which shaders and textures get ready; a first picture would be empty.
-const WARM_UP: u32 = 8;
 
-/// How many pictures have been written.
-#[derive(Resource, Default)]
-struct Taken(u32);
-
+/// Writes the pictures; whether the check holds is for the exit code too.
 pub fn shoot(stage: &Stage, film: Film) -> AppExit {
     let ticks = (stage.seconds / DT).round() as u32;
     let (frames, folder) = match &film {
@@ -37,54 +28,50 @@ pub fn shoot(stage: &Stage, film: Film) -> AppExit {
         Film::Still(file) => file.clone(),
     };
 
-    let mut app = offscreen();
+    let (mut app, image) = offscreen::app(SIZE.0, SIZE.1);
+    app.add_plugins(CoiloverPlugins);
     physics(&mut app, stage, 1);
-    let mut image = Image::new_target_texture(SIZE.0, SIZE.1, TextureFormat::Rgba8UnormSrgb, None);
-    image.asset_usage = RenderAssetUsages::default();
-    image.texture_descriptor.usage |= TextureUsages::COPY_SRC;
-    let handle = app.world_mut().resource_mut::<Assets<Image>>().add(image);
     look::dress(
         &mut app,
         stage.eye,
         stage.target,
-        Some(RenderTarget::Image(handle.clone().into())),
+        Some(offscreen::target(&image)),
     );
-    app.init_resource::<Taken>();
     app.finish();
     app.cleanup();
-
     set_ticks(&mut app, 0);
-    for _ in 0..WARM_UP {
-        app.update();
-    }
+    offscreen::settle(&mut app);
+    let mut taken = 0;
     for frame in 0..frames {
         // All the ticks up to this frame in one update, then one picture of where they led.
         let upto = |f: u32| ticks * f / frames;
         set_ticks(&mut app, upto(frame + 1) - upto(frame));
         app.update();
         set_ticks(&mut app, 0);
-        app.world_mut()
-            .spawn(Screenshot::image(handle.clone()))
-            .observe(save_to_disk(path(frame)))
-            .observe(|_: On<ScreenshotCaptured>, mut taken: ResMut<Taken>| taken.0 += 1);
-        for _ in 0..100 {
-            app.update();
-            if app.world().resource::<Taken>().0 > frame {
-                break;
-            }
+        offscreen::settle(&mut app);
+        let Some(picture) = offscreen::shoot(&mut app, &image) else {
+            continue;
+        };
+        match save(picture, &path(frame)) {
+            Ok(()) => taken += 1,
+            Err(wrong) => eprintln!("{}: {wrong}", path(frame).display()),
         }
     }
-    let taken = app.world().resource::<Taken>().0;
-    say(stage, app.world_mut());
+    let good = say(stage, app.world_mut());
     println!(
         "  {taken} of {frames} pictures written, the last is {}",
         path(frames - 1).display()
     );
-    if taken == frames {
+    if good && taken == frames {
         AppExit::Success
     } else {
         AppExit::error()
     }
+}
+
+fn save(picture: Image, path: &Path) -> Result<(), String> {
+    let picture = picture.try_into_dynamic().map_err(|e| e.to_string())?;
+    picture.to_rgb8().save(path).map_err(|e| e.to_string())
 }
 
 /// The clock of the next updates: so many fixed ticks each.

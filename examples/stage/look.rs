@@ -40,6 +40,14 @@ impl Paint {
     }
 }
 
+/// A wide floor whose top is at y = 0, to look at; add a collider if it is to hold anything.
+pub fn floor() -> impl Bundle {
+    (
+        Transform::from_xyz(0.0, -0.05, 0.0),
+        Shape::Cuboid(Vec3::new(40.0, 0.1, 40.0), Paint::Floor),
+    )
+}
+
 /// Adds what makes a scene visible, seen from `eye`, into a window or an image.
 pub fn dress(app: &mut App, eye: Vec3, target: Vec3, image: Option<RenderTarget>) {
     app.insert_resource(ClearColor(Color::srgb(0.62, 0.67, 0.72)))

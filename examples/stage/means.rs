@@ -1,5 +1,6 @@
 //! What the machine can show.
 
+use super::offscreen::adapter;
 use std::fmt;
 use std::path::PathBuf;
 
@@ -92,14 +93,4 @@ fn display() -> Result<(), String> {
     }
     let _ = (host, number);
     Ok(())
-}
-
-/// The name of an adapter that can render, software ones included.
-fn adapter() -> Option<String> {
-    let instance = wgpu::Instance::default();
-    let adapters = bevy::tasks::block_on(instance.enumerate_adapters(wgpu::Backends::PRIMARY));
-    adapters.first().map(|adapter| {
-        let info = adapter.get_info();
-        format!("{} ({})", info.name, info.backend)
-    })
 }

@@ -1,18 +1,22 @@
 //! What the examples share: a window where there is a display, frames where there is only an adapter,
 //! and read-outs everywhere.
-#![allow(dead_code)]
+//!
+//! A scene is a [`Stage`]: a `setup` that adds systems (spawn in `Startup`; give bodies a [`Shape`], and
+//! elements to be measured a [`Track`]), and a `check` that returns [`Finding`]s. `main` returns
+//! `stage::run(&Stage { .. })`, whose exit code says whether all findings are good.
+#![allow(dead_code, unused_imports, reason = "no example uses everything")]
 
+mod check;
 mod film;
 mod look;
 mod means;
+mod offscreen;
 
-pub use look::{Paint, Shape};
+pub use check::{Finding, Track, tracks};
+pub use look::{Paint, Shape, floor};
 
-use bevy::app::ScheduleRunnerPlugin;
 use bevy::prelude::*;
 use bevy::time::TimeUpdateStrategy;
-use bevy::window::ExitCondition;
-use bevy::winit::WinitPlugin;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
 use means::Means;
@@ -21,15 +25,16 @@ use std::path::PathBuf;
 /// Seconds of a tick.
 pub const DT: f32 = 1.0 / 60.0;
 
-/// An example: what to set up, how long to look, what to say in the end.
+/// An example: what to set up, how long to look, what must hold in the end.
+#[derive(Clone, Copy)]
 pub struct Stage {
     pub title: &'static str,
     /// Adds systems and resources; spawn in `Startup`.
     pub setup: fn(&mut App),
-    /// Seconds after which the report is due.
+    /// Seconds after which the check is due.
     pub seconds: f32,
-    /// Measured against theory, a line each.
-    pub report: fn(&mut World) -> Vec<String>,
+    /// Measured against theory.
+    pub check: fn(&mut World) -> Vec<Finding>,
     /// From where it is seen.
     pub eye: Vec3,
     pub target: Vec3,
@@ -93,8 +98,11 @@ fn headless(stage: &Stage) -> AppExit {
     for _ in 0..=(stage.seconds / DT).round() as u32 {
         app.update();
     }
-    say(stage, app.world_mut());
-    AppExit::Success
+    if say(stage, app.world_mut()) {
+        AppExit::Success
+    } else {
+        AppExit::error()
+    }
 }
 
 fn window(stage: &Stage) -> AppExit {
@@ -111,33 +119,14 @@ fn window(stage: &Stage) -> AppExit {
     ));
     physics(&mut app, stage, 0);
     look::dress(&mut app, stage.eye, stage.target, None);
-    let (report, seconds, title) = (stage.report, stage.seconds, stage.title);
-    let mut told = false;
+    let (stage, mut told) = (*stage, false);
     app.add_systems(Last, move |world: &mut World| {
-        if !told && world.resource::<Time<Fixed>>().elapsed_secs() >= seconds {
+        if !told && world.resource::<Time<Fixed>>().elapsed_secs() >= stage.seconds {
             told = true;
-            println!("{title}, after {seconds} s:");
-            report(world).iter().for_each(|line| println!("  {line}"));
+            say(&stage, world);
         }
     });
     app.run()
-}
-
-/// An app without window whose frames can be taken.
-fn offscreen() -> App {
-    let mut app = App::new();
-    app.add_plugins((
-        DefaultPlugins
-            .set(WindowPlugin {
-                primary_window: None,
-                exit_condition: ExitCondition::DontExit,
-                ..default()
-            })
-            .disable::<WinitPlugin>(),
-        ScheduleRunnerPlugin::default(),
-        CoiloverPlugins,
-    ));
-    app
 }
 
 /// Rapier at a fixed step, so many ticks in each update; 0 follows the clock.
@@ -152,12 +141,14 @@ fn physics(app: &mut App, stage: &Stage, ticks: u32) {
         let tick = app.world().resource::<Time<Fixed>>().timestep();
         app.insert_resource(TimeUpdateStrategy::ManualDuration(tick * ticks));
     }
+    app.add_systems(FixedUpdate, check::record.after(CoiloverSystems::Readout));
     (stage.setup)(app);
 }
 
-fn say(stage: &Stage, world: &mut World) {
+/// Prints the check; whether all is well.
+fn say(stage: &Stage, world: &mut World) -> bool {
     println!("{}, after {} s:", stage.title, stage.seconds);
-    (stage.report)(world)
-        .iter()
-        .for_each(|line| println!("  {line}"));
+    let findings = (stage.check)(world);
+    findings.iter().for_each(|finding| println!("  {finding}"));
+    findings.iter().all(|finding| finding.good)
 }

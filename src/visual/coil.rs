@@ -1,8 +1,11 @@
+use super::helix::{Handedness, Helix, HelixEnds, HelixError};
 use super::place::Placement;
 use bevy::prelude::*;
 
 /// Draws a coil spring between the ends of the [`Spring`](crate::Spring), [`Damper`](crate::Damper) or
-/// [`SpringDamper`](crate::SpringDamper) on the same entity.
+/// [`SpringDamper`](crate::SpringDamper) on the same entity. Its wire stays round at any length.
+///
+/// Beside a [`Telescope`](crate::Telescope) it sits around it, between spring seats: a coilover.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
@@ -15,6 +18,10 @@ pub struct Coil {
     pub wire_radius: f32,
     /// Turns of the wire from end to end, the flat ones at the ends included.
     pub turns: f32,
+    /// How the wire ends.
+    pub ends: HelixEnds,
+    /// Which way it is wound.
+    pub handedness: Handedness,
     /// Paint.
     pub color: Color,
 }
@@ -25,9 +32,22 @@ impl Default for Coil {
             radius: 0.13,
             wire_radius: 0.016,
             turns: 8.0,
+            ends: HelixEnds::default(),
+            handedness: Handedness::default(),
             color: Color::srgb(0.80, 0.09, 0.07),
         }
     }
+}
+
+/// What [`Coil::from_wire`] says of a spring of round wire.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WoundCoil {
+    /// How it looks.
+    pub coil: Coil,
+    /// Of the active turns, N/m.
+    pub stiffness: f32,
+    /// Length at which all turns touch, m.
+    pub solid_length: f32,
 }
 
 impl Coil {
@@ -41,17 +61,76 @@ impl Coil {
         }
     }
 
+    /// A compression spring of real wire, its ends closed and ground: diameters of the wire and of the
+    /// coil, at the middle of the wire (m), the turns that act, and the wire's shear modulus (Pa; steel
+    /// has about 79e9). Its stiffness is G d⁴ / (8 D³ n).
+    ///
+    /// ```
+    /// # use bevy_coilover::Coil;
+    /// let wound = Coil::from_wire(0.012, 0.1, 6.0, 79.3e9)?;
+    /// assert!((wound.stiffness - 34_257.6).abs() < 1.0);
+    /// assert!((wound.solid_length - 8.0 * 0.012).abs() < 1e-6);
+    /// # Ok::<(), bevy_coilover::HelixError>(())
+    /// ```
+    pub fn from_wire(
+        wire_diameter: f32,
+        coil_diameter: f32,
+        active_turns: f32,
+        shear_modulus: f32,
+    ) -> Result<WoundCoil, HelixError> {
+        for (field, value) in [
+            ("active_turns", active_turns),
+            ("shear_modulus", shear_modulus),
+        ] {
+            if !value.is_finite() || value <= 0.0 {
+                return Err(HelixError::NotPositive(field, value));
+            }
+        }
+        let turns = active_turns + HelixEnds::ClosedGround.dead_turns();
+        let coil = Self::new(0.5 * coil_diameter, 0.5 * wire_diameter, turns);
+        coil.helix(1.0).check()?;
+        let (d, big) = (f64::from(wire_diameter), f64::from(coil_diameter));
+        let stiffness =
+            f64::from(shear_modulus) * d.powi(4) / (8.0 * big.powi(3) * f64::from(active_turns));
+        Ok(WoundCoil {
+            coil,
+            stiffness: stiffness as f32,
+            solid_length: coil.solid_length(),
+        })
+    }
+
     /// Sets the paint.
     pub const fn with_color(mut self, color: Color) -> Self {
         self.color = color;
         self
     }
 
-    /// Whether a wire can be wound so.
-    pub(super) fn is_sound(&self) -> bool {
-        let all = [self.radius, self.wire_radius, self.turns];
-        all.iter().all(|x| x.is_finite() && *x > 0.0)
-            && self.wire_radius < self.radius
-            && self.turns <= 1000.0
+    /// Sets how the wire ends.
+    pub const fn with_ends(mut self, ends: HelixEnds) -> Self {
+        self.ends = ends;
+        self
+    }
+
+    /// Sets which way it is wound.
+    pub const fn with_handedness(mut self, handedness: Handedness) -> Self {
+        self.handedness = handedness;
+        self
+    }
+
+    /// Its shape at this length, m.
+    pub const fn helix(&self, length: f32) -> Helix {
+        Helix {
+            radius: self.radius,
+            wire_radius: self.wire_radius,
+            turns: self.turns,
+            length,
+            ends: self.ends,
+            handedness: self.handedness,
+        }
+    }
+
+    /// The length at which all turns touch, m.
+    pub fn solid_length(&self) -> f32 {
+        self.helix(1.0).solid_length()
     }
 }

@@ -1,28 +1,41 @@
 //! What one sees: coils and telescopes between the ends.
 //!
 //! [`parts`] spawns and removes the drawn children of an element, [`place`] lays them between the ends
-//! every frame, [`helix`] and [`telescope`] say what they look like.
+//! every frame as [`layout`] and [`heading`] say, as finely as [`views`] finds worth it. [`helix`] is the
+//! coil's mesh, [`round_wire`] the material that keeps its wire round when it is stretched, and [`shapes`]
+//! keeps one of each for all equal springs.
 
 mod coil;
+mod gizmos;
+mod heading;
 mod helix;
+mod layout;
 mod parts;
 mod place;
+mod round_wire;
+mod shapes;
+mod skin;
 mod telescope;
+mod views;
 
-pub use coil::Coil;
+pub use coil::{Coil, WoundCoil};
+pub use gizmos::{ShowSpringGizmos, SpringGizmos};
+pub use helix::{Handedness, Helix, HelixEnds, HelixError, HelixMeshBuilder};
+pub use round_wire::{RoundWire, RoundWireMaterial};
+pub use skin::SpringSkin;
 pub use telescope::Telescope;
 
 use crate::element::{Anchors, SpringDamper};
-use bevy::asset::Assets;
+use bevy::asset::{AssetServer, Assets};
 use bevy::camera::visibility::VisibilitySystems;
 use bevy::mesh::Mesh;
 use bevy::pbr::StandardMaterial;
 use bevy::prelude::*;
 
-/// Draws [`Coil`] and [`Telescope`] between the ends of their element.
+/// Draws [`Coil`] and [`Telescope`] between the ends of their element, and [`SpringGizmos`].
 ///
-/// Needs Bevy's assets, meshes and PBR materials (`DefaultPlugins`); where they are missing it says so
-/// once and draws nothing.
+/// Add it after `DefaultPlugins`. It needs Bevy's assets, meshes and PBR materials; where they are missing
+/// it says so once and draws nothing.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct CoiloverVisualPlugin;
 
@@ -32,41 +45,61 @@ pub struct CoiloverVisualSystems;
 
 impl Plugin for CoiloverVisualPlugin {
     fn build(&self, app: &mut App) {
+        round_wire::add(app);
+        gizmos::add(app, CoiloverVisualSystems);
         app.register_type::<Coil>()
             .register_type::<Telescope>()
-            .init_resource::<parts::Shapes>()
+            .register_type::<SpringSkin>()
+            .register_type::<ShowSpringGizmos>()
+            .register_type::<SpringGizmos>()
+            .register_type::<Helix>()
+            .register_type::<RoundWire>()
+            .init_resource::<shapes::Shapes>()
             .add_systems(PreStartup, say_what_is_missing)
             .configure_sets(
                 PostUpdate,
                 CoiloverVisualSystems
                     // The ends are where they will be drawn only after this; interpolation included.
                     .after(TransformSystems::Propagate)
-                    .before(VisibilitySystems::CheckVisibility)
-                    .run_if(resource_exists::<Assets<Mesh>>)
-                    .run_if(resource_exists::<Assets<StandardMaterial>>),
+                    .after(VisibilitySystems::UpdateFrusta)
+                    .before(VisibilitySystems::VisibilityPropagate)
+                    .before(VisibilitySystems::CalculateBounds)
+                    .run_if(can_draw),
             )
             .add_systems(
                 PostUpdate,
-                (parts::build_coils, parts::build_telescopes, place::place)
+                (parts::take_skins, parts::build, place::place)
                     .chain()
                     .in_set(CoiloverVisualSystems),
             );
     }
 }
 
+fn can_draw(
+    meshes: Option<Res<Assets<Mesh>>>,
+    materials: Option<Res<Assets<StandardMaterial>>>,
+    wires: Option<Res<Assets<RoundWireMaterial>>>,
+) -> bool {
+    meshes.is_some() && materials.is_some() && wires.is_some()
+}
+
 fn say_what_is_missing(
     meshes: Option<Res<Assets<Mesh>>>,
     materials: Option<Res<Assets<StandardMaterial>>>,
+    wires: Option<Res<Assets<RoundWireMaterial>>>,
+    server: Option<Res<AssetServer>>,
 ) {
-    let missing = match (meshes, materials) {
-        (Some(_), Some(_)) => return,
-        (None, None) => "mesh and material assets",
-        (None, _) => "mesh assets",
-        (_, None) => "StandardMaterial assets",
+    let missing = match (meshes, materials, wires) {
+        (Some(_), Some(_), Some(_)) => return,
+        (None, None, _) => "mesh and material assets",
+        (None, _, _) => "mesh assets",
+        (_, None, _) => "StandardMaterial assets",
+        _ if server.is_some() => "AssetPlugin that was added before it",
+        _ => "AssetPlugin",
     };
     log::error!(
         "bevy_coilover: CoiloverVisualPlugin finds no {missing}, so nothing is drawn; add DefaultPlugins \
-         (or AssetPlugin, MeshPlugin and PbrPlugin), or use CoiloverPlugin alone"
+         (or AssetPlugin, MeshPlugin and PbrPlugin) before it, or use CoiloverPlugin alone"
     );
 }
 

@@ -1,205 +1,173 @@
 //! The drawn children of an element: spawned when its looks appear or change, gone with them.
 
 use super::coil::Coil;
-use super::helix;
+use super::layout::{Layout, Part};
+use super::place::{Line, Lines, Placement};
+use super::round_wire::RoundWireMaterial;
+use super::shapes::{CoilMeshes, Finish, Shapes};
+use super::skin::SpringSkin;
 use super::telescope::Telescope;
-use crate::element::{Spring, SpringDamper};
 use bevy::asset::{Assets, Handle};
-use bevy::color::{Color, ColorToPacked, LinearRgba};
+use bevy::color::Color;
+use bevy::ecs::entity::EntityHashSet;
+use bevy::ecs::system::SystemParam;
 use bevy::mesh::{Mesh, Mesh3d};
 use bevy::pbr::{MeshMaterial3d, StandardMaterial};
-use bevy::platform::collections::HashMap;
 use bevy::prelude::*;
 
-/// Which part of an element a drawn child is.
-#[derive(Component, Clone, Copy, Debug, PartialEq)]
-pub(super) enum Part {
-    Coil {
-        /// Length of the mesh, m.
-        length: f32,
-    },
-    Tube,
-    Rod,
-    /// Plates between which the coil sits.
-    SeatA,
-    SeatB,
-}
+/// The meshes that a drawn coil changes between with its size on the screen.
+#[derive(Component, Clone, Debug)]
+pub(super) struct Levels(pub CoilMeshes);
 
-/// One mesh and one material per shape and paint, so that equal springs are drawn in one batch.
-#[derive(Resource, Default)]
-pub(super) struct Shapes {
-    coils: HashMap<[u32; 4], Handle<Mesh>>,
-    cylinder: Option<Handle<Mesh>>,
-    paints: HashMap<([u8; 4], u8), Handle<StandardMaterial>>,
-}
-
-/// How a surface takes light.
-#[derive(Clone, Copy)]
-enum Finish {
-    Enamel,
-    Steel,
-}
-
-impl Shapes {
-    fn paint(
-        &mut self,
-        color: Color,
-        finish: Finish,
-        materials: &mut Assets<StandardMaterial>,
-    ) -> Handle<StandardMaterial> {
-        let key = (LinearRgba::from(color).to_u8_array(), finish as u8);
-        let material = match finish {
-            Finish::Enamel => StandardMaterial {
-                base_color: color,
-                metallic: 0.1,
-                perceptual_roughness: 0.35,
-                reflectance: 0.6,
-                ..default()
-            },
-            Finish::Steel => StandardMaterial {
-                base_color: color,
-                metallic: 0.55,
-                perceptual_roughness: 0.28,
-                reflectance: 0.7,
-                ..default()
-            },
-        };
-        self.paints
-            .entry(key)
-            .or_insert_with(|| materials.add(material))
-            .clone()
-    }
-
-    fn cylinder(&mut self, meshes: &mut Assets<Mesh>) -> Handle<Mesh> {
-        self.cylinder
-            .get_or_insert_with(|| {
-                meshes.add(Cylinder::new(1.0, 1.0).mesh().resolution(40).build())
-            })
-            .clone()
-    }
-}
-
-/// Removes the parts of an element that a test picks.
-fn clear(
-    element: Entity,
-    children: &Query<&Children>,
-    parts: &Query<&Part>,
-    commands: &mut Commands,
-    pick: impl Fn(&Part) -> bool,
-) {
-    for child in children.get(element).map(|c| &**c).unwrap_or_default() {
-        if parts.get(*child).is_ok_and(&pick) {
-            commands.entity(*child).despawn();
-        }
-    }
-}
-
-fn is_coil(part: &Part) -> bool {
-    matches!(part, Part::Coil { .. } | Part::SeatA | Part::SeatB)
-}
-
-fn is_telescope(part: &Part) -> bool {
-    matches!(part, Part::Tube | Part::Rod)
-}
-
-/// Spawns, renews and removes coils with their seats.
-pub(super) fn build_coils(
-    changed: Query<(Entity, &Coil, Option<&Spring>, Option<&SpringDamper>), Changed<Coil>>,
-    mut removed: RemovedComponents<Coil>,
-    children: Query<&Children>,
-    parts: Query<&Part>,
-    mut shapes: ResMut<Shapes>,
-    mut meshes: ResMut<Assets<Mesh>>,
-    mut materials: ResMut<Assets<StandardMaterial>>,
-    mut commands: Commands,
-) {
-    for element in removed.read() {
-        clear(element, &children, &parts, &mut commands, is_coil);
-    }
-    for (element, coil, spring, pair) in &changed {
-        clear(element, &children, &parts, &mut commands, is_coil);
-        if !coil.is_sound() {
-            log::warn!(
-                "{element}: Coil cannot be wound: radius {} m, wire radius {} m, {} turns; it needs \
-                 0 < wire_radius < radius and 0 < turns ≤ 1000",
-                coil.radius,
-                coil.wire_radius,
-                coil.turns
-            );
-            continue;
-        }
-        // Wound at its rest length, where the wire is to look round; a guess until that is known.
-        let rest = spring
-            .and_then(|s| s.rest_length)
-            .or_else(|| pair.and_then(|p| p.rest_length));
-        let length = rest.filter(|l| *l > 0.0).unwrap_or(7.0 * coil.radius);
-        let key = [coil.radius, coil.wire_radius, coil.turns, length].map(f32::to_bits);
-        let mesh = shapes
-            .coils
-            .entry(key)
-            .or_insert_with(|| {
-                meshes.add(helix::mesh(
-                    coil.radius,
-                    coil.wire_radius,
-                    coil.turns,
-                    length,
-                ))
-            })
-            .clone();
-        let enamel = shapes.paint(coil.color, Finish::Enamel, &mut materials);
-        let steel = shapes.paint(STEEL, Finish::Steel, &mut materials);
-        let disc = shapes.cylinder(&mut meshes);
-        for (part, mesh, material) in [
-            (Part::Coil { length }, mesh, enamel),
-            (Part::SeatA, disc.clone(), steel.clone()),
-            (Part::SeatB, disc, steel),
-        ] {
-            spawn(element, part, mesh, material, &mut commands);
-        }
-    }
+/// What is needed to make parts.
+#[derive(SystemParam)]
+pub(super) struct Workshop<'w, 's> {
+    children: Query<'w, 's, &'static Children>,
+    parts: Query<'w, 's, &'static Part>,
+    shapes: ResMut<'w, Shapes>,
+    meshes: ResMut<'w, Assets<Mesh>>,
+    materials: ResMut<'w, Assets<StandardMaterial>>,
+    wires: ResMut<'w, Assets<RoundWireMaterial>>,
+    commands: Commands<'w, 's>,
 }
 
 const STEEL: Color = Color::srgb(0.78, 0.79, 0.82);
+const RUBBER: Color = Color::srgb(0.05, 0.05, 0.05);
 
-/// Spawns, renews and removes tubes and rods.
-pub(super) fn build_telescopes(
-    changed: Query<(Entity, &Telescope), Changed<Telescope>>,
-    mut removed: RemovedComponents<Telescope>,
-    children: Query<&Children>,
-    parts: Query<&Part>,
-    mut shapes: ResMut<Shapes>,
-    mut meshes: ResMut<Assets<Mesh>>,
-    mut materials: ResMut<Assets<StandardMaterial>>,
-    mut commands: Commands,
-) {
-    for element in removed.read() {
-        clear(element, &children, &parts, &mut commands, is_telescope);
-    }
-    for (element, telescope) in &changed {
-        clear(element, &children, &parts, &mut commands, is_telescope);
-        if !telescope.is_sound() {
-            log::warn!("{element}: Telescope cannot be drawn: its radii must be positive");
-            continue;
+impl Workshop<'_, '_> {
+    /// Removes what was made for an element.
+    fn clear(&mut self, element: Entity) {
+        let children = self.children.get(element);
+        for child in children.map(|c| &**c).unwrap_or_default() {
+            let part = self.parts.get(*child);
+            if part.is_ok_and(|p| !matches!(p, Part::Custom(_))) {
+                self.commands.entity(*child).despawn();
+            }
         }
-        let cylinder = shapes.cylinder(&mut meshes);
-        let enamel = shapes.paint(telescope.color, Finish::Enamel, &mut materials);
-        let steel = shapes.paint(STEEL, Finish::Steel, &mut materials);
-        spawn(element, Part::Tube, cylinder.clone(), enamel, &mut commands);
-        spawn(element, Part::Rod, cylinder, steel, &mut commands);
+    }
+
+    fn coil(&mut self, element: Entity, coil: &Coil) {
+        let levels = self.shapes.coil(coil, &mut self.meshes);
+        let wire = self.shapes.wire(coil, &mut self.wires);
+        self.commands.spawn((
+            Part::Coil,
+            Mesh3d(levels[0].clone()),
+            Levels(levels),
+            MeshMaterial3d(wire),
+            ChildOf(element),
+        ));
+    }
+
+    fn solid(&mut self, element: Entity, part: Part, mesh: Handle<Mesh>, paint: (Color, Finish)) {
+        let material = self.shapes.paint(paint.0, paint.1, &mut self.materials);
+        self.commands.spawn((
+            part,
+            Mesh3d(mesh),
+            MeshMaterial3d(material),
+            ChildOf(element),
+        ));
+    }
+
+    fn telescope(&mut self, element: Entity, telescope: &Telescope, with_seats: bool) {
+        let round = self.shapes.cylinder(&mut self.meshes);
+        let (enamel, steel) = ((telescope.color, Finish::Enamel), (STEEL, Finish::Steel));
+        let mut round_part = |part, paint| self.solid(element, part, round.clone(), paint);
+        round_part(Part::Tube, enamel);
+        round_part(Part::Collar, enamel);
+        round_part(Part::Rod, steel);
+        if telescope.bump_rubber {
+            round_part(Part::Bump, (RUBBER, Finish::Rubber));
+        }
+        if with_seats {
+            round_part(Part::SeatA, steel);
+            round_part(Part::SeatB, steel);
+        }
+        if telescope.eyes {
+            let eye = self.shapes.eye(&mut self.meshes);
+            self.solid(element, Part::EyeA, eye.clone(), enamel);
+            self.solid(element, Part::EyeB, eye, steel);
+        }
     }
 }
 
-fn spawn(
+/// Drops what cannot be drawn, and says so.
+fn sound<'a, L>(
     element: Entity,
-    part: Part,
-    mesh: Handle<Mesh>,
-    material: Handle<StandardMaterial>,
-    commands: &mut Commands,
+    name: &str,
+    looks: Option<&'a L>,
+    check: impl Fn(&L) -> Result<(), String>,
+) -> Option<&'a L> {
+    let looks = looks?;
+    match check(looks) {
+        Ok(()) => Some(looks),
+        Err(wrong) => {
+            log::warn!("{element}: {name}: {wrong}; it is not drawn until that is mended");
+            None
+        }
+    }
+}
+
+/// Spawns, renews and removes the parts of elements.
+pub(super) fn build(
+    changed: Query<Entity, Or<(Changed<Coil>, Changed<Telescope>)>>,
+    mut no_coil: RemovedComponents<Coil>,
+    mut no_telescope: RemovedComponents<Telescope>,
+    mut looks: Query<(Line, Option<&Coil>, Option<&Telescope>, &mut Placement)>,
+    lines: Lines,
+    mut waiting: Local<EntityHashSet>,
+    mut workshop: Workshop,
 ) {
-    commands.spawn((
-        part,
-        Mesh3d(mesh),
-        MeshMaterial3d(material),
-        ChildOf(element),
-    ));
+    waiting.extend(&changed);
+    waiting.extend(no_coil.read());
+    waiting.extend(no_telescope.read());
+    waiting.retain(|&element| {
+        let Ok((line, coil, telescope, mut placement)) = looks.get_mut(element) else {
+            // Despawned, and its children with it.
+            return false;
+        };
+        // Lengths may follow from how far apart the ends are, so they must be there.
+        let length = lines.ends(&line).map(|(_, from, to)| from.distance(to));
+        let bare = coil.is_none() && telescope.is_none();
+        let Some(length) = length.filter(|l| l.is_finite()).or(bare.then_some(0.0)) else {
+            return true;
+        };
+        workshop.clear(element);
+        let coil = sound(element, "Coil", coil, |c| {
+            c.helix(1.0).check().map_err(|e| e.to_string())
+        });
+        let telescope = sound(element, "Telescope", telescope, Telescope::check);
+        placement.dress(length, |first| Layout::new(coil, telescope, first));
+        if let Some(coil) = coil {
+            workshop.coil(element, coil);
+        }
+        if let Some(telescope) = telescope {
+            workshop.telescope(element, telescope, coil.is_some());
+        }
+        false
+    });
+}
+
+/// Takes up what users bring along for an element.
+pub(super) fn take_skins(
+    skins: Query<(Entity, &SpringSkin, Option<&ChildOf>), Changed<SpringSkin>>,
+    mut commands: Commands,
+) {
+    for (entity, skin, parent) in &skins {
+        let Some(parent) = parent else {
+            log::warn!("{entity}: SpringSkin: it must be a child of an element; it is not placed");
+            continue;
+        };
+        if !skin.length.is_finite() || skin.length <= 0.0 {
+            log::warn!(
+                "{entity}: SpringSkin: length is {}, and must be finite and positive; it is not placed",
+                skin.length
+            );
+            commands.entity(entity).remove::<Part>();
+            continue;
+        }
+        commands.entity(entity).insert(Part::Custom(skin.length));
+        commands
+            .entity(parent.parent())
+            .insert_if_new((Placement::default(), Visibility::default()));
+    }
 }

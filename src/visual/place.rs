@@ -1,160 +1,159 @@
 //! Lays the parts between the ends, where the ends are drawn in this frame.
 
-use super::coil::Coil;
-use super::parts::Part;
-use super::telescope::Telescope;
+use super::heading::{Heading, upright};
+use super::layout::{Layout, Part, SHORT};
+use super::parts::Levels;
+use super::views::{Cameras, Views, level};
 use crate::element::{Anchors, Damper, Spring, SpringDamper};
+use bevy::ecs::query::QueryData;
+use bevy::ecs::system::SystemParam;
+use bevy::math::{Affine3A, Mat3A, Vec3A};
+use bevy::mesh::Mesh3d;
 use bevy::prelude::*;
+
+/// An element out of everyone's sight is placed every so many frames only. It may still throw a shadow
+/// into the picture, so it is not left alone altogether.
+const SELDOM: u32 = 8;
 
 /// Where an element was drawn last.
 #[derive(Component, Clone, Copy, Debug, Default)]
 pub struct Placement {
-    /// From +Y to the line in the frame of end A, carried along with it so that it neither spins nor
-    /// flips.
-    rotation: Quat,
+    heading: Heading,
+    layout: Layout,
     /// Length when first drawn, m.
     first: Option<f32>,
+    /// Level of detail.
+    level: u8,
+    /// Its coil has been shorter than its turns are thick, and that was said.
+    squeezed: bool,
 }
 
-/// Ends, looks and parts of an element.
-type Elements<'a> = (
-    Entity,
-    Option<&'a Spring>,
-    Option<&'a Damper>,
-    Option<&'a SpringDamper>,
-    Option<&'a Anchors>,
-    Option<&'a Coil>,
-    Option<&'a Telescope>,
-    &'a mut Placement,
-    &'a Children,
-);
+impl Placement {
+    /// Gives an element new looks, now that its ends are this far apart.
+    pub(super) fn dress(&mut self, length: f32, layout: impl FnOnce(f32) -> Layout) {
+        let first = *self.first.get_or_insert(length.max(SHORT));
+        self.layout = layout(first);
+        self.level = 0;
+        self.squeezed = false;
+    }
+}
 
-/// Shorter than this a line has no direction of its own, m.
-const SHORT: f32 = 1e-5;
+/// An element as it says itself where its ends are.
+#[derive(QueryData)]
+pub(super) struct Line {
+    spring: Option<&'static Spring>,
+    damper: Option<&'static Damper>,
+    pair: Option<&'static SpringDamper>,
+    anchors: Option<&'static Anchors>,
+}
+
+/// Where entities are in this frame; parts, which follow, aside.
+#[derive(SystemParam)]
+pub(super) struct Lines<'w, 's> {
+    globals: Query<'w, 's, &'static GlobalTransform, Without<Part>>,
+}
+
+impl Lines<'_, '_> {
+    /// The frame of end A, and both anchors in the world.
+    #[inline]
+    pub fn ends(&self, line: &LineItem) -> Option<(Mat3A, Vec3A, Vec3A)> {
+        let (a, b) = if let Some(spring) = line.spring {
+            (spring.body_a, spring.body_b)
+        } else if let Some(pair) = line.pair {
+            (pair.body_a, pair.body_b)
+        } else {
+            let damper = line.damper?;
+            (damper.body_a, damper.body_b)
+        };
+        let a = self.globals.get(a).ok()?.affine();
+        let b = self.globals.get(b).ok()?.affine();
+        let anchors = line.anchors.copied().unwrap_or_default();
+        Some((
+            a.matrix3,
+            a.transform_point3a(anchors.a.into()),
+            b.transform_point3a(anchors.b.into()),
+        ))
+    }
+}
 
 pub(super) fn place(
-    mut elements: Query<Elements, Or<(With<Coil>, With<Telescope>)>>,
-    globals: Query<&GlobalTransform, Without<Part>>,
-    mut parts: Query<(&Part, &mut Transform, &mut GlobalTransform)>,
+    mut elements: Query<(Entity, Line, &mut Placement, &Children)>,
+    mut parts: Query<(
+        &Part,
+        &mut GlobalTransform,
+        Option<&ViewVisibility>,
+        Option<(&Levels, &mut Mesh3d)>,
+    )>,
+    lines: Lines,
+    cameras: Query<Cameras, Without<Part>>,
+    mut views: Local<Views>,
+    mut frame: Local<u32>,
 ) {
-    for (entity, spring, damper, pair, anchors, coil, telescope, mut placement, children) in
-        &mut elements
-    {
-        let ends = spring
-            .map(|s| (s.body_a, s.body_b))
-            .or(damper.map(|d| (d.body_a, d.body_b)))
-            .or(pair.map(|p| (p.body_a, p.body_b)));
-        let Some((Ok(a), Ok(b))) = ends.map(|(a, b)| (globals.get(a), globals.get(b))) else {
+    views.update(cameras.iter());
+    *frame = frame.wrapping_add(1);
+    for (element, line, mut placement, children) in &mut elements {
+        let Some((matrix, from, to)) = lines.ends(&line) else {
             continue;
         };
-        let anchors = anchors.copied().unwrap_or_default();
-        let (from, to) = (a.transform_point(anchors.a), b.transform_point(anchors.b));
-        let length = from.distance(to);
+        let between = to - from;
+        let length = between.length();
         if !length.is_finite() {
             continue;
         }
-        let frame = a.rotation();
-        let local = frame.inverse() * (to - from);
-        placement.rotation = carry(placement.rotation, local);
-        let first = *placement.first.get_or_insert(length.max(SHORT));
-        let Ok(own) = globals.get(entity) else {
-            continue;
-        };
-        let line = Line {
-            from,
-            rotation: frame * placement.rotation,
-            length,
-        };
+        let placement = placement.bypass_change_detection();
+        let layout = &placement.layout;
+        let sight = views.sight(from + 0.5 * between, 0.5 * length + layout.reach());
+        let turn = element
+            .index_u32()
+            .wrapping_add(*frame)
+            .is_multiple_of(SELDOM);
+        let skips = !(sight.seen || turn);
+
+        let upright = upright(&matrix);
+        if length > SHORT {
+            let direction = upright.transpose() * (between / length);
+            placement.heading.turn_to(direction);
+        }
+        let columns = placement.heading.in_frame(&upright);
+        if sight.seen {
+            placement.level = level(2.0 * layout.wire_radius * sight.pixels, placement.level);
+        }
+        if layout.span(length) < 0.98 * layout.solid && !placement.squeezed {
+            placement.squeezed = true;
+            log::warn!(
+                "{element}: Coil: it is {} m long, but all its turns touch at {} m already, so wire \
+                 passes through wire",
+                layout.span(length),
+                layout.solid
+            );
+        }
+
         for child in children {
-            if let Ok((part, mut transform, mut global)) = parts.get_mut(*child) {
-                let world = line.lay(part, coil, telescope, first);
-                // Propagation has run: set both, so that this frame and the next agree.
-                *global = GlobalTransform::from(world);
-                *transform = global.reparented_to(own);
+            let Ok((part, mut global, visibility, levels)) = parts.get_mut(*child) else {
+                continue;
+            };
+            // Whoever else has moved it, as transform propagation does after a change, is overruled.
+            if skips && !visibility.is_some_and(|v| v.get()) && !global.is_changed() {
+                continue;
+            }
+            let (at, scale) = layout.lay(*part, length);
+            let world = Affine3A {
+                matrix3: Mat3A::from_cols(
+                    columns.x_axis * scale.x,
+                    columns.y_axis * scale.y,
+                    columns.z_axis * scale.z,
+                ),
+                translation: from + columns.y_axis * at,
+            };
+            // Its `Transform` says nothing: propagation has run, and rendering reads this one. What has
+            // not moved must not look changed, or it would be sent to the graphics card again.
+            global.set_if_neq(GlobalTransform::from(world));
+            if let Some((levels, mut mesh)) = levels {
+                let wanted = &levels.0[usize::from(placement.level)];
+                if mesh.0 != *wanted {
+                    mesh.0 = wanted.clone();
+                }
             }
         }
-    }
-}
-
-/// Turns a rotation along with the direction that +Y has under it (parallel transport).
-fn carry(rotation: Quat, direction: Vec3) -> Quat {
-    match direction.try_normalize() {
-        Some(direction) if direction.is_finite() => {
-            (Quat::from_rotation_arc(rotation * Vec3::Y, direction) * rotation).normalize()
-        }
-        _ => rotation,
-    }
-}
-
-struct Line {
-    from: Vec3,
-    rotation: Quat,
-    length: f32,
-}
-
-impl Line {
-    /// Where a part goes, in the world.
-    fn lay(
-        &self,
-        part: &Part,
-        coil: Option<&Coil>,
-        telescope: Option<&Telescope>,
-        first: f32,
-    ) -> Transform {
-        let length = self.length.max(SHORT);
-        let coil = coil.copied().unwrap_or_default();
-        let telescope = telescope.copied().unwrap_or_default();
-        let (tube, rod) = telescope.lengths(length, first);
-        let seat = Vec3::new(
-            coil.radius + 1.8 * coil.wire_radius,
-            2.0 * coil.wire_radius,
-            coil.radius + 1.8 * coil.wire_radius,
-        );
-        // Cylinders are one metre high about their middle, coils stand on their foot.
-        let (at, scale) = match part {
-            Part::Coil { length: mesh } => (0.0, Vec3::new(1.0, length / mesh, 1.0)),
-            Part::Tube => (0.5 * tube, round(telescope.tube_radius, tube)),
-            Part::Rod => (length - 0.5 * rod, round(telescope.rod_radius, rod)),
-            Part::SeatA => (-0.5 * seat.y, seat),
-            Part::SeatB => (length + 0.5 * seat.y, seat),
-        };
-        Transform {
-            translation: self.from + self.rotation * (at * Vec3::Y),
-            rotation: self.rotation,
-            scale,
-        }
-    }
-}
-
-fn round(radius: f32, height: f32) -> Vec3 {
-    Vec3::new(radius, height, radius)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_swing_right_round_neither_spins_nor_flips() {
-        let mut rotation = Quat::IDENTITY;
-        let mut before = rotation;
-        for i in 0..=720 {
-            let angle = (i as f32).to_radians();
-            let direction = Vec3::new(angle.sin(), angle.cos(), 0.0);
-            rotation = carry(rotation, direction);
-            assert!((rotation * Vec3::Y).distance(direction) < 1e-4);
-            assert!(
-                (rotation * Vec3::Z).distance(Vec3::Z) < 1e-3,
-                "spun at {i}°"
-            );
-            assert!(rotation.angle_between(before) < 0.03, "flipped at {i}°");
-            before = rotation;
-        }
-    }
-
-    #[test]
-    fn no_length_keeps_the_last_direction() {
-        let rotation = carry(Quat::IDENTITY, Vec3::X);
-        assert_eq!(carry(rotation, Vec3::ZERO), rotation);
     }
 }

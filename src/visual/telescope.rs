@@ -3,6 +3,9 @@ use bevy::prelude::*;
 
 /// Draws a telescoping damper between the ends of the element on the same entity: a tube fixed to end A
 /// and a rod fixed to end B that slides into it.
+///
+/// Both keep their lengths as long as the ends stay within the stroke. Pulled or pushed beyond it, the rod
+/// or the tube is drawn longer or shorter than it is, rather than apart or through the other end.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
@@ -11,12 +14,19 @@ use bevy::prelude::*;
 pub struct Telescope {
     /// Of the tube, m.
     pub tube_radius: f32,
-    /// Of the rod, m.
+    /// Of the rod, m; less than the tube's.
     pub rod_radius: f32,
-    /// Length of the tube, m; `None` is 0.55 of the length when first drawn.
+    /// From end A to the tube's mouth, m; `None` is what the stroke allows.
     pub tube_length: Option<f32>,
-    /// Length of the rod, m; `None` is 0.6 of the length when first drawn.
+    /// From end B to the rod's tip in the tube, m; `None` is what the stroke needs.
     pub rod_length: Option<f32>,
+    /// From shortest to longest, half of it either side of the length when first drawn, m; `None` is half
+    /// of that length.
+    pub stroke: Option<f32>,
+    /// Draws an eye at each end.
+    pub eyes: bool,
+    /// Draws a rubber on the rod that the tube's mouth runs into.
+    pub bump_rubber: bool,
     /// Paint of the tube.
     pub color: Color,
 }
@@ -28,53 +38,66 @@ impl Default for Telescope {
             rod_radius: 0.026,
             tube_length: None,
             rod_length: None,
+            stroke: None,
+            eyes: false,
+            bump_rubber: false,
             color: Color::srgb(0.10, 0.11, 0.13),
         }
     }
 }
 
-/// Share of the first length that the tube takes, and the rod.
-const TUBE: f32 = 0.55;
-const ROD: f32 = 0.60;
-/// The tube holds at least this share of itself over the rod, however far they are pulled.
-const OVERLAP: f32 = 0.08;
-
 impl Telescope {
-    /// Lengths of tube and rod where the ends are `length` apart and were `first` apart when first
-    /// drawn. Both are constant while they fit; past full travel the rod is drawn longer rather than
-    /// leave the tube, and both end at the other end rather than poke through it.
-    pub(super) fn lengths(&self, length: f32, first: f32) -> (f32, f32) {
-        let sound = |given: Option<f32>, otherwise: f32| match given {
-            Some(l) if l.is_finite() && l > 0.0 => l,
-            _ => otherwise,
-        };
-        let tube = sound(self.tube_length, TUBE * first);
-        let rod = sound(self.rod_length, ROD * first);
-        let reach = length - tube * (1.0 - OVERLAP);
-        (tube.min(length), rod.max(reach).min(length))
-    }
-
-    /// Whether it can be drawn.
-    pub(super) fn is_sound(&self) -> bool {
-        [self.tube_radius, self.rod_radius]
-            .iter()
-            .all(|x| x.is_finite() && *x > 0.0)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn tube_and_rod_always_overlap_and_never_poke_through() {
-        let telescope = Telescope::default();
-        for length in [0.01, 0.3, 0.7, 1.0, 1.1, 1.5, 4.0] {
-            let (tube, rod) = telescope.lengths(length, 1.0);
-            assert!(tube <= length && rod <= length, "{length}: {tube} {rod}");
-            assert!(tube + rod > length, "{length}: {tube} + {rod}");
+    /// A telescope of these radii, m.
+    pub fn new(tube_radius: f32, rod_radius: f32) -> Self {
+        Self {
+            tube_radius,
+            rod_radius,
+            ..default()
         }
-        assert_eq!(telescope.lengths(1.0, 1.0), (0.55, 0.6));
-        assert_eq!(telescope.lengths(1.1, 1.0), (0.55, 0.6));
+    }
+
+    /// Sets the stroke from shortest to longest, m.
+    pub const fn with_stroke(mut self, stroke: f32) -> Self {
+        self.stroke = Some(stroke);
+        self
+    }
+
+    /// Draws eyes and a bump rubber too.
+    pub const fn with_fittings(mut self) -> Self {
+        self.eyes = true;
+        self.bump_rubber = true;
+        self
+    }
+
+    /// Sets the paint of the tube.
+    pub const fn with_color(mut self, color: Color) -> Self {
+        self.color = color;
+        self
+    }
+
+    /// Whether it can be drawn, and if not, which field is wrong and how.
+    pub(super) fn check(&self) -> Result<(), String> {
+        for (field, value) in [
+            ("tube_radius", Some(self.tube_radius)),
+            ("rod_radius", Some(self.rod_radius)),
+            ("tube_length", self.tube_length),
+            ("rod_length", self.rod_length),
+            ("stroke", self.stroke),
+        ] {
+            if let Some(value) = value
+                && (!value.is_finite() || value <= 0.0)
+            {
+                return Err(format!(
+                    "{field} is {value}, and must be finite and positive"
+                ));
+            }
+        }
+        if self.rod_radius >= self.tube_radius {
+            return Err(format!(
+                "rod_radius is {} m, and must be less than the tube's of {} m",
+                self.rod_radius, self.tube_radius
+            ));
+        }
+        Ok(())
     }
 }

@@ -5,6 +5,7 @@ use crate::messages::Log;
 use bevy::asset::AssetPlugin;
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
+use std::collections::HashSet;
 
 /// A lab with what the visual plugin needs of Bevy, and no renderer.
 fn lab() -> Lab {
@@ -18,13 +19,13 @@ fn lab() -> Lab {
     lab
 }
 
-fn parts(lab: &Lab, element: Entity) -> Vec<(Transform, GlobalTransform)> {
+fn parts(lab: &Lab, element: Entity) -> Vec<GlobalTransform> {
     let children = lab.app.world().get::<Children>(element);
     children
         .into_iter()
         .flatten()
         .filter(|c| lab.app.world().get::<Mesh3d>(**c).is_some())
-        .map(|c| (*lab.get::<Transform>(*c), *lab.get::<GlobalTransform>(*c)))
+        .map(|c| *lab.get::<GlobalTransform>(*c))
         .collect()
 }
 
@@ -35,16 +36,20 @@ fn a_coilover_has_coil_seats_tube_and_rod_and_loses_them_with_their_components()
     let body = lab.body(5.0, Vec3::Y * 2.0);
     let element = lab.spawn(coilover(hook, body));
     lab.run(0.1);
-    assert_eq!(parts(&lab, element).len(), 5);
+    // Coil, tube with its collar, rod, two seats.
+    assert_eq!(parts(&lab, element).len(), 6);
+    *lab.get_mut::<Telescope>(element) = Telescope::default().with_fittings();
+    lab.run(0.1);
+    assert_eq!(parts(&lab, element).len(), 9);
     lab.app
         .world_mut()
         .entity_mut(element)
         .remove::<Telescope>();
     lab.run(0.1);
-    assert_eq!(parts(&lab, element).len(), 3);
+    assert_eq!(parts(&lab, element).len(), 1);
     lab.get_mut::<Coil>(element).turns = 5.0;
     lab.run(0.1);
-    assert_eq!(parts(&lab, element).len(), 3);
+    assert_eq!(parts(&lab, element).len(), 1);
     lab.app.world_mut().entity_mut(element).remove::<Coil>();
     lab.run(0.1);
     assert_eq!(parts(&lab, element).len(), 0);
@@ -56,18 +61,20 @@ fn equal_springs_share_one_mesh_and_one_material() {
     for i in 0..50 {
         let hook = lab.point(Vec3::new(i as f32, 3.0, 0.0));
         let body = lab.body(5.0, Vec3::new(i as f32, 2.0, 0.0));
+        // However long they are, and whatever holds them.
         lab.spawn((
-            Spring::new(hook, body).with_rest_length(1.0),
+            Spring::new(hook, body).with_rest_length(1.0 + 0.02 * i as f32),
             Coil::default(),
         ));
     }
     lab.run(0.1);
-    // The coil and the disc of its seats; its paint and steel.
-    assert_eq!(lab.app.world().resource::<Assets<Mesh>>().len(), 2);
-    assert_eq!(
-        lab.app.world().resource::<Assets<StandardMaterial>>().len(),
-        2
-    );
+    // One mesh for each level of detail, of which all show the same.
+    let world = lab.app.world_mut();
+    assert_eq!(world.resource::<Assets<Mesh>>().len(), 4);
+    assert_eq!(world.resource::<Assets<RoundWireMaterial>>().len(), 1);
+    let mut drawn = world.query::<(&Mesh3d, &MeshMaterial3d<RoundWireMaterial>)>();
+    let shown: HashSet<_> = drawn.iter(world).map(|(m, w)| (m.id(), w.id())).collect();
+    assert_eq!((drawn.iter(world).count(), shown.len()), (50, 1));
 }
 
 #[test]
@@ -91,20 +98,133 @@ fn the_coil_meets_the_anchors_every_frame_under_scaled_parents_too() {
         lab.tick();
         let end = |e: Entity, anchor: Vec3| lab.get::<GlobalTransform>(e).transform_point(anchor);
         let (a, b) = (end(hook, anchors.a), end(body, anchors.b));
-        let (_, coil) = parts(&lab, element)
-            .into_iter()
-            .min_by(|x, y| {
-                x.1.translation()
-                    .distance(a)
-                    .total_cmp(&y.1.translation().distance(a))
-            })
-            .expect("drawn");
+        let coil = parts(&lab, element)[0];
         let foot = coil.transform_point(Vec3::ZERO);
-        // The mesh is as long as the rest length.
+        // The mesh is one metre long.
         let top = coil.transform_point(Vec3::Y);
         let length = a.distance(b);
         assert!(foot.distance(a) < 1e-4 * length, "{foot} against {a}");
         assert!(top.distance(b) < 1e-4 * length, "{top} against {b}");
+    }
+}
+
+#[test]
+fn a_swinging_spring_neither_spins_nor_flips_and_no_length_is_no_harm() {
+    let mut lab = lab();
+    let hook = lab.point(Vec3::ZERO);
+    let end = lab.point(Vec3::Y);
+    let element = lab.spawn((Spring::new(hook, end), Coil::default()));
+    lab.tick();
+    let side = |lab: &Lab| {
+        let at = parts(lab, element)[0].affine().matrix3;
+        assert!(at.is_finite());
+        at.x_axis.normalize()
+    };
+    let mut before = side(&lab);
+    let first = before;
+    for degree in 0..=720 {
+        let angle = (degree as f32).to_radians();
+        // Up through the vertical, through zero length once, and back to where it began.
+        let length = if degree == 200 { 0.0 } else { 1.0 };
+        lab.get_mut::<Transform>(end).translation =
+            length * Vec3::new(0.0, angle.cos(), angle.sin());
+        lab.tick();
+        let now = side(&lab);
+        assert!(
+            now.distance(before) < 0.04,
+            "turned by more than its swing at {degree}°"
+        );
+        before = now;
+    }
+    assert!(before.distance(first) < 1e-3, "{before} was {first}");
+}
+
+#[test]
+fn a_coil_turns_with_end_a() {
+    let mut lab = lab();
+    let hook = lab.point(Vec3::ZERO);
+    let end = lab.point(Vec3::Y);
+    let element = lab.spawn((Spring::new(hook, end), Coil::default()));
+    lab.tick();
+    lab.tick();
+    let before = parts(&lab, element)[0].affine().matrix3.x_axis;
+    lab.get_mut::<Transform>(hook).rotation = Quat::from_rotation_y(1.0);
+    lab.tick();
+    let after = parts(&lab, element)[0].affine().matrix3.x_axis;
+    assert!((after.angle_between(before) - 1.0).abs() < 1e-4);
+}
+
+#[test]
+fn a_skin_of_the_users_is_stretched_between_the_ends() {
+    let mut lab = lab();
+    let (a, b) = (lab.point(Vec3::X), lab.point(Vec3::X * 3.0));
+    let mesh = lab
+        .app
+        .world_mut()
+        .resource_mut::<Assets<Mesh>>()
+        .add(Helix::new(0.1, 0.01, 5.0, 0.5));
+    let element = lab.spawn((
+        Spring::new(a, b),
+        Transform::default(),
+        Visibility::default(),
+        children![(SpringSkin { length: 0.5 }, Mesh3d(mesh))],
+    ));
+    lab.run(0.1);
+    let skin = parts(&lab, element)[0];
+    assert!(skin.transform_point(Vec3::ZERO).distance(Vec3::X) < 1e-5);
+    assert!(skin.transform_point(Vec3::Y * 0.5).distance(Vec3::X * 3.0) < 1e-5);
+}
+
+#[test]
+fn looks_that_cannot_be_drawn_are_told_once_by_entity_and_field() {
+    let log = Log::capture();
+    let mut lab = lab();
+    let (a, b) = (lab.point(Vec3::ZERO), lab.point(Vec3::Y));
+    let spring = Spring::new(a, b).with_rest_length(1.0);
+    let coil = lab.spawn((spring, Coil::new(0.1, 0.2, 8.0)));
+    let thin = Telescope::new(0.05, 0.06);
+    let telescope = lab.spawn((Damper::new(a, b), thin));
+    let endless = Telescope::default().with_stroke(f32::NAN);
+    let stroke = lab.spawn((Damper::new(a, b), endless));
+    // Eight turns of 0.16 m do not go into a metre.
+    let thick = lab.spawn((spring, Coil::new(0.2, 0.08, 8.0)));
+    lab.run(0.2);
+    let told = log.take();
+    assert_eq!(told.len(), 4, "{told:?}");
+    for (entity, what) in [
+        (coil, "Coil: wire_radius is 0.2 m"),
+        (telescope, "Telescope: rod_radius is 0.06 m"),
+        (stroke, "Telescope: stroke is NaN"),
+        (thick, "wire passes through wire"),
+    ] {
+        let named = format!("{entity}: ");
+        assert!(
+            told.iter().any(|t| t.contains(&named) && t.contains(what)),
+            "{told:?} say nothing of {what}"
+        );
+    }
+    assert!(parts(&lab, coil).is_empty() && parts(&lab, telescope).is_empty());
+    *lab.get_mut::<Coil>(coil) = Coil::default();
+    lab.tick();
+    assert_eq!(parts(&lab, coil).len(), 1);
+}
+
+#[test]
+fn what_is_drawn_reflects() {
+    let lab = lab();
+    let registry = lab.app.world().resource::<AppTypeRegistry>().read();
+    for name in [
+        "Coil",
+        "Telescope",
+        "SpringSkin",
+        "ShowSpringGizmos",
+        "SpringGizmos",
+        "Helix",
+        "HelixEnds",
+        "Handedness",
+        "RoundWire",
+    ] {
+        assert!(registry.get_with_short_type_path(name).is_some(), "{name}");
     }
 }
 

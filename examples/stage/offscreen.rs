@@ -1,0 +1,96 @@
+//! Pictures without a window. The render tests use this file too.
+
+use bevy::app::ScheduleRunnerPlugin;
+use bevy::asset::RenderAssetUsages;
+use bevy::camera::RenderTarget;
+use bevy::image::Image;
+use bevy::log::LogPlugin;
+use bevy::prelude::*;
+use bevy::render::RenderApp;
+use bevy::render::pipelined_rendering::PipelinedRenderingPlugin;
+use bevy::render::render_resource::{PipelineCache, TextureFormat, TextureUsages};
+use bevy::render::view::screenshot::{Screenshot, ScreenshotCaptured};
+use bevy::window::ExitCondition;
+use bevy::winit::WinitPlugin;
+use std::time::{Duration, Instant};
+
+/// Nothing of this takes longer, however slow the machine.
+const PATIENCE: Duration = Duration::from_secs(120);
+/// Updates without a shader being compiled after which a picture is complete.
+const QUIET: u32 = 4;
+
+/// The name of an adapter that can render, software ones included.
+pub fn adapter() -> Option<String> {
+    let instance = wgpu::Instance::default();
+    let adapters = bevy::tasks::block_on(instance.enumerate_adapters(wgpu::Backends::PRIMARY));
+    adapters.first().map(|adapter| {
+        let info = adapter.get_info();
+        format!("{} ({})", info.name, info.backend)
+    })
+}
+
+/// An app without window, and the image that its camera is to draw into.
+pub fn app(width: u32, height: u32) -> (App, Handle<Image>) {
+    let mut app = App::new();
+    app.add_plugins((
+        DefaultPlugins
+            .set(WindowPlugin {
+                primary_window: None,
+                exit_condition: ExitCondition::DontExit,
+                ..default()
+            })
+            // What was asked for in one update is in the picture of that update.
+            .disable::<PipelinedRenderingPlugin>()
+            .disable::<LogPlugin>()
+            .disable::<WinitPlugin>(),
+        ScheduleRunnerPlugin::default(),
+    ))
+    .init_resource::<Picture>();
+    let mut image = Image::new_target_texture(width, height, TextureFormat::Rgba8UnormSrgb, None);
+    image.asset_usage = RenderAssetUsages::default();
+    image.texture_descriptor.usage |= TextureUsages::COPY_SRC;
+    let image = app.world_mut().resource_mut::<Assets<Image>>().add(image);
+    (app, image)
+}
+
+/// For the camera.
+pub fn target(image: &Handle<Image>) -> RenderTarget {
+    RenderTarget::Image(image.clone().into())
+}
+
+#[derive(Resource, Default)]
+struct Picture(Option<Image>);
+
+/// Updates until nothing is missing from the picture: shaders are compiled in the background.
+pub fn settle(app: &mut App) {
+    let begun = Instant::now();
+    let mut quiet = 0;
+    while quiet < QUIET && begun.elapsed() < PATIENCE {
+        app.update();
+        let cache = app.sub_app(RenderApp).world().resource::<PipelineCache>();
+        let busy = cache.waiting_pipelines().next().is_some();
+        quiet = if busy { 0 } else { quiet + 1 };
+        if busy {
+            std::thread::sleep(Duration::from_millis(5));
+        }
+    }
+}
+
+/// What the camera sees now.
+pub fn shoot(app: &mut App, image: &Handle<Image>) -> Option<Image> {
+    app.world_mut()
+        .spawn(Screenshot::image(image.clone()))
+        .observe(
+            |shot: On<ScreenshotCaptured>, mut picture: ResMut<Picture>| {
+                picture.0 = Some(shot.image.clone());
+            },
+        );
+    let begun = Instant::now();
+    while begun.elapsed() < PATIENCE {
+        app.update();
+        if let Some(picture) = app.world_mut().resource_mut::<Picture>().0.take() {
+            return Some(picture);
+        }
+    }
+    None
+}

@@ -1,0 +1,123 @@
+//! Lines for debugging: ends, rest length, forces.
+
+use super::place::{Line, Lines};
+use crate::element::{Spring, SpringDamper};
+use crate::readout::SpringReadout;
+use bevy::gizmos::AppGizmoBuilder;
+use bevy::gizmos::config::{GizmoConfigGroup, GizmoConfigStore};
+use bevy::gizmos::gizmos::Gizmos;
+use bevy::math::Vec3A;
+use bevy::prelude::*;
+
+/// The gizmo group that draws elements as lines, for debugging: crosses at the ends, the rest length
+/// beside the line, and the forces on both ends as arrows, red for tension and blue for compression.
+///
+/// Nothing is drawn until `all` is set or an element has [`ShowSpringGizmos`]. Needs Bevy's `GizmoPlugin`,
+/// which `DefaultPlugins` has with the feature `bevy_gizmos_render`.
+///
+/// ```
+/// # use bevy::gizmos::config::GizmoConfigStore;
+/// # use bevy::prelude::*;
+/// # use bevy_coilover::SpringGizmos;
+/// fn show_all(mut store: ResMut<GizmoConfigStore>) {
+///     let (config, springs) = store.config_mut::<SpringGizmos>();
+///     config.depth_bias = -1.0; // In front of what is solid.
+///     springs.all = true;
+/// }
+/// ```
+#[derive(GizmoConfigGroup, Reflect, Clone, Debug)]
+#[reflect(Default)]
+pub struct SpringGizmos {
+    /// Draw every element that has no [`ShowSpringGizmos`] of its own.
+    pub all: bool,
+    /// Length of an arrow, m per N.
+    pub scale: f32,
+    /// Half the size of the crosses at the ends, m.
+    pub cross: f32,
+}
+
+impl Default for SpringGizmos {
+    fn default() -> Self {
+        Self {
+            all: false,
+            scale: 0.005,
+            cross: 0.05,
+        }
+    }
+}
+
+/// On an element: whether its [`SpringGizmos`] are drawn, whatever the group says.
+#[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
+#[reflect(Component, Default, Debug, PartialEq, Clone)]
+pub struct ShowSpringGizmos(pub bool);
+
+impl Default for ShowSpringGizmos {
+    fn default() -> Self {
+        Self(true)
+    }
+}
+
+const TENSION: Color = Color::srgb(0.95, 0.15, 0.1);
+const COMPRESSION: Color = Color::srgb(0.15, 0.4, 1.0);
+const REST: Color = Color::srgb(0.2, 0.8, 0.3);
+const END: Color = Color::srgb(0.95, 0.9, 0.2);
+
+/// Adds the group where there are gizmos.
+pub(super) fn add(app: &mut App, after: impl SystemSet) {
+    if !app.world().contains_resource::<GizmoConfigStore>() {
+        return;
+    }
+    app.init_gizmo_group::<SpringGizmos>()
+        .add_systems(PostUpdate, draw.after(after));
+}
+
+fn draw(
+    elements: Query<(
+        Line,
+        &SpringReadout,
+        Option<&Spring>,
+        Option<&SpringDamper>,
+        Option<&ShowSpringGizmos>,
+    )>,
+    lines: Lines,
+    mut gizmos: Gizmos<SpringGizmos>,
+) {
+    let SpringGizmos { all, scale, cross } = gizmos.config_ext.clone();
+    for (line, readout, spring, pair, show) in &elements {
+        if !show.map_or(all, |s| s.0) {
+            continue;
+        }
+        let Some((_, from, to)) = lines.ends(&line) else {
+            continue;
+        };
+        if !(from.is_finite() && to.is_finite()) {
+            continue;
+        }
+        let direction = (to - from).normalize_or(Vec3A::Y);
+        for end in [from, to] {
+            gizmos.cross(Isometry3d::from_translation(end), cross, END);
+        }
+        gizmos.line(from.into(), to.into(), END.with_alpha(0.5));
+        let rest = spring
+            .and_then(|s| s.rest_length)
+            .or_else(|| pair.and_then(|p| p.rest_length));
+        if let Some(rest) = rest {
+            // Beside the line, about its middle, so that what is missing or too much shows at both ends.
+            let beside = cross * direction.any_orthonormal_vector();
+            let middle = 0.5 * (from + to) + beside;
+            let half = 0.5 * rest * direction;
+            gizmos.line((middle - half).into(), (middle + half).into(), REST);
+        }
+        let force = readout.force();
+        if !force.is_finite() || force == 0.0 {
+            continue;
+        }
+        // Tension pulls both ends inwards.
+        let color = if force > 0.0 { TENSION } else { COMPRESSION };
+        let pull = scale * force * direction;
+        gizmos.arrow(from.into(), (from + pull).into(), color);
+        gizmos.arrow(to.into(), (to - pull).into(), color);
+    }
+}

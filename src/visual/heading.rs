@@ -1,0 +1,130 @@
+//! Which way a drawn element is turned about its own axis.
+
+use bevy::math::{Mat3A, Vec3A};
+
+/// The direction of an element and a side of it, both in the frame of end A: so the looks turn with that
+/// end, and are carried along without spin where the direction changes (parallel transport).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Heading {
+    axis: Vec3A,
+    side: Vec3A,
+}
+
+impl Default for Heading {
+    fn default() -> Self {
+        Self {
+            axis: Vec3A::Y,
+            side: Vec3A::X,
+        }
+    }
+}
+
+impl Heading {
+    /// Turns to a direction of unit length by the shortest way.
+    #[inline]
+    pub fn turn_to(&mut self, direction: Vec3A) {
+        let side = self.side;
+        let closeness = 1.0 + self.axis.dot(direction);
+        // Straight back, every way is the shortest: the side stays.
+        let turned = if closeness > 1e-6 {
+            side - (self.axis + direction) * (side.dot(direction) / closeness)
+        } else {
+            side
+        };
+        // Rounding must not add up.
+        let square = turned - direction * turned.dot(direction);
+        self.side = square
+            .try_normalize()
+            .unwrap_or_else(|| direction.any_orthonormal_vector());
+        self.axis = direction;
+    }
+
+    /// The columns of the rotation that takes X to the side and Y to the axis, in a frame.
+    #[inline]
+    pub fn in_frame(&self, frame: &Mat3A) -> Mat3A {
+        let (side, axis) = (*frame * self.side, *frame * self.axis);
+        Mat3A::from_cols(side, axis, side.cross(axis))
+    }
+}
+
+/// The rotation in a matrix that may scale and shear.
+#[inline]
+pub(super) fn upright(matrix: &Mat3A) -> Mat3A {
+    let x = matrix.x_axis.normalize_or(Vec3A::X);
+    let z = x
+        .cross(matrix.y_axis)
+        .try_normalize()
+        .unwrap_or_else(|| x.any_orthonormal_vector());
+    Mat3A::from_cols(x, z.cross(x), z)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bevy::math::{Quat, Vec3};
+
+    fn is_rotation(matrix: &Mat3A) -> bool {
+        (*matrix * matrix.transpose()).abs_diff_eq(Mat3A::IDENTITY, 1e-5)
+            && (matrix.determinant() - 1.0).abs() < 1e-5
+    }
+
+    #[test]
+    fn a_swing_right_round_neither_spins_nor_flips() {
+        let mut heading = Heading::default();
+        let mut before = heading.in_frame(&Mat3A::IDENTITY);
+        for i in 0..=720 {
+            let angle = (i as f32).to_radians();
+            let direction = Vec3A::new(angle.sin(), angle.cos(), 0.0);
+            heading.turn_to(direction);
+            let now = heading.in_frame(&Mat3A::IDENTITY);
+            assert!(is_rotation(&now));
+            assert!(now.y_axis.distance(direction) < 1e-5);
+            assert!(now.z_axis.distance(Vec3A::Z) < 1e-3, "spun at {i}°");
+            assert!(now.x_axis.distance(before.x_axis) < 0.03, "flipped at {i}°");
+            before = now;
+        }
+    }
+
+    #[test]
+    fn any_swing_is_a_turn_by_the_shortest_way() {
+        let mut heading = Heading::default();
+        for i in 0..2000 {
+            let t = i as f32 * 0.1;
+            let direction = Vec3A::new(t.sin(), (1.7 * t).cos(), (0.6 * t).sin()).normalize();
+            let before = heading.in_frame(&Mat3A::IDENTITY);
+            let arc = Quat::from_rotation_arc(before.y_axis.into(), direction.into());
+            heading.turn_to(direction);
+            let now = heading.in_frame(&Mat3A::IDENTITY);
+            // Near straight back the shortest way is a matter of rounding.
+            if before.y_axis.dot(direction) > -0.9 {
+                assert!(now.x_axis.distance(arc * before.x_axis) < 1e-3, "step {i}");
+            }
+        }
+        assert!(is_rotation(&heading.in_frame(&Mat3A::IDENTITY)));
+    }
+
+    #[test]
+    fn straight_back_is_no_harm() {
+        let mut heading = Heading::default();
+        for direction in [Vec3A::Y, Vec3A::NEG_Y, Vec3A::Y] {
+            heading.turn_to(direction);
+            assert!(is_rotation(&heading.in_frame(&Mat3A::IDENTITY)));
+        }
+    }
+
+    #[test]
+    fn scale_shear_and_mirrors_leave_a_rotation() {
+        let turn = Mat3A::from_quat(Quat::from_rotation_x(0.7) * Quat::from_rotation_z(2.0));
+        for scale in [
+            Vec3A::new(2.0, 0.3, 5.0),
+            Vec3A::new(-1.0, 1.0, 1.0),
+            Vec3A::new(0.0, 1.0, 1.0),
+            Vec3A::ZERO,
+        ] {
+            let matrix = turn * Mat3A::from_diagonal(scale.into());
+            assert!(is_rotation(&upright(&matrix)), "{scale}");
+        }
+        let scaled = turn * Mat3A::from_diagonal(Vec3::splat(3.0));
+        assert!(upright(&scaled).abs_diff_eq(turn, 1e-5));
+    }
+}

@@ -1,0 +1,199 @@
+//! A coil of round wire as a Bevy primitive.
+
+mod mesh;
+#[cfg(test)]
+mod tests;
+mod wire;
+
+pub use mesh::HelixMeshBuilder;
+
+use bevy::math::primitives::Primitive3d;
+use bevy::prelude::*;
+use std::f32::consts::PI;
+use std::fmt;
+use wire::Wire;
+
+/// How the wire of a coil ends.
+#[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[reflect(Default, Debug, PartialEq, Clone)]
+pub enum HelixEnds {
+    /// Steady pitch up to the cut.
+    Open,
+    /// The last turn at each end lies wire on wire, and keeps that pitch however far the coil is stretched.
+    Closed,
+    /// The same, ground flat as a seat.
+    #[default]
+    ClosedGround,
+}
+
+impl HelixEnds {
+    /// Turns that do not act, both ends together.
+    pub const fn dead_turns(self) -> f32 {
+        match self {
+            Self::Open => 0.0,
+            Self::Closed | Self::ClosedGround => 2.0,
+        }
+    }
+}
+
+/// Which way a coil is wound.
+#[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[reflect(Default, Debug, PartialEq, Clone)]
+pub enum Handedness {
+    /// Like a common screw.
+    #[default]
+    Right,
+    /// The other way.
+    Left,
+}
+
+/// A coil of round wire about +Y that stands on the origin and is `length` high, wire included.
+///
+/// The wire's section is a circle perpendicular to the wire; its ends are capped.
+#[derive(Reflect, Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[reflect(Default, Debug, PartialEq, Clone)]
+pub struct Helix {
+    /// From the axis to the middle of the wire, m.
+    pub radius: f32,
+    /// Half the wire's thickness, m.
+    pub wire_radius: f32,
+    /// Turns from end to end, dead ones included.
+    pub turns: f32,
+    /// Height, m.
+    pub length: f32,
+    /// How the wire ends.
+    pub ends: HelixEnds,
+    /// Which way it is wound.
+    pub handedness: Handedness,
+}
+
+impl Primitive3d for Helix {}
+
+impl Default for Helix {
+    fn default() -> Self {
+        Self {
+            radius: 0.5,
+            wire_radius: 0.06,
+            turns: 6.0,
+            length: 1.5,
+            ends: HelixEnds::default(),
+            handedness: Handedness::default(),
+        }
+    }
+}
+
+/// Why a coil cannot be wound.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum HelixError {
+    /// The field is not finite, or not positive; its name and value.
+    NotPositive(&'static str, f32),
+    /// The wire, with this radius, would cross the axis of a coil of that radius (m).
+    WireTooThick(f32, f32),
+    /// More turns than a mesh should have.
+    TooManyTurns(f32),
+}
+
+/// Beyond this a mesh gets too large to draw.
+const MOST_TURNS: f32 = 1000.0;
+
+impl fmt::Display for HelixError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NotPositive(field, value) => {
+                write!(f, "{field} is {value}, and must be finite and positive")
+            }
+            Self::WireTooThick(wire, radius) => write!(
+                f,
+                "wire_radius is {wire} m, and must be less than the coil's radius of {radius} m"
+            ),
+            Self::TooManyTurns(turns) => {
+                write!(f, "turns is {turns}, and must be at most {MOST_TURNS}")
+            }
+        }
+    }
+}
+
+impl std::error::Error for HelixError {}
+
+impl Helix {
+    /// A coil of this radius, wire radius (m), turns and length (m), right-handed, its ends closed and
+    /// ground.
+    pub fn new(radius: f32, wire_radius: f32, turns: f32, length: f32) -> Self {
+        Self {
+            radius,
+            wire_radius,
+            turns,
+            length,
+            ..default()
+        }
+    }
+
+    /// Sets how the wire ends.
+    pub const fn with_ends(mut self, ends: HelixEnds) -> Self {
+        self.ends = ends;
+        self
+    }
+
+    /// Sets which way it is wound.
+    pub const fn with_handedness(mut self, handedness: Handedness) -> Self {
+        self.handedness = handedness;
+        self
+    }
+
+    /// Whether a wire can be wound so, and if not, why.
+    pub fn check(&self) -> Result<(), HelixError> {
+        for (field, value) in [
+            ("radius", self.radius),
+            ("wire_radius", self.wire_radius),
+            ("turns", self.turns),
+            ("length", self.length),
+        ] {
+            if !value.is_finite() || value <= 0.0 {
+                return Err(HelixError::NotPositive(field, value));
+            }
+        }
+        if self.wire_radius >= self.radius {
+            return Err(HelixError::WireTooThick(self.wire_radius, self.radius));
+        }
+        if self.turns > MOST_TURNS {
+            return Err(HelixError::TooManyTurns(self.turns));
+        }
+        Ok(())
+    }
+
+    /// The length at which all turns touch, m. Shorter than that, wire would pass through wire.
+    pub fn solid_length(&self) -> f32 {
+        let thickness = 2.0 * self.wire_radius;
+        match self.ends {
+            HelixEnds::ClosedGround => self.turns * thickness,
+            HelixEnds::Open | HelixEnds::Closed => (self.turns + 1.0) * thickness,
+        }
+    }
+
+    /// Length of the wire along its middle, m.
+    pub fn wire_length(&self) -> f32 {
+        Wire::new(self).length()
+    }
+
+    /// Volume of the wire, m³; what is ground off ground ends counts.
+    pub fn wire_volume(&self) -> f32 {
+        PI * self.wire_radius * self.wire_radius * self.wire_length()
+    }
+}
+
+impl Meshable for Helix {
+    type Output = HelixMeshBuilder;
+
+    fn mesh(&self) -> Self::Output {
+        HelixMeshBuilder::new(*self)
+    }
+}
+
+impl From<Helix> for Mesh {
+    fn from(helix: Helix) -> Self {
+        helix.mesh().build()
+    }
+}

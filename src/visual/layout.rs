@@ -1,0 +1,247 @@
+//! Where each part lies along the line from end A to end B: lengths alone, no directions.
+
+use super::coil::Coil;
+use super::telescope::Telescope;
+use bevy::prelude::*;
+
+/// Which part of an element a drawn child is.
+#[derive(Component, Clone, Copy, Debug, PartialEq)]
+pub(super) enum Part {
+    Coil,
+    Tube,
+    /// The collar at the tube's mouth.
+    Collar,
+    Rod,
+    Bump,
+    /// Plates between which a coilover's coil sits.
+    SeatA,
+    SeatB,
+    EyeA,
+    EyeB,
+    /// Something of the user's, of this length where it is not scaled, m.
+    Custom(f32),
+}
+
+/// Shorter than this nothing has a direction or a size of its own, m.
+pub(super) const SHORT: f32 = 1e-5;
+/// Stroke, as a share of the length when first drawn.
+const STROKE: f32 = 0.5;
+/// At full stroke this share of the tube still holds the rod.
+const OVERLAP: f32 = 0.15;
+/// However far they are pulled, it holds this share.
+const LEAST_OVERLAP: f32 = 0.05;
+
+/// Sizes of an element's parts, m; zero for what it has not.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Layout {
+    pub coil_radius: f32,
+    pub wire_radius: f32,
+    pub tube_radius: f32,
+    pub rod_radius: f32,
+    /// Outer radius of the eyes.
+    pub eye: f32,
+    /// Height of the spring seats.
+    pub seat: f32,
+    /// From end A to the tube's mouth.
+    tube: f32,
+    /// From end B to the rod's tip.
+    rod: f32,
+    /// Length of the bump rubber.
+    bump: f32,
+    /// Length at which the coil's turns touch.
+    pub solid: f32,
+}
+
+impl Layout {
+    /// Where the ends were `first` apart when first drawn.
+    pub fn new(coil: Option<&Coil>, telescope: Option<&Telescope>, first: f32) -> Self {
+        let mut out = Self::default();
+        if let Some(coil) = coil {
+            out.coil_radius = coil.radius;
+            out.wire_radius = coil.wire_radius;
+            out.solid = coil.solid_length();
+        }
+        let Some(telescope) = telescope else {
+            return out;
+        };
+        out.tube_radius = telescope.tube_radius;
+        out.rod_radius = telescope.rod_radius;
+        out.eye = if telescope.eyes {
+            1.25 * telescope.tube_radius
+        } else {
+            0.0
+        };
+        out.seat = 1.5 * out.wire_radius;
+
+        let stroke = telescope.stroke.unwrap_or(STROKE * first).min(1.9 * first);
+        let (shortest, longest) = (first - 0.5 * stroke, first + 0.5 * stroke);
+        let head = out.foot() + 0.5 * out.tube_radius;
+        let tube = (shortest - head).max(0.6 * shortest);
+        out.tube = telescope.tube_length.unwrap_or(tube);
+        let rod = longest - out.tube * (1.0 - OVERLAP);
+        let room = (shortest - out.body()).max(0.5 * shortest);
+        out.rod = telescope.rod_length.unwrap_or(rod.min(room));
+        if telescope.bump_rubber {
+            // As long as leaves three quarters of the way in free.
+            out.bump = 0.25 * (first - out.tube - out.foot()).max(0.0);
+        }
+        out
+    }
+
+    /// From an end to where the tube or rod proper begins.
+    fn body(&self) -> f32 {
+        0.8 * self.eye
+    }
+
+    /// From an end to where the coil stands.
+    fn foot(&self) -> f32 {
+        self.body() + self.seat
+    }
+
+    /// How far anything reaches from the line between the ends.
+    pub fn reach(&self) -> f32 {
+        (self.coil_radius + 2.0 * self.wire_radius).max(2.0 * self.tube_radius)
+    }
+
+    /// From end A to the tube's mouth where the ends are this far apart: the tube does not poke through
+    /// what is at end B.
+    pub fn mouth(&self, length: f32) -> f32 {
+        self.tube.min((length - self.foot()).max(0.5 * length))
+    }
+
+    /// From end B to the rod's tip: it neither leaves the tube nor pokes through its bottom.
+    pub fn tip(&self, length: f32) -> f32 {
+        let least = length - self.mouth(length) * (1.0 - LEAST_OVERLAP);
+        self.rod.max(least).min((length - self.body()).max(least))
+    }
+
+    /// Length of the coil.
+    pub fn span(&self, length: f32) -> f32 {
+        (length - 2.0 * self.foot()).max(SHORT)
+    }
+
+    /// The middle of a part on the line from end A, and its scale. Meshes of solids are one metre high
+    /// about their middle and of radius one; coils stand on their foot.
+    pub fn lay(&self, part: Part, length: f32) -> (f32, Vec3) {
+        let round = |radius: f32, low: f32, high: f32| {
+            let height = (high - low).max(SHORT);
+            (low + 0.5 * height, Vec3::new(radius, height, radius))
+        };
+        let plate = self.coil_radius + 1.5 * self.wire_radius;
+        let (body, foot) = (self.body(), self.foot());
+        match part {
+            Part::Coil => (foot, Vec3::new(1.0, self.span(length), 1.0)),
+            Part::Tube => round(self.tube_radius, body, self.mouth(length)),
+            Part::Collar => {
+                let mouth = self.mouth(length);
+                let radius = 1.12 * self.tube_radius;
+                round(
+                    radius,
+                    mouth - 0.5 * self.tube_radius,
+                    mouth + 1e-3 * self.tube_radius,
+                )
+            }
+            Part::Rod => round(self.rod_radius, length - self.tip(length), length - body),
+            Part::Bump => {
+                let top = length - foot;
+                let low = (top - self.bump).max(self.mouth(length));
+                round(0.5 * (self.tube_radius + self.rod_radius), low, top)
+            }
+            Part::SeatA => round(plate, body, foot),
+            Part::SeatB => round(plate, length - foot, length - body),
+            Part::EyeA => (0.0, Vec3::splat(self.eye)),
+            Part::EyeB => (length, Vec3::splat(self.eye)),
+            Part::Custom(own) => (foot, Vec3::new(1.0, self.span(length) / own, 1.0)),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn cases() -> impl Iterator<Item = (Telescope, Option<Coil>)> {
+        let plain = Telescope::default();
+        let long = plain.with_stroke(0.9);
+        let given = Telescope {
+            tube_length: Some(0.3),
+            rod_length: Some(0.4),
+            ..plain
+        };
+        [plain, plain.with_fittings(), long, given]
+            .into_iter()
+            .flat_map(|t| [(t, None), (t, Some(Coil::default()))])
+    }
+
+    #[test]
+    fn tube_and_rod_always_overlap_and_never_poke_through() {
+        for (telescope, coil) in cases() {
+            let layout = Layout::new(coil.as_ref(), Some(&telescope), 1.0);
+            for length in [0.001, 0.01, 0.3, 0.7, 1.0, 1.1, 1.5, 4.0] {
+                let (mouth, tip) = (layout.mouth(length), layout.tip(length));
+                assert!(mouth <= length && tip <= length, "{length}: {mouth} {tip}");
+                assert!(mouth + tip > length, "{length}: {mouth} + {tip}");
+            }
+        }
+    }
+
+    #[test]
+    fn tube_and_rod_keep_their_lengths_through_the_stroke() {
+        for stroke in [0.1, 0.3, 0.5] {
+            let telescope = Telescope::default().with_stroke(stroke);
+            let layout = Layout::new(None, Some(&telescope), 1.0);
+            let (mouth, tip) = (layout.mouth(1.0), layout.tip(1.0));
+            for i in 0..=20 {
+                let length = 1.0 + stroke * (i as f32 / 20.0 - 0.5);
+                assert!(
+                    (layout.mouth(length) - mouth).abs() < 1e-6,
+                    "{stroke} {length}"
+                );
+                assert!((layout.tip(length) - tip).abs() < 1e-6, "{stroke} {length}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_coil_alone_goes_from_end_to_end_and_a_coilovers_between_its_seats() {
+        let coil = Coil::default();
+        let alone = Layout::new(Some(&coil), None, 1.0);
+        assert_eq!(alone.lay(Part::Coil, 1.2), (0.0, Vec3::new(1.0, 1.2, 1.0)));
+        let both = Layout::new(
+            Some(&coil),
+            Some(&Telescope::default().with_fittings()),
+            1.0,
+        );
+        let (foot, scale) = both.lay(Part::Coil, 1.2);
+        let (low, a) = both.lay(Part::SeatA, 1.2);
+        let (high, b) = both.lay(Part::SeatB, 1.2);
+        assert!((foot - low - 0.5 * a.y).abs() < 1e-6);
+        assert!((foot + scale.y - high + 0.5 * b.y).abs() < 1e-6);
+    }
+
+    #[test]
+    fn nothing_is_negative_or_infinite_at_any_length() {
+        for (telescope, coil) in cases() {
+            let layout = Layout::new(coil.as_ref(), Some(&telescope), 1.0);
+            for length in [0.0, SHORT, 0.05, 0.2, 1.0, 100.0] {
+                for part in [
+                    Part::Coil,
+                    Part::Tube,
+                    Part::Collar,
+                    Part::Rod,
+                    Part::Bump,
+                    Part::SeatA,
+                    Part::SeatB,
+                    Part::Custom(1.0),
+                ] {
+                    let (at, scale) = layout.lay(part, length);
+                    assert!(at.is_finite() && scale.is_finite(), "{part:?} at {length}");
+                    assert!(
+                        scale.min_element() > 0.0 || coil.is_none(),
+                        "{part:?} at {length}"
+                    );
+                }
+            }
+        }
+    }
+}

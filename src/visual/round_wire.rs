@@ -1,0 +1,115 @@
+//! The material that keeps a stretched coil's wire round.
+
+use super::helix::{Handedness, Helix, HelixEnds};
+use bevy::asset::io::embedded::EmbeddedAssetRegistry;
+use bevy::asset::{Asset, Assets};
+use bevy::math::Vec4;
+use bevy::pbr::{ExtendedMaterial, MaterialExtension, MaterialPlugin, PbrPlugin, StandardMaterial};
+use bevy::prelude::*;
+use bevy::render::RenderApp;
+use bevy::render::render_resource::{AsBindGroup, ShaderType};
+use bevy::shader::ShaderRef;
+use std::path::{Path, PathBuf};
+
+/// A [`StandardMaterial`] for meshes of [`Helix`] that rebuilds the wire on the graphics card: scale the
+/// coil along its axis as you like, its wire stays round, in the picture and in shadows.
+///
+/// ```
+/// # use bevy::prelude::*;
+/// # use bevy_coilover::{Helix, RoundWire, RoundWireMaterial};
+/// # fn setup(
+/// #     mut commands: Commands,
+/// #     mut meshes: ResMut<Assets<Mesh>>,
+/// #     mut materials: ResMut<Assets<RoundWireMaterial>>,
+/// # ) {
+/// let helix = Helix::new(0.5, 0.06, 6.0, 1.0);
+/// commands.spawn((
+///     Mesh3d(meshes.add(helix)),
+///     MeshMaterial3d(materials.add(RoundWireMaterial {
+///         base: StandardMaterial::from(Color::srgb(0.8, 0.1, 0.1)),
+///         extension: RoundWire { helix },
+///     })),
+///     Transform::from_scale(Vec3::new(1.0, 2.0, 1.0)),
+/// ));
+/// # }
+/// ```
+pub type RoundWireMaterial = ExtendedMaterial<StandardMaterial, RoundWire>;
+
+/// What [`RoundWireMaterial`] knows of the coil: the very [`Helix`] whose mesh it is put on.
+#[derive(Asset, AsBindGroup, Reflect, Clone, Copy, Debug, Default, PartialEq)]
+#[reflect(Default, Debug, PartialEq, Clone)]
+#[uniform(100, RoundWireUniform)]
+pub struct RoundWire {
+    /// The coil at the length where its model is not scaled.
+    pub helix: Helix,
+}
+
+/// [`RoundWire`] as the shader reads it.
+#[derive(ShaderType, Clone, Copy, Debug)]
+struct RoundWireUniform {
+    shape: Vec4,
+    style: Vec4,
+}
+
+impl From<&RoundWire> for RoundWireUniform {
+    fn from(RoundWire { helix }: &RoundWire) -> Self {
+        let hand = match helix.handedness {
+            Handedness::Right => 1.0,
+            Handedness::Left => -1.0,
+        };
+        let ends = match helix.ends {
+            HelixEnds::Open => 0.0,
+            HelixEnds::Closed => 1.0,
+            HelixEnds::ClosedGround => 2.0,
+        };
+        Self {
+            shape: Vec4::new(helix.radius, helix.wire_radius, helix.turns, helix.length),
+            style: Vec4::new(hand, ends, 0.0, 0.0),
+        }
+    }
+}
+
+/// Where the shader is embedded, so that it is found wherever the binary runs.
+const SHADER: &str = "bevy_coilover/shaders/round_wire.wgsl";
+
+fn shader() -> ShaderRef {
+    ShaderRef::Path(format!("embedded://{SHADER}").into())
+}
+
+impl MaterialExtension for RoundWire {
+    fn vertex_shader() -> ShaderRef {
+        shader()
+    }
+
+    fn prepass_vertex_shader() -> ShaderRef {
+        shader()
+    }
+
+    fn deferred_vertex_shader() -> ShaderRef {
+        shader()
+    }
+}
+
+/// Adds the material as far as the app can draw it; adds nothing where there are no assets.
+pub(super) fn add(app: &mut App) {
+    let Some(embedded) = app.world().get_resource::<EmbeddedAssetRegistry>() else {
+        return;
+    };
+    embedded.insert_asset(
+        PathBuf::from(concat!(
+            env!("CARGO_MANIFEST_DIR"),
+            "/assets/shaders/round_wire.wgsl"
+        )),
+        Path::new(SHADER),
+        include_bytes!(concat!(
+            env!("CARGO_MANIFEST_DIR"),
+            "/assets/shaders/round_wire.wgsl"
+        ))
+        .as_slice(),
+    );
+    if app.is_plugin_added::<PbrPlugin>() && app.get_sub_app(RenderApp).is_some() {
+        app.add_plugins(MaterialPlugin::<RoundWireMaterial>::default());
+    } else if !app.world().contains_resource::<Assets<RoundWireMaterial>>() {
+        app.init_asset::<RoundWireMaterial>();
+    }
+}

@@ -1,0 +1,167 @@
+//! Meshes and materials: one of each per shape and paint, so that equal springs are drawn in one batch.
+
+use super::coil::Coil;
+use super::helix::{Handedness, Helix, HelixEnds, HelixMeshBuilder};
+use super::round_wire::{RoundWire, RoundWireMaterial};
+use bevy::asset::{Assets, Handle};
+use bevy::color::{Color, ColorToPacked, LinearRgba};
+use bevy::mesh::{Mesh, MeshBuilder, Meshable};
+use bevy::pbr::StandardMaterial;
+use bevy::platform::collections::HashMap;
+use bevy::prelude::*;
+use std::sync::Arc;
+
+/// Segments per turn and around the wire, from near to far.
+const DETAIL: [(u32, u32); 4] = [(44, 20), (28, 12), (18, 8), (12, 4)];
+/// Shapes and paints kept before the first search for those that nobody uses any more.
+const KEPT: usize = 64;
+
+/// The meshes of one coil, from near to far.
+pub(super) type CoilMeshes = Arc<[Handle<Mesh>; DETAIL.len()]>;
+
+/// Everything of a coil but its length and paint.
+type CoilKey = ([u32; 3], HelixEnds, Handedness);
+type Packed = [u8; 4];
+
+/// How a surface takes light.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) enum Finish {
+    /// Paint on metal.
+    Enamel,
+    /// Ground or plated.
+    Steel,
+    Rubber,
+}
+
+impl Finish {
+    fn material(self, color: Color) -> StandardMaterial {
+        let (metallic, perceptual_roughness, reflectance) = match self {
+            Self::Enamel => (0.15, 0.33, 0.6),
+            Self::Steel => (0.6, 0.27, 0.7),
+            Self::Rubber => (0.0, 0.85, 0.3),
+        };
+        StandardMaterial {
+            base_color: color,
+            metallic,
+            perceptual_roughness,
+            reflectance,
+            ..default()
+        }
+    }
+}
+
+/// What has been made so far.
+#[derive(Resource)]
+pub(super) struct Shapes {
+    coils: HashMap<CoilKey, CoilMeshes>,
+    wires: HashMap<(CoilKey, Packed), Handle<RoundWireMaterial>>,
+    paints: HashMap<(Packed, Finish), Handle<StandardMaterial>>,
+    cylinder: Option<Handle<Mesh>>,
+    eye: Option<Handle<Mesh>>,
+    /// How many may be kept before the next search for unused ones.
+    room: usize,
+}
+
+impl Default for Shapes {
+    fn default() -> Self {
+        Self {
+            coils: HashMap::default(),
+            wires: HashMap::default(),
+            paints: HashMap::default(),
+            cylinder: None,
+            eye: None,
+            room: KEPT,
+        }
+    }
+}
+
+fn key(coil: &Coil) -> CoilKey {
+    let sizes = [coil.radius, coil.wire_radius, coil.turns].map(f32::to_bits);
+    (sizes, coil.ends, coil.handedness)
+}
+
+/// A coil as it is drawn: one metre high, so that the scale along its axis is its length.
+fn unit(coil: &Coil) -> Helix {
+    coil.helix(1.0)
+}
+
+fn is_used<A: Asset>(handle: &Handle<A>) -> bool {
+    match handle {
+        Handle::Strong(strong) => Arc::strong_count(strong) > 1,
+        Handle::Uuid(..) => true,
+    }
+}
+
+impl Shapes {
+    pub fn coil(&mut self, coil: &Coil, meshes: &mut Assets<Mesh>) -> CoilMeshes {
+        self.forget_unused();
+        self.coils
+            .entry(key(coil))
+            .or_insert_with(|| {
+                Arc::new(DETAIL.map(|(along, around)| {
+                    let builder = HelixMeshBuilder::new(unit(coil)).resolution(along, around);
+                    meshes.add(builder.triangles())
+                }))
+            })
+            .clone()
+    }
+
+    pub fn wire(
+        &mut self,
+        coil: &Coil,
+        materials: &mut Assets<RoundWireMaterial>,
+    ) -> Handle<RoundWireMaterial> {
+        self.wires
+            .entry((key(coil), LinearRgba::from(coil.color).to_u8_array()))
+            .or_insert_with(|| {
+                materials.add(RoundWireMaterial {
+                    base: Finish::Enamel.material(coil.color),
+                    extension: RoundWire { helix: unit(coil) },
+                })
+            })
+            .clone()
+    }
+
+    pub fn paint(
+        &mut self,
+        color: Color,
+        finish: Finish,
+        materials: &mut Assets<StandardMaterial>,
+    ) -> Handle<StandardMaterial> {
+        self.paints
+            .entry((LinearRgba::from(color).to_u8_array(), finish))
+            .or_insert_with(|| materials.add(finish.material(color)))
+            .clone()
+    }
+
+    /// One metre high about its middle, and of radius one.
+    pub fn cylinder(&mut self, meshes: &mut Assets<Mesh>) -> Handle<Mesh> {
+        self.cylinder
+            .get_or_insert_with(|| {
+                meshes.add(Cylinder::new(1.0, 1.0).mesh().resolution(40).build())
+            })
+            .clone()
+    }
+
+    /// A ring of outer radius one about X.
+    pub fn eye(&mut self, meshes: &mut Assets<Mesh>) -> Handle<Mesh> {
+        self.eye
+            .get_or_insert_with(|| {
+                let ring = Torus::new(0.4, 1.0).mesh().build();
+                meshes.add(ring.rotated_by(Quat::from_rotation_z(std::f32::consts::FRAC_PI_2)))
+            })
+            .clone()
+    }
+
+    /// A game that changes shapes or paints all the time must not fill the memory with old ones.
+    fn forget_unused(&mut self) {
+        if self.coils.len() + self.wires.len() + self.paints.len() < self.room {
+            return;
+        }
+        self.coils
+            .retain(|_, meshes| Arc::strong_count(meshes) > 1 || meshes.iter().any(is_used));
+        self.wires.retain(|_, material| is_used(material));
+        self.paints.retain(|_, material| is_used(material));
+        self.room = KEPT.max(2 * (self.coils.len() + self.wires.len() + self.paints.len()));
+    }
+}

@@ -1,0 +1,94 @@
+//! Do the examples look as they did? Each is run as a user runs it, and its picture compared with
+//! `references/`. After a change that is meant to be seen, look at the new pictures and keep them:
+//! `UPDATE_REFERENCES=1 cargo test --test render look`.
+
+use crate::canvas::{alone, can_draw};
+use image::{RgbImage, imageops};
+use std::path::Path;
+use std::process::Command;
+
+const SCENES: [&str; 8] = [
+    "spring_3d",
+    "damper_3d",
+    "damper_visible",
+    "spring_damper",
+    "coilover_visible",
+    "free_fall",
+    "natural_frequency",
+    "showcase",
+];
+/// Pictures are compared and kept this small: what matters is still seen.
+const SIZE: (u32, u32) = (480, 270);
+/// Tiles a picture is cut into, across and down: the worst one counts, for a coil is little of a picture.
+const TILES: (u32, u32) = (8, 5);
+/// One is the same tile. Other drivers' edges and rounding cost little of it, a missing coil far more.
+const ALIKE: f64 = 0.85;
+
+/// How alike the most different tiles of two pictures are.
+fn likeness(a: &RgbImage, b: &RgbImage) -> f64 {
+    let (width, height) = (SIZE.0 / TILES.0, SIZE.1 / TILES.1);
+    let mut worst = 1.0_f64;
+    for x in 0..TILES.0 {
+        for y in 0..TILES.1 {
+            let cut = |of: &RgbImage| {
+                imageops::crop_imm(of, x * width, y * height, width, height).to_image()
+            };
+            let alike = image_compare::rgb_hybrid_compare(&cut(a), &cut(b)).expect("equal sizes");
+            worst = worst.min(alike.score);
+        }
+    }
+    worst
+}
+
+#[test]
+fn the_examples_look_as_they_did_and_their_checks_hold() {
+    if !can_draw() {
+        return;
+    }
+    let _alone = alone();
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    for scene in SCENES {
+        let shot = std::env::temp_dir().join(format!("{scene}_{}.png", std::process::id()));
+        let run = Command::new(env!("CARGO"))
+            .current_dir(root)
+            .args(["run", "--quiet", "--example", scene, "--", "--screenshot"])
+            .arg(&shot)
+            .output()
+            .expect("cargo runs");
+        let told = String::from_utf8_lossy(&run.stdout);
+        assert!(run.status.success(), "{scene}: {told}");
+        let full = image::open(&shot).expect("a picture").to_rgb8();
+        let _ = std::fs::remove_file(&shot);
+        let seen = imageops::resize(&full, SIZE.0, SIZE.1, imageops::FilterType::Triangle);
+        let kept = root.join(format!("tests/render/references/{scene}.png"));
+        if std::env::var_os("UPDATE_REFERENCES").is_some() {
+            seen.save(&kept).expect("written");
+            continue;
+        }
+        let kept = image::open(&kept).expect("a reference").to_rgb8();
+        let alike = likeness(&seen, &kept);
+        println!("{scene}: {alike:.4} alike");
+        assert!(alike > ALIKE, "{scene}: only {alike:.4} alike");
+    }
+}
+
+#[test]
+fn a_missing_coil_would_be_noticed() {
+    let kept = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/render/references");
+    for scene in ["spring_3d", "spring_damper", "natural_frequency"] {
+        let whole = image::open(kept.join(format!("{scene}.png")));
+        let whole = whole.expect("a reference").to_rgb8();
+        let mut without = whole.clone();
+        for x in 0..SIZE.0 {
+            for y in 0..SIZE.1 {
+                let [r, g, _] = whole.get_pixel(x, y).0;
+                if r > g.saturating_add(30) {
+                    *without.get_pixel_mut(x, y) = *whole.get_pixel(4, y);
+                }
+            }
+        }
+        let alike = likeness(&without, &whole);
+        println!("{scene} without its coils: {alike:.4} alike");
+        assert!(alike < ALIKE, "{scene}: {alike:.4}");
+    }
+}

@@ -1,0 +1,111 @@
+//! Does the shader keep the wire round, in the picture and in the shadow?
+
+use crate::canvas::*;
+use bevy::light::CascadeShadowConfigBuilder;
+use bevy::prelude::*;
+use bevy_coilover::prelude::*;
+use std::f32::consts::TAU;
+
+const RADIUS: f32 = 0.15;
+const WIRE: f32 = 0.03;
+const TURNS: f32 = 5.5;
+const REST: f32 = 0.7;
+
+/// Rise per turn of the active coils of a coil with closed ends.
+fn pitch(length: f32) -> f32 {
+    // One turn at each end lies flat, and half a turn more goes from that pitch to this.
+    (length - 2.0 * WIRE - 2.0 * WIRE * 2.5) / (TURNS - 2.5)
+}
+
+/// From the height of a run where the wire passes before the axis to its thickness across, in pixels.
+fn across(runs: &mut [u32], length: f32, amplitude: f32) -> f32 {
+    runs.sort_unstable();
+    let middle = runs[runs.len() / 2] as f32;
+    let slope = pitch(length) / (TAU * amplitude);
+    middle / (1.0 + slope * slope).sqrt()
+}
+
+fn spring(world: &mut World, x: f32, length: f32) {
+    let foot = Vec3::new(x, -0.8, 0.0);
+    let (a, b) = ends(world, foot, foot + Vec3::Y * length);
+    world.spawn((
+        Spring::new(a, b).with_rest_length(REST),
+        Coil::new(RADIUS, WIRE, TURNS)
+            .with_ends(HelixEnds::Closed)
+            .with_color(Color::srgb(1.0, 0.0, 0.0)),
+    ));
+}
+
+#[test]
+fn the_wire_is_as_thick_at_twice_the_length() {
+    let mut widths = Vec::new();
+    for stretch in [1.0, 2.0] {
+        let length = stretch * REST;
+        let Some(picture) = draw(|world| spring(world, 0.0, length)) else {
+            return;
+        };
+        let mut runs = runs(&picture, 0.0, is_red);
+        // The flat turns at the ends are one run each, and the active ones two each: front and back.
+        assert!(runs.len() >= 7, "{runs:?}");
+        widths.push(across(&mut runs, length, RADIUS));
+    }
+    println!(
+        "wire: {widths:?} px at 1x and 2x, drawn {} px",
+        2.0 * WIRE / PIXEL
+    );
+    assert!((widths[0] - widths[1]).abs() <= 1.0, "{widths:?}");
+    assert!((widths[0] - 2.0 * WIRE / PIXEL).abs() <= 1.0, "{widths:?}");
+}
+
+#[test]
+fn its_shadow_is_as_thick_at_twice_the_length() {
+    let mut widths = Vec::new();
+    for stretch in [1.0, 2.0] {
+        let length = stretch * REST;
+        let Some(picture) = draw(|world| {
+            spring(world, -0.5, length);
+            // A white wall behind, and a light that throws the shadow on it, one metre to the right.
+            let wall = world
+                .resource_mut::<Assets<Mesh>>()
+                .add(Cuboid::new(4.0, 4.0, 0.1));
+            let white = world
+                .resource_mut::<Assets<StandardMaterial>>()
+                .add(StandardMaterial {
+                    base_color: Color::WHITE,
+                    perceptual_roughness: 1.0,
+                    ..default()
+                });
+            world.spawn((
+                Mesh3d(wall),
+                MeshMaterial3d(white),
+                Transform::from_xyz(0.0, 0.0, -1.05),
+            ));
+            world.spawn((
+                DirectionalLight {
+                    illuminance: 6_000.0,
+                    shadow_maps_enabled: true,
+                    ..default()
+                },
+                Transform::default().looking_to(Vec3::new(1.0, 0.0, -1.0), Vec3::Y),
+                CascadeShadowConfigBuilder {
+                    num_cascades: 1,
+                    minimum_distance: 0.1,
+                    maximum_distance: 8.0,
+                    ..default()
+                }
+                .build(),
+            ));
+        }) else {
+            return;
+        };
+        // The wall is white; what the coil keeps from it leaves the ambient light.
+        let dark = |pixel: [u8; 3]| pixel.into_iter().all(|c| c < 200);
+        let mut runs = runs(&picture, 0.5, dark);
+        assert!(runs.len() >= 5, "{runs:?}");
+        // Seen from the light the coil is as wide as ever, and the wall stretches that sideways.
+        widths.push(across(&mut runs, length, RADIUS * 2.0_f32.sqrt()));
+    }
+    println!("shadow: {widths:?} px at 1x and 2x");
+    assert!((widths[0] - widths[1]).abs() <= 1.0, "{widths:?}");
+    assert!((widths[0] - 2.0 * WIRE / PIXEL).abs() <= 2.0, "{widths:?}");
+}
