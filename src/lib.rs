@@ -9,7 +9,12 @@ mod settings;
 #[cfg(feature = "visual")]
 mod visual;
 
-pub use element::{Anchors, Damper, Spring, SpringDamper, SpringFault};
+pub use element::{
+    Anchors, Breakable, CustomDampingLaw, CustomSpringLaw, Damper, DampingLaw, ForceLaw, ForceTable,
+    MaxForce, Polynomial, Preload, Spring, SpringAction, SpringAxis, SpringBroke, SpringDamper,
+    SpringFault, SpringLaw, SpringTravel, TorsionDamper, TorsionSpring, TorsionSpringDamper,
+    WhenBroken,
+};
 pub use engine::SpringLoad;
 pub use plugin::{CoiloverPlugin, CoiloverSystems};
 pub use readout::{SpringMethod, SpringReadout};
@@ -46,8 +51,11 @@ impl PluginGroup for CoiloverPlugins {
 /// Everything that a game needs.
 pub mod prelude {
     pub use crate::{
-        Anchors, CoiloverPlugin, CoiloverPlugins, CoiloverSettings, CoiloverSystems, Damper,
-        Spring, SpringDamper, SpringFault, SpringLoad, SpringMethod, SpringReadout,
+        Anchors, Breakable, CoiloverPlugin, CoiloverPlugins, CoiloverSettings, CoiloverSystems,
+        CustomDampingLaw, CustomSpringLaw, Damper, DampingLaw, ForceLaw, ForceTable, MaxForce,
+        Polynomial, Preload, Spring, SpringAction, SpringAxis, SpringBroke, SpringDamper,
+        SpringFault, SpringLaw, SpringLoad, SpringMethod, SpringReadout, SpringTravel,
+        TorsionDamper, TorsionSpring, TorsionSpringDamper, WhenBroken,
     };
     #[cfg(feature = "visual")]
     pub use crate::{

@@ -1,6 +1,6 @@
 //! The physics plugin: schedule and system sets.
 
-use crate::element::{Anchors, Damper, Spring, SpringDamper, SpringFault};
+use crate::element::*;
 use crate::engine::{self, Scene, SpringLoad, Watched};
 use crate::readout::SpringReadout;
 use crate::settings::CoiloverSettings;
@@ -90,7 +90,18 @@ impl Plugin for CoiloverPlugin {
         app.register_type::<Spring>()
             .register_type::<Damper>()
             .register_type::<SpringDamper>()
+            .register_type::<TorsionSpring>()
+            .register_type::<TorsionDamper>()
+            .register_type::<TorsionSpringDamper>()
             .register_type::<Anchors>()
+            .register_type::<SpringLaw>()
+            .register_type::<DampingLaw>()
+            .register_type::<SpringAction>()
+            .register_type::<SpringTravel>()
+            .register_type::<SpringAxis>()
+            .register_type::<Preload>()
+            .register_type::<MaxForce>()
+            .register_type::<Breakable>()
             .register_type::<SpringReadout>()
             .register_type::<SpringLoad>()
             .register_type::<SpringFault>()

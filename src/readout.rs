@@ -5,7 +5,8 @@ use bevy::prelude::*;
 
 /// The state of an element after the last step, on every element without asking. SI units.
 ///
-/// Forces are the element's own, tension positive. (The force that stands in a body's
+/// Forces are the element's own, tension positive. On torsion elements angles stand for lengths (rad, full
+/// turns counted), moments for forces (N m), and a moment of inertia for the mass (kg m²). (The force that stands in a body's
 /// `ExternalForce` is what the engine must be given for the body to arrive where this force takes
 /// it; see [`SpringLoad`](crate::SpringLoad).) Zero on an element that has not acted yet.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq)]
@@ -25,6 +26,11 @@ pub struct SpringReadout {
     pub stored_energy: f32,
     /// Power that the damper turns into heat, W.
     pub dissipated_power: f32,
+    /// Energy that the element has turned into heat since it began to act, J.
+    pub dissipated_energy: f32,
+    /// Work that was done on it since then, J: by changes of its parameters, and by ends that something other
+    /// than the physics moves.
+    pub work: f32,
     /// Phase per engine step, rad: √(stiffness / effective mass) times the step. Up to 1 the motion is
     /// followed closely, beyond 2.5 it is no longer resolved, only stable.
     pub omega_dt: f32,

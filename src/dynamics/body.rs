@@ -170,6 +170,12 @@ impl Body {
         self.apply_angular(angular, inverse_inertia);
     }
 
+    /// An angular impulse (N m s) by an element.
+    pub(crate) fn apply_twist(&mut self, impulse: DVec3, inverse_inertia: DMat3) {
+        self.given.1 += impulse;
+        self.apply_angular(impulse, inverse_inertia);
+    }
+
     /// An angular impulse (N m s).
     pub(crate) fn apply_angular(&mut self, impulse: DVec3, inverse_inertia: DMat3) {
         match &mut self.spin {

@@ -90,7 +90,7 @@ impl Bound {
         let held = elements
             .iter()
             .flat_map(|element| element.ends)
-            .any(|end| matches!(end, End::Path { .. }));
+            .any(|end| matches!(end, End::Path(_)));
         let (mass, momentum) = bodies.iter().fold((DVec3::ZERO, DVec3::ZERO), |sum, body| {
             (sum.0 + body.mass(), sum.1 + body.mass() * body.velocity)
         });
@@ -140,8 +140,8 @@ fn rounding(elements: &[Element], bodies: &[Body]) -> f64 {
         };
         // Four substeps, two ends.
         let off = 8.0 * unit * line.reach();
-        let stretch = line.length - element.rest_length;
-        sum += element.stiffness * off * (stretch.abs() + off);
+        let elastic = element.elastic(line.length);
+        sum += off * (elastic.force.abs() + elastic.stiffness * off);
     }
     sum
 }
@@ -151,14 +151,17 @@ fn power(elements: &[Element], bodies: &[Body]) -> f64 {
     let mut sum = 0.0;
     for element in elements {
         for end in &element.ends {
-            if let End::Path { velocity, .. } = end
-                && *velocity != DVec3::ZERO
+            if let End::Path(path) = end
+                && (path.velocity != DVec3::ZERO || path.turning != DVec3::ZERO)
                 && let Some(line) = element.line(bodies)
             {
                 let rate = line.motion(element, bodies, 0.0).axial;
-                let stretch = line.length - element.rest_length;
-                let tension = element.stiffness * stretch + element.damping * rate;
-                sum += tension.abs() * velocity.length();
+                let speed = if line.holds[0].twist {
+                    path.turning.length()
+                } else {
+                    path.velocity.length() + path.turning.length() * line.length.abs()
+                };
+                sum += element.tension(line.length, rate).abs() * speed;
             }
         }
     }

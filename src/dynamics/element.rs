@@ -1,7 +1,10 @@
 //! An element between two ends, and the line it measures between them.
 
-use super::body::{Body, Spin};
-use bevy::math::{DMat3, DVec3};
+use super::body::{Body, Spin, turn};
+use super::guide::Guide;
+use super::law::{Drag, Elastic, Law};
+use bevy::math::{DMat3, DQuat, DVec3};
+use std::sync::Arc;
 
 /// Where an element is held.
 #[derive(Clone, Copy, Debug)]
@@ -9,11 +12,33 @@ pub(crate) enum End {
     /// On a dynamic body, `arm` from its centre of mass in the body's frame.
     Body { index: usize, arm: DVec3 },
     /// A point that moves as something else decides: a fixed or kinematic body, or a plain entity.
-    Path { position: DVec3, velocity: DVec3 },
+    Path(Path),
+}
+
+/// A point on its way, and the frame it belongs to.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Path {
+    pub position: DVec3,
+    pub velocity: DVec3,
+    pub rotation: DQuat,
+    /// Angular velocity.
+    pub turning: DVec3,
+}
+
+impl Path {
+    /// Of a point whose frame does not turn.
+    pub(crate) const fn straight(position: DVec3, velocity: DVec3) -> Self {
+        Self {
+            position,
+            velocity,
+            rotation: DQuat::IDENTITY,
+            turning: DVec3::ZERO,
+        }
+    }
 }
 
 /// What the integrator needs of one spring, damper or pair of both.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Element {
     pub ends: [End; 2],
     /// N/m.
@@ -22,6 +47,15 @@ pub(crate) struct Element {
     pub damping: f64,
     /// m.
     pub rest_length: f64,
+    /// What it acts along; angles take the place of lengths where that is a twist.
+    pub guide: Guide,
+    /// Its own law instead of stiffness and damping.
+    pub law: Option<Arc<Law>>,
+    /// Twist where the step began, rad, full turns counted.
+    pub angle: f64,
+    /// Energy that it has turned into heat, and work that moving ends did on it, in this step so far, J.
+    pub heat: f64,
+    pub work: f64,
     /// From end A to end B where the step began; see [`Element::aim`].
     pub direction: Option<DVec3>,
     /// A strong damper: then a spring of zero rest length has an axis after all.
@@ -37,7 +71,9 @@ pub(crate) struct Hold {
     pub arm: DVec3,
     pub inverse_mass: DVec3,
     pub inverse_inertia: DMat3,
-    position: DVec3,
+    /// Pushed about an axis instead of along it.
+    pub twist: bool,
+    pub position: DVec3,
 }
 
 /// Velocity-dependent quantities of the line.
@@ -82,17 +118,20 @@ pub(crate) struct Line {
     pub inverse_mass: f64,
     /// Zero rest length: the spring is an isotropic oscillator and has no special axis.
     pub isotropic: bool,
+    /// The direction is given; it is not that from end to end.
+    pub guided: bool,
 }
 
 impl End {
-    fn hold(&self, bodies: &[Body]) -> Hold {
+    pub(super) fn hold(&self, bodies: &[Body]) -> Hold {
         match *self {
-            End::Path { position, .. } => Hold {
+            End::Path(path) => Hold {
                 body: None,
                 arm: DVec3::ZERO,
                 inverse_mass: DVec3::ZERO,
                 inverse_inertia: DMat3::ZERO,
-                position,
+                twist: false,
+                position: path.position,
             },
             End::Body { index, arm } => {
                 let body = &bodies[index];
@@ -102,6 +141,7 @@ impl End {
                         arm,
                         inverse_mass: body.inverse_mass,
                         inverse_inertia: DMat3::ZERO,
+                        twist: false,
                         position: body.position,
                     };
                 }
@@ -111,6 +151,7 @@ impl End {
                     arm,
                     inverse_mass: body.inverse_mass,
                     inverse_inertia: body.inverse_inertia(),
+                    twist: false,
                     position: body.position + arm,
                 }
             }
@@ -119,13 +160,31 @@ impl End {
 
     /// Moves a prescribed point along its path.
     pub(crate) fn drift(&mut self, time: f64) {
-        if let End::Path { position, velocity } = self {
-            *position += time * *velocity;
+        if let End::Path(path) = self {
+            path.position += time * path.velocity;
+            if path.turning != DVec3::ZERO {
+                path.rotation = (turn(time * path.turning) * path.rotation).normalize();
+            }
+        }
+    }
+
+    /// From the frame that holds it to the world.
+    pub(super) fn rotation(&self, bodies: &[Body]) -> DQuat {
+        match *self {
+            End::Path(path) => path.rotation,
+            End::Body { index, .. } => bodies[index].rotation,
+        }
+    }
+
+    pub(super) fn angular_velocity(&self, bodies: &[Body]) -> DVec3 {
+        match *self {
+            End::Path(path) => path.turning,
+            End::Body { index, .. } => bodies[index].angular_velocity(),
         }
     }
 
     /// Velocity of the held point, its acceleration by outside forces, and that of free flight.
-    fn motion(&self, hold: &Hold, bodies: &[Body]) -> (DVec3, DVec3, DVec3) {
+    pub(super) fn motion(&self, hold: &Hold, bodies: &[Body]) -> (DVec3, DVec3, DVec3) {
         match (*self, hold.body) {
             (End::Body { .. }, Some(index)) => {
                 let body = &bodies[index];
@@ -141,7 +200,11 @@ impl End {
                     free.cross(hold.arm) + turning.cross(swing),
                 )
             }
-            (End::Path { velocity, .. }, _) => (velocity, DVec3::ZERO, DVec3::ZERO),
+            (End::Path(path), _) => {
+                let swing = path.turning.cross(hold.arm);
+                let inward = path.turning.cross(swing);
+                (path.velocity + swing, DVec3::ZERO, inward)
+            }
             (End::Body { .. }, None) => (DVec3::ZERO, DVec3::ZERO, DVec3::ZERO),
         }
     }
@@ -150,6 +213,9 @@ impl End {
 impl Hold {
     /// Inverse effective mass of this end along a direction.
     pub(crate) fn inverse_mass_along(&self, direction: DVec3) -> f64 {
+        if self.twist {
+            return direction.dot(self.inverse_inertia * direction);
+        }
         let w = self.inverse_mass;
         // Not rounded by the direction, so that equal lines have bitwise equal coefficients.
         let linear = if w.x == w.y && w.y == w.z {
@@ -178,6 +244,10 @@ impl Element {
     /// drifts through the centre and is kicked back within one step; its force must not turn round on
     /// the way.
     pub(crate) fn aim(&mut self, bodies: &[Body], step: f64) {
+        if self.guide != Guide::Centres {
+            self.count_turns(bodies);
+            return;
+        }
         let holds = [self.ends[0].hold(bodies), self.ends[1].hold(bodies)];
         if let (d, true) = self.separation(&holds) {
             self.direction = Some(d.normalize());
@@ -192,9 +262,12 @@ impl Element {
     /// The line at this instant, or `None` where the ends coincide and nothing says which way to push.
     /// Its length is negative while end B is on the far side of end A during a drift.
     pub(crate) fn line(&self, bodies: &[Body]) -> Option<Line> {
+        if self.guide != Guide::Centres {
+            return self.guided_line(bodies);
+        }
         let holds = [self.ends[0].hold(bodies), self.ends[1].hold(bodies)];
         let (d, apart) = self.separation(&holds);
-        let isotropic = self.rest_length == 0.0 && !self.stiff_damper;
+        let isotropic = self.rest_length == 0.0 && !self.stiff_damper && self.law.is_none();
         let direction = match (apart, self.direction) {
             (true, None) => d.normalize(),
             (true, Some(side)) => d.normalize() * if d.dot(side) < 0.0 { -1.0 } else { 1.0 },
@@ -214,11 +287,72 @@ impl Element {
             direction,
             inverse_mass,
             isotropic,
+            guided: false,
         })
+    }
+
+    /// Tension without damping, its slope, and the stored energy. A length is negative on the far side
+    /// of end A only during a drift.
+    pub(crate) fn elastic(&self, length: f64) -> Elastic {
+        match &self.law {
+            Some(law) => law.elastic(length, self.rest_length),
+            None => {
+                let stretch = length - self.rest_length;
+                Elastic {
+                    force: self.stiffness * stretch,
+                    stiffness: self.stiffness,
+                    energy: 0.5 * self.stiffness * stretch * stretch,
+                }
+            }
+        }
+    }
+
+    /// Tension that damping adds.
+    pub(crate) fn drag(&self, length: f64, rate: f64) -> Drag {
+        match &self.law {
+            Some(law) => law.drag(length, self.rest_length, rate),
+            None => Drag {
+                force: self.damping * rate,
+                slope: self.damping,
+            },
+        }
+    }
+
+    /// Spring and damper together.
+    pub(crate) fn tension(&self, length: f64, rate: f64) -> f64 {
+        self.elastic(length).force + self.drag(length, rate).force
+    }
+
+    /// Whether a law of a user's own gives numbers.
+    pub(crate) fn is_sound(&self, length: f64, rate: f64) -> bool {
+        if self.law.is_none() {
+            return true;
+        }
+        let (elastic, drag) = (self.elastic(length), self.drag(length, rate));
+        [elastic.force, elastic.stiffness, elastic.energy, drag.force, drag.slope]
+            .iter()
+            .all(|x| x.is_finite())
+    }
+
+    /// Slope of the spring's force, at a length and on the way that a step takes from there.
+    pub(crate) fn stiffness_ahead(&self, length: f64, way: f64) -> f64 {
+        match &self.law {
+            Some(law) => law.stiffest([length, length + way], self.rest_length),
+            None => self.stiffness,
+        }
     }
 }
 
 impl Line {
+    /// Length with the sign it has at rest.
+    pub(crate) fn distance(&self) -> f64 {
+        if self.guided {
+            self.length
+        } else {
+            self.length.abs()
+        }
+    }
+
     /// Largest coordinate of its ends, which says how coarse their f32 is.
     pub(crate) fn reach(&self) -> f64 {
         let [a, b] = self.holds.map(|hold| hold.position.abs().max_element());
@@ -227,6 +361,9 @@ impl Line {
 
     /// What the line does at the bodies' present velocities; `step` resolves the turning.
     pub(crate) fn motion(&self, element: &Element, bodies: &[Body], step: f64) -> Motion {
+        if self.guided {
+            return self.guided_motion(element, bodies);
+        }
         let [a, b] = [0, 1].map(|i| element.ends[i].motion(&self.holds[i], bodies));
         let velocity = b.0 - a.0;
         let axial = velocity.dot(self.direction);
@@ -248,7 +385,7 @@ impl Line {
 
     /// |lateral|²/L, bounded where the line turns further than the step can follow.
     fn turning(&self, lateral_square: f64, step: f64) -> f64 {
-        if self.isotropic || lateral_square == 0.0 {
+        if self.isotropic || self.guided || lateral_square == 0.0 {
             return 0.0;
         }
         let half = 0.5 * step;
@@ -284,7 +421,7 @@ impl Line {
     /// Length change over the step that led here, divided by the step: with it damping is second order.
     pub(crate) fn backward_rate(&self, motion: &Motion, step: f64) -> f64 {
         let along = self.length - step * motion.axial;
-        if self.isotropic || along * self.length <= 0.0 {
+        if self.isotropic || self.guided || along * self.length <= 0.0 {
             // Through the centre: the line flips, its rate does not.
             return motion.axial - 0.5 * step * motion.arms;
         }
@@ -317,8 +454,12 @@ impl Line {
     /// An impulse on end B and its opposite on end A.
     pub(crate) fn impulse(&self, bodies: &mut [Body], impulse: DVec3) {
         for (hold, sign) in self.holds.iter().zip([-1.0, 1.0]) {
-            if let Some(index) = hold.body {
-                bodies[index].apply(sign * impulse, hold.arm, hold.inverse_inertia);
+            match hold.body {
+                Some(index) if hold.twist => {
+                    bodies[index].apply_twist(sign * impulse, hold.inverse_inertia);
+                }
+                Some(index) => bodies[index].apply(sign * impulse, hold.arm, hold.inverse_inertia),
+                None => {}
             }
         }
     }

@@ -24,9 +24,8 @@ impl Energy {
             energy.place -= (body.mass() * body.acceleration).dot(body.position);
         }
         for element in elements {
-            let length = element.line(bodies).map_or(0.0, |line| line.length.abs());
-            let stretch = length - element.rest_length;
-            energy.stored += 0.5 * element.stiffness * stretch * stretch;
+            let length = element.line(bodies).map_or(0.0, |line| line.distance());
+            energy.stored += element.elastic(length).energy;
         }
         energy
     }

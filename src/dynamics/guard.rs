@@ -31,7 +31,7 @@ impl Guard {
             .ends
             .iter()
             .find_map(|end| match end {
-                End::Path { velocity, .. } => Some(*velocity),
+                End::Path(path) => Some(path.velocity),
                 End::Body { .. } => None,
             })
             .unwrap_or(DVec3::ZERO);

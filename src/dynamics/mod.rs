@@ -1,9 +1,10 @@
 //! The mathematics of springs and dampers: no ECS, no engine, f64 throughout, SI units.
 //!
 //! Read in the order in which a step runs. [`tolerance`] decides how finely to step, [`step`] holds what has
-//! to be solved together. [`body`] drifts, [`element`] measures the line between the ends, [`poles`] gives
+//! to be solved together. [`body`] drifts, [`element`] measures the line between the ends (or
+//! what [`guide`] gives instead), [`poles`] gives
 //! the exact coefficients; [`kick`] acts for a lone element, [`pair`] for one on bodies that do not turn,
-//! [`network`] for elements that share bodies, with the linear algebra in [`system`]. [`guard`] keeps strong
+//! [`shock`] for one of those with a force [`law`] of its own, [`network`] for elements that share bodies, with the linear algebra in [`system`]. [`guard`] keeps strong
 //! damping honest, and [`bound`] a network, by their [`energy`]. [`delivery`] says which impulse and force
 //! make the engine arrive there.
 
@@ -13,10 +14,13 @@ pub(crate) mod delivery;
 pub(crate) mod element;
 pub(crate) mod energy;
 pub(crate) mod guard;
+pub(crate) mod guide;
 pub(crate) mod kick;
+pub(crate) mod law;
 pub(crate) mod network;
 pub(crate) mod pair;
 pub(crate) mod poles;
+pub(crate) mod shock;
 pub(crate) mod step;
 mod system;
 pub(crate) mod tolerance;

@@ -12,8 +12,9 @@
 //! resolve are damped a little, as those of a lone element are.
 
 use super::body::{Body, Spin};
-use super::element::{Element, Line, Motion};
+use super::element::{Element, End, Line, Motion};
 use super::kick;
+use super::law::Drag;
 use super::poles::{RESOLVED_PHASE, UNRESOLVED_DECAY};
 use super::system::{Effort, NOBODY, Strut, System, Twists};
 use bevy::math::DVec3;
@@ -22,6 +23,10 @@ use bevy::math::DVec3;
 const PLACED: f64 = 9.0;
 /// (ω h)² of the stiffest mode beyond which a network steps finer.
 pub(crate) const RESOLVED: f64 = 4.0;
+
+/// (ω h)² up to which a law's own slope is taken, and c h/m up to which its damping's is.
+const SMOOTH: f64 = 1.0;
+const STEEP: f64 = 0.5;
 
 /// The coupled kick of a component, with memory that is kept from step to step.
 #[derive(Clone, Default)]
@@ -51,6 +56,9 @@ struct Row {
     turning: f64,
     /// The turning itself, m/s².
     turns: f64,
+    /// Damping force before the solve, N, and what it gains per m/s².
+    drag: f64,
+    damping: f64,
 }
 
 impl Network {
@@ -78,6 +86,8 @@ impl Network {
                     load: DVec3::ZERO,
                     turning: 0.0,
                     turns: 0.0,
+                    drag: 0.0,
+                    damping: 0.0,
                 })
             }));
     }
@@ -87,16 +97,19 @@ impl Network {
             sums.clear();
             sums.resize(bodies, 0.0);
         }
-        for Row { element, line, .. } in &self.rows {
-            let element = &elements[*element];
+        for row in &self.rows {
+            let (element, line) = (&elements[row.element], &row.line);
+            let rate = row.before.axial;
+            let stiffness = element.stiffness_ahead(line.length, step * rate);
+            let damping = element.drag(line.length, rate).slope;
             let w = line
                 .holds
                 .map(|h| h.inverse_mass_along(line.direction).sqrt());
             for (end, hold) in line.holds.iter().enumerate() {
                 if let Some(body) = hold.body {
                     let share = w[end] * (w[0] + w[1]);
-                    self.stiffness[body] += element.stiffness * share;
-                    self.damping[body] += element.damping * share;
+                    self.stiffness[body] += stiffness * share;
+                    self.damping[body] += damping * share;
                 }
             }
         }
@@ -110,7 +123,7 @@ impl Network {
     /// The kick at the half drift: all elements and outside forces together.
     pub(crate) fn kick(
         &mut self,
-        elements: &[Element],
+        elements: &mut [Element],
         bodies: &mut [Body],
         step: f64,
         budget: u32,
@@ -137,7 +150,29 @@ impl Network {
         self.trial = trial;
         self.solve(bodies, budget);
         self.act(bodies, step);
+        self.account(elements, step);
         self.system.end();
+    }
+
+    /// Notes what dampers took and moving ends gave.
+    fn account(&self, elements: &mut [Element], step: f64) {
+        for (row, strut) in self.rows.iter().zip(&self.system.struts) {
+            let element = &mut elements[row.element];
+            let gained = strut.relative(&self.acceleration).dot(row.line.direction);
+            let rate = row.before.axial + 0.5 * step * gained;
+            element.heat += ((row.drag + row.damping * gained) * rate * step).max(0.0);
+            for (end, sign) in element.ends.iter().zip([-1.0, 1.0]) {
+                if let End::Path(path) = end {
+                    let velocity = if row.line.holds[0].twist {
+                        path.turning
+                    } else {
+                        path.velocity
+                    };
+                    let force = row.force() + strut.force(strut.relative(&self.acceleration));
+                    element.work += sign * step * force.dot(velocity);
+                }
+            }
+        }
     }
 
     /// Velocities after a step of the linearised implicit Euler rule, which only loses energy in what is
@@ -153,11 +188,13 @@ impl Network {
         self.system.begin(bodies);
         for row in &mut self.rows {
             let (element, line, before) = (&elements[row.element], &row.line, &row.before);
-            let late = element.damping + step * element.stiffness;
-            let tension = element.stiffness * (line.length - element.rest_length);
+            let tension = element.elastic(line.length).force;
+            let drag = element.drag(line.length, before.axial);
+            let stiffness = element.stiffness_ahead(line.length, step * before.axial);
+            let late = steep(drag, before.axial) + step * stiffness;
             let across = across(element, line, tension);
-            row.load =
-                (tension + late * before.axial) * line.direction + step * across * before.lateral;
+            let now = tension + drag.force + step * stiffness * before.axial;
+            row.load = now * line.direction + step * across * before.lateral;
             row.turning = 0.0;
             let (along, across) = (step * late, step * step * across);
             self.system.struts.push(strut(line, bodies, along, across));
@@ -190,16 +227,25 @@ impl Network {
         let h2 = step * step;
         for row in &mut self.rows {
             let (element, line, before) = (&elements[row.element], &row.line, &row.before);
-            let k = element.stiffness;
+            let rate = line.backward_rate(before, step);
+            let elastic = element.elastic(line.length);
+            let drag = element.drag(line.length, rate);
+            let mut k = element.stiffness_ahead(line.length, 0.5 * step * before.axial);
+            if h2 * line.inverse_mass * k < SMOOTH {
+                k = elastic.stiffness;
+            }
             let stiffest = line
                 .holds
                 .iter()
                 .filter_map(|hold| Some(self.stiffness[hold.body?]))
                 .fold(0.0, f64::max);
             let settle = settling(h2 * stiffest) * step;
-            let c = element.damping + settle * k;
-            let rate = line.backward_rate(before, step);
-            let tension = k * (line.length - element.rest_length) + c * rate;
+            let mut c = drag.slope;
+            if c * step * line.inverse_mass > STEEP {
+                c = steep(drag, rate);
+            }
+            c += settle * k;
+            let tension = elastic.force + drag.force + settle * k * rate;
             let damping = damper_placement(c * step * line.inverse_mass) * step * c;
             let across = across(element, line, tension);
             let freest: f64 = line
@@ -210,6 +256,8 @@ impl Network {
             let settle_across = settling(2.0 * h2 * across * freest) * step;
             // The half drift counted h²/8 of the turning as stretch already.
             row.turning = (theta - 0.125) * h2 * k + damping;
+            row.drag = tension - elastic.force;
+            row.damping = damping;
             row.load = tension * line.direction + settle_across * across * before.lateral;
             let across = (theta * h2 + 0.5 * settle_across * step) * across;
             let along = theta * h2 * k + damping;
@@ -251,6 +299,7 @@ impl Network {
 /// An element in the linear system.
 fn strut(line: &Line, bodies: &[Body], along: f64, across: f64) -> Strut {
     let arm = |end: usize| match line.holds[end].body {
+        _ if line.holds[end].twist => DVec3::ZERO,
         Some(index) if bodies[index].spin != Spin::Still => line.holds[end].arm,
         _ => DVec3::ZERO,
     };
@@ -260,6 +309,7 @@ fn strut(line: &Line, bodies: &[Body], along: f64, across: f64) -> Strut {
         direction: line.direction,
         along,
         across,
+        twist: line.holds[0].twist,
     }
 }
 
@@ -278,11 +328,20 @@ fn settling(z: f64) -> f64 {
     2.0 * UNRESOLVED_DECAY * (1.0 - RESOLVED_PHASE * RESOLVED_PHASE / z) / z
 }
 
+/// The slope of a damping force, or where that is steeper the one from zero: a force that flattens out at
+/// speed must not be taken for weak.
+fn steep(drag: Drag, rate: f64) -> f64 {
+    if rate == 0.0 {
+        return drag.slope;
+    }
+    drag.slope.max(drag.force / rate)
+}
+
 /// Stiffness across the line: a spring in tension pulls a displaced end back.
 fn across(element: &Element, line: &Line, tension: f64) -> f64 {
     if line.isotropic {
         element.stiffness
-    } else if tension > 0.0 && line.length > 0.0 {
+    } else if tension > 0.0 && line.length > 0.0 && !line.guided {
         tension / line.length
     } else {
         0.0

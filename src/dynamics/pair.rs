@@ -40,18 +40,18 @@ pub(crate) struct Separation {
     /// Last well-defined direction.
     pub direction: Option<DVec3>,
     /// A strong damper: then a spring of zero rest length has an axis after all.
-    stiff_damper: bool,
+    pub(super) stiff_damper: bool,
 }
 
 /// The line at an instant, and what it does.
-struct Line {
-    direction: DVec3,
-    length: f64,
+pub(super) struct Line {
+    pub direction: DVec3,
+    pub length: f64,
     isotropic: bool,
-    axial: f64,
-    lateral: DVec3,
-    lateral_square: f64,
-    pushed: f64,
+    pub axial: f64,
+    pub lateral: DVec3,
+    pub lateral_square: f64,
+    pub pushed: f64,
 }
 
 /// A pair in motion, for [`super::tolerance`] to drive.
@@ -103,9 +103,7 @@ impl Motion for Moving<'_> {
     }
 
     fn extrapolate(&mut self, slot: usize) {
-        let coarse = self.saved[slot];
-        self.state.d += (self.state.d - coarse.d) / 3.0;
-        self.state.v += (self.state.v - coarse.v) / 3.0;
+        self.state.towards(&self.saved[slot]);
     }
 
     fn is_resolved(&mut self, step: f64) -> bool {
@@ -121,6 +119,12 @@ impl Separation {
             direction,
             stiff_damper: false,
         }
+    }
+
+    /// Goes a third of the way on from a coarser solution.
+    pub(super) fn towards(&mut self, coarse: &Self) {
+        self.d += (self.d - coarse.d) / 3.0;
+        self.v += (self.v - coarse.v) / 3.0;
     }
 }
 
@@ -170,7 +174,7 @@ impl Pair {
 
     /// The line, or `None` where the ends coincide and nothing says which way to push. Its length is
     /// negative while end B is on the far side of end A during a drift.
-    fn line(&self, state: &Separation) -> Option<Line> {
+    pub(super) fn line(&self, state: &Separation) -> Option<Line> {
         let distance = state.d.length();
         if distance <= self.rounding {
             let direction = match state.direction {
@@ -299,7 +303,7 @@ impl Pair {
 
 impl Line {
     /// |lateral|²/L, bounded where the line turns further than the step can follow.
-    fn turning(&self, lateral_square: f64, step: f64) -> f64 {
+    pub(super) fn turning(&self, lateral_square: f64, step: f64) -> f64 {
         if self.isotropic || lateral_square == 0.0 {
             return 0.0;
         }
@@ -309,7 +313,7 @@ impl Line {
     }
 
     /// Length change over the step that led here, divided by the step: with it damping is second order.
-    fn backward_rate(&self, step: f64) -> f64 {
+    pub(super) fn backward_rate(&self, step: f64) -> f64 {
         let along = self.length - step * self.axial;
         if self.isotropic || along * self.length <= 0.0 {
             // Through the centre: the line flips, its rate does not.

@@ -33,7 +33,7 @@ pub(crate) struct Poles {
 }
 
 /// (1 − e^(−x))/x.
-fn decay_ratio(x: f64) -> f64 {
+pub(crate) fn decay_ratio(x: f64) -> f64 {
     if x < 1e-12 { 1.0 } else { -(-x).exp_m1() / x }
 }
 

@@ -2,8 +2,10 @@
 
 use super::body::{Body, Spin, turn};
 use super::bound::Bound;
-use super::element::Element;
+use super::element::{Element, End};
+use super::energy::Energy;
 use super::guard::Guard;
+use super::guide::Guide;
 use super::kick::{self, Map, Memo};
 use super::network::{Network, RESOLVED};
 use super::tolerance::{Accuracy, Controller, Method, Motion, Outcome, VELOCITY_COUNTS};
@@ -102,13 +104,16 @@ impl Component {
                 continue;
             };
             let rate = line.motion(element, &self.bodies, 0.0).axial;
-            let stretch = line.length - element.rest_length;
-            let tension = element.stiffness * stretch + element.damping * rate;
+            let tension = element.tension(line.length, rate);
             for (hold, sign) in line.holds.iter().zip([1.0, -1.0]) {
                 if hold.body == Some(body) {
                     let force = sign * tension * line.direction;
-                    sum.0 += force;
-                    sum.1 += hold.arm.cross(force);
+                    if hold.twist {
+                        sum.1 += force;
+                    } else {
+                        sum.0 += force;
+                        sum.1 += hold.arm.cross(force);
+                    }
                 }
             }
         }
@@ -118,6 +123,8 @@ impl Component {
     /// Micro-steps of one element alone.
     fn run_alone(&mut self, step: f64, count: u32) {
         let guard = Guard::begin(&self.elements[0], &self.bodies, step);
+        let damped = self.elements[0].damping > 0.0;
+        let before = damped.then(|| self.energy_and_work());
         self.map(step, Map::ToStepped);
         for _ in 0..count {
             self.drift(step / 2.0);
@@ -130,6 +137,27 @@ impl Component {
         if let Some(guard) = guard {
             guard.end(&self.elements[0], &mut self.bodies, step * f64::from(count));
         }
+        if let Some((energy, work)) = before {
+            let (now, done) = self.energy_and_work();
+            self.elements[0].work += done - work;
+            self.elements[0].heat += energy + done - work - now;
+        }
+    }
+
+    /// Energy, less what the users' torques gave, and the work of a lone element's moving ends so far.
+    fn energy_and_work(&self) -> (f64, f64) {
+        let mut work = 0.0;
+        for end in &self.elements[0].ends {
+            if let End::Path(path) = end {
+                for body in &self.bodies {
+                    work += body.given.0.dot(path.velocity);
+                    if let Guide::Twist(_) = self.elements[0].guide {
+                        work += body.given.1.dot(path.turning);
+                    }
+                }
+            }
+        }
+        (Energy::of(&self.elements, &self.bodies).sum(), work)
     }
 
     fn map(&mut self, step: f64, map: Map) {
@@ -148,7 +176,7 @@ impl Component {
                 max_iterations,
                 ..
             } = &mut self.memory;
-            network.kick(&self.elements, &mut self.bodies, step, *max_iterations);
+            network.kick(&mut self.elements, &mut self.bodies, step, *max_iterations);
             self.drift(step / 2.0);
             self.aim(step);
         }
@@ -162,7 +190,8 @@ impl Component {
             return false;
         };
         let turns = self.bodies.iter().any(|body| body.spin != Spin::Still);
-        self.bodies.len() <= 2 && !(element.rest_length == 0.0 && turns)
+        let isotropic = element.rest_length == 0.0 && element.guide == Guide::Centres;
+        self.bodies.len() <= 2 && element.law.is_none() && !(isotropic && turns)
     }
 
     fn aim(&mut self, step: f64) {

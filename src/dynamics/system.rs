@@ -27,6 +27,8 @@ pub(super) struct Strut {
     pub along: f64,
     /// The same across it.
     pub across: f64,
+    /// It turns its bodies instead of pushing them.
+    pub twist: bool,
 }
 
 /// Linear and angular part for every body; no angular ones where nothing turns.
@@ -66,6 +68,7 @@ impl Strut {
     pub(super) fn relative(&self, x: &Twists) -> DVec3 {
         let at = |end: usize| match self.bodies[end] {
             NOBODY => DVec3::ZERO,
+            body if self.twist => x.angular[body],
             body if self.arms[end] == DVec3::ZERO => x.linear[body],
             body => x.linear[body] + x.angular[body].cross(self.arms[end]),
         };
@@ -82,6 +85,10 @@ impl Strut {
         for (end, sign) in [-1.0, 1.0].into_iter().enumerate() {
             let body = self.bodies[end];
             if body == NOBODY {
+                continue;
+            }
+            if self.twist {
+                to.angular[body] += sign * force;
                 continue;
             }
             to.linear[body] += sign * force;
@@ -314,6 +321,10 @@ impl System {
                     continue;
                 }
                 let (lever, block) = (cross(arm), &mut self.blocks_turning[body]);
+                if strut.twist {
+                    put(block, 3, 3, own);
+                    continue;
+                }
                 put(block, 0, 0, own);
                 put(block, 0, 3, own * -lever);
                 put(block, 3, 0, lever * own);
@@ -362,6 +373,10 @@ impl System {
                     }
                     let own = if i == j { own } else { own * -1.0 };
                     let (r, c) = (width * row, width * column);
+                    if strut.twist {
+                        put(&mut matrix, r + 3, c + 3, own);
+                        continue;
+                    }
                     put(&mut matrix, r, c, own);
                     if self.turns {
                         let (a, b) = (cross(strut.arms[i]), cross(strut.arms[j]));

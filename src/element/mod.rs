@@ -1,13 +1,28 @@
 //! What a user spawns: plain, reflected data.
 
 mod anchors;
+mod axis;
+mod breakable;
 mod damper;
+mod damping_law;
 mod fault;
+mod law;
+mod limits;
 mod spring;
 mod spring_damper;
+mod table;
+mod torsion;
 
 pub use anchors::Anchors;
+pub use axis::SpringAxis;
+pub use breakable::{Breakable, SpringBroke, WhenBroken};
 pub use damper::Damper;
+pub use damping_law::DampingLaw;
 pub use fault::SpringFault;
+pub(crate) use law::Theirs;
+pub use law::{CustomDampingLaw, CustomSpringLaw, ForceLaw, Polynomial, SpringLaw};
+pub use limits::{MaxForce, Preload, SpringAction, SpringTravel};
 pub use spring::Spring;
 pub use spring_damper::SpringDamper;
+pub use table::ForceTable;
+pub use torsion::{TorsionDamper, TorsionSpring, TorsionSpringDamper};

@@ -1,6 +1,6 @@
 //! One component through one step: gather, wake, integrate, deliver.
 
-use super::body::{deliver, read};
+use super::body::{deliver, read, turning_of};
 use super::check::Fault;
 use super::forces::Share;
 use super::held::{self, Expected, Support};
@@ -10,7 +10,8 @@ use super::scene::{BodyRow, ElementRow, Held};
 use super::sleep::omega_of;
 use super::step::Step;
 use crate::dynamics::body::Body;
-use crate::dynamics::element::{Element, End};
+use crate::dynamics::element::{Element, End, Path};
+use crate::dynamics::guide::Guide;
 use crate::dynamics::step::Component;
 use crate::dynamics::tolerance::{Accuracy, Outcome};
 use bevy::math::DVec3;
@@ -97,7 +98,8 @@ impl Assembly {
         for e in members.elements {
             let row = &mut elements[*e];
             disturbed |= row.changed || step.has_moved(row, set);
-            let ends = row.held.map(|held| step.end(held, bodies, set));
+            let guide = row.companion.guide;
+            let ends = row.held.map(|held| step.end(held, guide, bodies, set));
             if let Some(element) = element(row, ends, &component.bodies) {
                 omega = omega.max(omega_of(row));
                 component.elements.push(element);
@@ -243,7 +245,10 @@ impl Assembly {
                 && let Some(element) = solved.next()
             {
                 row.memory.direction = element.direction;
+                row.memory.angle = element.angle;
                 if ready {
+                    row.ledger.dissipated += element.heat;
+                    row.ledger.work += element.work;
                     row.outcome = self.outcome;
                 }
             }
@@ -267,7 +272,7 @@ impl Step<'_> {
         }
     }
 
-    fn end(&self, held: Held, bodies: &[BodyRow], set: &RigidBodySet) -> End {
+    fn end(&self, held: Held, guide: Guide, bodies: &[BodyRow], set: &RigidBodySet) -> End {
         if let Held::Body {
             handle,
             local,
@@ -282,10 +287,14 @@ impl Step<'_> {
             };
         }
         let (from, to) = self.path(&held, set);
-        End::Path {
-            position: from,
-            velocity: (to - from) / self.plan.time,
+        let mut path = Path::straight(from, (to - from) / self.plan.time);
+        if let Held::Body { handle, .. } = held
+            && guide.turns()
+            && let Some(body) = set.get(handle)
+        {
+            (path.rotation, path.turning) = turning_of(body, self.plan.time);
         }
+        End::Path(path)
     }
 }
 
@@ -298,24 +307,37 @@ fn element(row: &mut ElementRow, ends: [End; 2], bodies: &[Body]) -> Option<Elem
         stiffness: f64::from(p.stiffness),
         damping: f64::from(p.damping),
         rest_length: f64::from(p.rest_length.unwrap_or(0.0)),
+        guide: row.companion.guide,
+        law: row.companion.law.clone(),
+        angle: row.memory.angle,
+        heat: 0.0,
+        work: 0.0,
         direction: row.memory.direction,
         stiff_damper: false,
     };
+    let guided = element.guide != Guide::Centres;
     let mut line = element.line(bodies);
     if p.rest_length.is_none() {
-        let length = line.map_or(0.0, |line| line.length.abs());
+        let length = line.map_or(0.0, |line| line.distance());
         p.rest_length = Some(length as f32);
         element.rest_length = f64::from(length as f32);
         row.captured = true;
         line = element.line(bodies);
     }
     let Some(line) = line else {
-        row.passing = Some(Fault::new(
-            p.names.ends[1],
-            "coincides with body_a, so nothing says which way to push; move one or set Anchors",
-        ));
+        let reason = if guided {
+            "is tilted half a turn against body_a, where a twist has no meaning"
+        } else {
+            "coincides with body_a, so nothing says which way to push; move one or set Anchors"
+        };
+        row.passing = Some(Fault::new(p.names.ends[1], reason));
         return None;
     };
+    let rate = line.motion(&element, bodies, 0.0).axial;
+    if !element.is_sound(line.distance(), rate) {
+        row.passing = Some(Fault::new("ForceLaw", "gives NaN or infinity"));
+        return None;
+    }
     row.inverse_mass = line.inverse_mass;
     Some(element)
 }

@@ -3,7 +3,7 @@
 use super::step::Terms;
 use crate::dynamics::body::{Body, Spin, turn};
 use crate::dynamics::delivery::{Delivery, force_for, torque_for};
-use bevy::math::DVec3;
+use bevy::math::{DQuat, DVec3};
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::ExternalForce;
 use bevy_rapier3d::rapier::dynamics::{LockedAxes, RigidBody as RapierBody, RigidBodyType};
@@ -53,6 +53,26 @@ pub(super) fn point_after(body: &RapierBody, local: DVec3, time: f64) -> DVec3 {
             center + time * body.linvel().as_dvec3() + turned * (now - center)
         }
         _ => now,
+    }
+}
+
+/// Rotation of a body that elements cannot turn, and its angular velocity over the step.
+pub(super) fn turning_of(body: &RapierBody, time: f64) -> (DQuat, DVec3) {
+    let now = body.position().rotation.as_dquat().normalize();
+    if !body.is_kinematic() || !body.is_enabled() {
+        return (now, DVec3::ZERO);
+    }
+    let next = body.next_position().rotation.as_dquat().normalize();
+    if body.next_position().rotation != body.position().rotation {
+        let mut by = next * now.inverse();
+        if by.w < 0.0 {
+            by = -by;
+        }
+        return (now, by.to_scaled_axis() / time);
+    }
+    match body.body_type() {
+        RigidBodyType::KinematicVelocityBased => (now, body.angvel().as_dvec3()),
+        _ => (now, DVec3::ZERO),
     }
 }
 

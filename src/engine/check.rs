@@ -1,6 +1,7 @@
 //! Bad input becomes one message with entity and field, never a panic or a NaN.
 
-use crate::element::{Anchors, Damper, Spring, SpringDamper};
+use crate::dynamics::guide::Guide;
+use bevy::math::DVec3;
 use bevy::prelude::*;
 
 /// Why an element does not act.
@@ -25,6 +26,8 @@ pub(super) struct Parameters {
     /// `None` until captured; a damper's is irrelevant.
     pub rest_length: Option<f32>,
     pub anchors: [Vec3; 2],
+    /// Of a torsion element, in body A's frame.
+    pub twist: Option<Vec3>,
     /// Component name and its fields, for messages.
     pub names: &'static Names,
 }
@@ -36,33 +39,43 @@ pub(super) struct Names {
     pub stiffness: &'static str,
     pub damping: &'static str,
     pub rest_length: &'static str,
+    pub axis: &'static str,
 }
-
-const SPRING: Names = Names {
-    ends: ["Spring::body_a", "Spring::body_b"],
-    stiffness: "Spring::stiffness",
-    damping: "",
-    rest_length: "Spring::rest_length",
-};
-const DAMPER: Names = Names {
-    ends: ["Damper::body_a", "Damper::body_b"],
-    stiffness: "",
-    damping: "Damper::damping",
-    rest_length: "",
-};
-const SPRING_DAMPER: Names = Names {
-    ends: ["SpringDamper::body_a", "SpringDamper::body_b"],
-    stiffness: "SpringDamper::stiffness",
-    damping: "SpringDamper::damping",
-    rest_length: "SpringDamper::rest_length",
-};
 
 const NO_NAMES: Names = Names {
     ends: ["", ""],
     stiffness: "",
     damping: "",
     rest_length: "",
+    axis: "",
 };
+
+/// Neither NaN nor infinite.
+pub(super) fn finite(value: f32, field: &'static str) -> Result<f64, Fault> {
+    if value.is_nan() {
+        Err(Fault::new(field, "is NaN"))
+    } else if value.is_infinite() {
+        Err(Fault::new(field, "is infinite"))
+    } else {
+        Ok(f64::from(value))
+    }
+}
+
+/// Finite and not negative.
+pub(super) fn number(value: f32, field: &'static str) -> Result<f64, Fault> {
+    let value = finite(value, field)?;
+    if value < 0.0 {
+        return Err(Fault::new(field, "is negative"));
+    }
+    Ok(value)
+}
+
+/// The unit vector.
+pub(super) fn direction(axis: Vec3, field: &'static str) -> Result<DVec3, Fault> {
+    let unit = axis.as_dvec3().try_normalize();
+    unit.filter(|_| axis.is_finite())
+        .ok_or(Fault::new(field, "is zero or not finite"))
+}
 
 impl Parameters {
     /// Of an element whose components cannot be read.
@@ -72,73 +85,41 @@ impl Parameters {
         damping: 0.0,
         rest_length: None,
         anchors: [Vec3::ZERO; 2],
+        twist: None,
         names: &NO_NAMES,
     };
 
     /// Whether another set of numbers belongs to the same two ends.
     pub(super) fn is_held_like(&self, other: &Self) -> bool {
-        self.ends == other.ends && self.anchors == other.anchors
+        self.ends == other.ends && self.anchors == other.anchors && self.twist == other.twist
     }
 
-    /// Reads whichever component is there.
-    pub(super) fn read(
-        spring: Option<&Spring>,
-        damper: Option<&Damper>,
-        pair: Option<&SpringDamper>,
-        anchors: Option<&Anchors>,
-    ) -> Result<Self, Fault> {
-        let anchors = anchors.copied().unwrap_or_default();
-        let anchors = [anchors.a, anchors.b];
-        match (spring, damper, pair) {
-            (Some(s), None, None) => Ok(Self {
-                ends: [s.body_a, s.body_b],
-                stiffness: s.stiffness,
-                damping: 0.0,
-                rest_length: s.rest_length,
-                anchors,
-                names: &SPRING,
-            }),
-            (None, Some(d), None) => Ok(Self {
-                ends: [d.body_a, d.body_b],
-                stiffness: 0.0,
-                damping: d.damping,
-                // Any length but zero will do: zero means an isotropic spring.
-                rest_length: Some(1.0),
-                anchors,
-                names: &DAMPER,
-            }),
-            (None, None, Some(p)) => Ok(Self {
-                ends: [p.body_a, p.body_b],
-                stiffness: p.stiffness,
-                damping: p.damping,
-                rest_length: p.rest_length,
-                anchors,
-                names: &SPRING_DAMPER,
-            }),
-            _ => Err(Fault::new(
-                "Spring, Damper, SpringDamper",
-                "stand together on one entity; use one of them, or SpringDamper for both at once",
-            )),
+    /// What a torsion element acts about.
+    pub(super) fn guide(&self) -> Guide {
+        self.twist
+            .and_then(|axis| axis.as_dvec3().try_normalize())
+            .map_or(Guide::Centres, Guide::Twist)
+    }
+
+    /// A length cannot be negative; an angle, or a distance along an axis, can.
+    pub(super) fn check_rest(&self, guide: Guide) -> Result<(), Fault> {
+        match self.rest_length {
+            Some(length) if guide == Guide::Centres && length < 0.0 => {
+                Err(Fault::new(self.names.rest_length, "is negative"))
+            }
+            _ => Ok(()),
         }
     }
 
     /// Everything that can be judged without looking at the ends.
     pub(super) fn check(&self) -> Result<(), Fault> {
-        let number = |value: f32, field| {
-            if value.is_nan() {
-                Err(Fault::new(field, "is NaN"))
-            } else if value.is_infinite() {
-                Err(Fault::new(field, "is infinite"))
-            } else if value < 0.0 {
-                Err(Fault::new(field, "is negative"))
-            } else {
-                Ok(())
-            }
-        };
         number(self.stiffness, self.names.stiffness)?;
         number(self.damping, self.names.damping)?;
         if let Some(rest_length) = self.rest_length {
-            number(rest_length, self.names.rest_length)?;
+            finite(rest_length, self.names.rest_length)?;
+        }
+        if let Some(axis) = self.twist {
+            direction(axis, self.names.axis)?;
         }
         for (anchor, field) in self.anchors.iter().zip(["Anchors::a", "Anchors::b"]) {
             if !anchor.is_finite() {

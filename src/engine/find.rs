@@ -3,8 +3,11 @@
 use super::body::is_movable;
 use super::check::{Fault, Parameters};
 use super::ends::{Ends, Place};
-use super::prepare::{ElementParts, IsElement, report};
+use super::companions::{Companion, Companions};
+use super::parts::{IsElement, Parts};
+use super::prepare::report;
 use super::scene::{BodyRow, ElementRow, Held, Memory, Scene};
+use crate::dynamics::guide::Guide;
 use bevy::ecs::entity::{EntityHashMap, EntityHashSet};
 use bevy::ecs::system::SystemParam;
 use bevy::math::DVec3;
@@ -39,6 +42,7 @@ impl Finder<'_, '_> {
     pub(super) fn find(
         &mut self,
         parameters: &Parameters,
+        guide: Guide,
         scales: &mut [Option<DVec3>; 2],
         modified: &EntityHashSet,
     ) -> Result<Found, Fault> {
@@ -65,7 +69,15 @@ impl Finder<'_, '_> {
         }
         let mut turns = [None; 2];
         for (i, place) in places.iter().enumerate() {
-            turns[i] = self.turns(place, parameters.names.ends[i], modified)?;
+            let field = parameters.names.ends[i];
+            let alone = matches!(place, Place::Point(_));
+            if alone && (parameters.twist.is_some() || (guide.turns() && i == 0)) {
+                return Err(Fault::new(field, "is not a rigid body, so it has no frame to turn in"));
+            }
+            turns[i] = self.turns(place, field, modified)?;
+            if let Some(turns) = &mut turns[i] {
+                *turns |= guide.turns();
+            }
         }
         Ok(Found { places, turns })
     }
@@ -125,7 +137,8 @@ impl Scene {
     /// in an order of their own, so that the order in which elements were spawned changes nothing.
     pub(super) fn renew(
         &mut self,
-        elements: &Query<ElementParts, IsElement>,
+        elements: &Query<Parts, IsElement>,
+        companions: &Companions,
         finder: &mut Finder,
         modified: &EntityHashSet,
         commands: &mut Commands,
@@ -142,14 +155,10 @@ impl Scene {
         };
         self.index.clear();
         let mut found_all = Vec::new();
-        for (entity, spring, damper, pair, anchors) in elements {
+        for parts in elements {
+            let entity = parts.entity;
             let mut row = ElementRow::fresh(entity, known.elements.get(&entity));
-            let parameters = Parameters::read(
-                spring.as_deref(),
-                damper.as_deref(),
-                pair.as_deref(),
-                anchors.as_deref(),
-            );
+            let parameters = parts.parameters();
             if parameters.is_err() {
                 row.parameters = Parameters::NONE;
             }
@@ -159,13 +168,17 @@ impl Scene {
                     row.memory.places = [None; 2];
                     row.memory.scales = [None; 2];
                 }
-                row.parameters = parameters;
-                finder.find(&parameters, &mut row.memory.scales, modified)
+                row.change(|row| row.parameters = parameters);
+                parameters.check()?;
+                let companion = companions.of(entity, &parameters)?;
+                if companion.guide != row.companion.guide {
+                    row.memory.places = [None; 2];
+                }
+                let guide = companion.guide;
+                row.change(|row| row.companion = companion);
+                finder.find(&parameters, guide, &mut row.memory.scales, modified)
             });
-            row.changed |= spring.as_ref().is_some_and(Ref::is_changed)
-                || damper.as_ref().is_some_and(Ref::is_changed)
-                || pair.as_ref().is_some_and(Ref::is_changed)
-                || anchors.as_ref().is_some_and(Ref::is_changed);
+            row.changed |= parts.is_changed() || companions.touched.contains(&entity);
             row.fault = found.as_ref().err().copied();
             report(&mut row, commands);
             self.elements.push(row);
@@ -238,6 +251,8 @@ impl ElementRow {
         let mut row = Self {
             entity,
             parameters: Parameters::NONE,
+            companion: Companion::default(),
+            ledger: default(),
             held: [Held::NOWHERE; 2],
             watched: [true; 2],
             fault: None,
@@ -252,6 +267,8 @@ impl ElementRow {
         };
         if let Some(known) = known {
             row.parameters = known.parameters;
+            row.companion = known.companion.clone();
+            row.ledger = known.ledger;
             row.said = known.said;
             row.passing = known.passing;
             row.memory = known.memory;

@@ -8,7 +8,9 @@ use super::forces::Share;
 use super::held::{Expected, Support};
 use super::scene::{BodyRow, ElementRow, Held};
 use super::step::Step;
+use crate::dynamics::guide::Guide;
 use crate::dynamics::pair::{Moving, Pair, Separation};
+use crate::dynamics::shock::Shock;
 use crate::dynamics::tolerance::{Method, Outcome};
 use bevy::math::DVec3;
 use bevy_rapier3d::prelude::ExternalForce;
@@ -74,6 +76,9 @@ impl Step<'_> {
         set: &mut RigidBodySet,
         stale: &mut bool,
     ) -> Handled {
+        if row.companion.guide != Guide::Centres {
+            return Handled::Never;
+        }
         let time = self.plan.time;
         let mut sleepers = 0;
         for b in members {
@@ -125,8 +130,12 @@ impl Step<'_> {
         if coincide && row.memory.direction.is_none() && rest_length != Some(0.0) {
             return Handled::No;
         }
+        row.memory.length = d.length();
+        if !row.is_sound(b.velocity - a.velocity, d) {
+            return Handled::No;
+        }
         let inverse_mass = a.inverse_mass + b.inverse_mass;
-        let omega = (f64::from(row.parameters.stiffness) * inverse_mass).sqrt();
+        let omega = (row.slope() * inverse_mass).sqrt();
         let disturbed = row.changed || self.has_moved(row, set);
         self.is_awake(bodies, members, omega as f32, set, disturbed);
         row.active = true;
@@ -147,10 +156,21 @@ impl Step<'_> {
             rounding,
         };
         let start = Separation::new(d, b.velocity - a.velocity, row.memory.direction);
+        let damped = row.companion.law.is_some() || row.parameters.damping > 0.0;
+        let before = if damped { row.energy_of(&pair, &start) } else { 0.0 };
         let memory = &mut row.memory;
-        let mut moving = Moving::new(&pair, start, &mut memory.memo);
-        let outcome = memory.controller.drive(&mut moving, time, self.accuracy);
-        let end = moving.state;
+        let (outcome, end) = match &row.companion.law {
+            None => {
+                let mut moving = Moving::new(&pair, start, &mut memory.memo);
+                let outcome = memory.controller.drive(&mut moving, time, self.accuracy);
+                (outcome, moving.state)
+            }
+            Some(law) => {
+                let mut moving = Shock::new(&pair, law, start, &mut memory.memo);
+                let outcome = memory.controller.drive(&mut moving, time, self.accuracy);
+                (outcome, moving.state)
+            }
+        };
         if !(end.d.is_finite() && end.v.is_finite()) {
             return Handled::No;
         }
@@ -162,8 +182,15 @@ impl Step<'_> {
         // What the element adds to the free motion of the separation.
         let moved = end.d - start.d - time * (start.v + 0.5 * time * pair.outside);
         let sped = end.v - start.v - time * pair.outside;
+        if damped {
+            row.ledger.dissipated += before - row.energy_of(&pair, &end);
+        }
         for (point, sign) in points.iter().zip([-1.0, 1.0]) {
-            let Some(index) = point.body else { continue };
+            let Some(index) = point.body else {
+                // What holds this end moves it against what the other end is given.
+                row.ledger.work -= sign / inverse_mass * sped.dot(point.velocity);
+                continue;
+            };
             let share = sign * point.inverse_mass / inverse_mass;
             let given = sign / inverse_mass * sped;
             self.deliver_point(

@@ -1,12 +1,15 @@
 //! After the engine's step: what each element shows.
 
-use super::body::{is_movable, point_of};
+use super::body::{is_movable, point_of, turning_of};
 use super::held::{Context, observe};
-use super::prepare::{IsElement, report};
+use super::parts::IsElement;
+use super::prepare::report;
 use super::scene::{BodyRow, ElementRow, Held, Scene};
-use crate::element::{Spring, SpringDamper};
+use crate::element::{Spring, SpringDamper, TorsionSpring, TorsionSpringDamper};
+use crate::dynamics::element::{End, Path};
+use crate::dynamics::guide::Guide;
 use crate::readout::SpringReadout;
-use bevy::math::DVec3;
+use bevy::math::{DQuat, DVec3};
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
 
@@ -17,12 +20,20 @@ type ContextParts<'a> = (
     &'a RapierContextColliders,
 );
 
+/// What a captured rest length or angle is written into.
+type Springs<'a> = (
+    Option<&'a mut Spring>,
+    Option<&'a mut SpringDamper>,
+    Option<&'a mut TorsionSpring>,
+    Option<&'a mut TorsionSpringDamper>,
+);
+
 /// Writes readouts, captured rest lengths, and faults found while solving.
 pub(crate) fn measure(
     mut scene: ResMut<Scene>,
     sets: Query<&RapierRigidBodySet>,
     mut readouts: Query<(Entity, &mut SpringReadout), IsElement>,
-    mut springs: Query<(Option<&mut Spring>, Option<&mut SpringDamper>), IsElement>,
+    mut springs: Query<Springs, IsElement>,
     contexts: Query<ContextParts>,
     mut commands: Commands,
 ) {
@@ -38,7 +49,9 @@ pub(crate) fn measure(
             if std::mem::take(&mut row.captured) && row.passing.is_none() {
                 write_back(row, &mut springs);
             }
-            readout.set_if_neq(row.read_out(points, time));
+            let seen = row.extent(points, time, &scene.bodies, &sets);
+            row.memory.length = seen.0;
+            readout.set_if_neq(row.read_out(seen, time));
         }
     };
     // The rows stand in the query's order; if something came or went within the tick, from there on
@@ -66,9 +79,9 @@ pub(crate) fn measure(
 /// Writes a captured rest length into the element's component.
 fn write_back(
     row: &ElementRow,
-    springs: &mut Query<(Option<&mut Spring>, Option<&mut SpringDamper>), IsElement>,
+    springs: &mut Query<Springs, IsElement>,
 ) {
-    let Ok((spring, pair)) = springs.get_mut(row.entity) else {
+    let Ok((spring, pair, torsion, torsion_pair)) = springs.get_mut(row.entity) else {
         return;
     };
     if let Some(mut spring) = spring {
@@ -76,6 +89,12 @@ fn write_back(
     }
     if let Some(mut pair) = pair {
         pair.rest_length = row.parameters.rest_length;
+    }
+    if let Some(mut torsion) = torsion {
+        torsion.rest_angle = row.parameters.rest_length;
+    }
+    if let Some(mut pair) = torsion_pair {
+        pair.rest_angle = row.parameters.rest_length;
     }
 }
 
@@ -139,8 +158,8 @@ impl ElementRow {
             .map(|held| point(held, time, bodies, sets));
         if self.parameters.rest_length.is_none() {
             // No movable body: it took no part in the solve.
-            let length = points[0].0.distance(points[1].0) as f32;
-            self.parameters.rest_length = Some(length);
+            let length = self.extent(points, time, bodies, sets).0;
+            self.parameters.rest_length = Some(length as f32);
             self.captured = true;
         }
         for (place, (held, point)) in self
@@ -162,7 +181,22 @@ impl ElementRow {
         Some(points)
     }
 
-    fn read_out(&self, [a, b]: [(DVec3, DVec3); 2], time: f64) -> SpringReadout {
+    /// Length and its rate; of a guided element the distance along its axis, or its twist.
+    fn extent(
+        &self,
+        [a, b]: [(DVec3, DVec3); 2],
+        time: f64,
+        bodies: &[BodyRow],
+        sets: &Query<&RapierRigidBodySet>,
+    ) -> (f64, f64) {
+        if self.companion.guide != Guide::Centres {
+            let ends = [(0, a), (1, b)].map(|(end, (position, velocity))| {
+                let mut path = Path::straight(position, velocity);
+                (path.rotation, path.turning) = frame(&self.held[end], time, bodies, sets);
+                End::Path(path)
+            });
+            return self.guided_extent(ends);
+        }
         let d = b.0 - a.0;
         let length = d.length();
         let direction = if length > 0.0 {
@@ -170,26 +204,55 @@ impl ElementRow {
         } else {
             self.memory.direction.unwrap_or(DVec3::ZERO)
         };
-        let rate = (b.1 - a.1).dot(direction);
+        (length, (b.1 - a.1).dot(direction))
+    }
+
+    fn read_out(&self, (length, rate): (f64, f64), time: f64) -> SpringReadout {
         let mut readout = SpringReadout {
             length: length as f32,
             rate: rate as f32,
+            dissipated_energy: self.ledger.dissipated as f32,
+            work: self.ledger.work as f32,
             ..default()
         };
         if self.passing.is_none() {
-            let p = &self.parameters;
-            let (k, c) = (f64::from(p.stiffness), f64::from(p.damping));
-            let stretch = length - f64::from(p.rest_length.unwrap_or(0.0));
-            readout.spring_force = (k * stretch) as f32;
-            readout.damper_force = (c * rate) as f32;
-            readout.stored_energy = (0.5 * k * stretch * stretch) as f32;
-            readout.dissipated_power = (c * rate * rate) as f32;
-            readout.omega_dt = ((k * self.inverse_mass).sqrt() * time) as f32;
+            let (elastic, drag) = (self.elastic(length), self.drag(length, rate));
+            readout.spring_force = elastic.force as f32;
+            readout.damper_force = drag as f32;
+            readout.stored_energy = elastic.energy as f32;
+            readout.dissipated_power = (drag * rate) as f32;
+            readout.omega_dt = ((elastic.stiffness * self.inverse_mass).sqrt() * time) as f32;
             readout.effective_mass = self.inverse_mass.recip() as f32;
             readout.note(&self.outcome);
         }
         readout
     }
+}
+
+/// Rotation and angular velocity of what holds an end, after the step.
+fn frame(
+    held: &Held,
+    time: f64,
+    bodies: &[BodyRow],
+    sets: &Query<&RapierRigidBodySet>,
+) -> (DQuat, DVec3) {
+    let Held::Body {
+        handle,
+        context,
+        movable,
+        ..
+    } = *held
+    else {
+        return (DQuat::IDENTITY, DVec3::ZERO);
+    };
+    let context = movable.map_or(context, |index| bodies[index].context);
+    sets.get(context)
+        .ok()
+        .and_then(|set| set.bodies.get(handle))
+        .map_or((DQuat::IDENTITY, DVec3::ZERO), |body| {
+            let (rotation, _) = turning_of(body, time);
+            (rotation, body.angvel().as_dvec3())
+        })
 }
 
 /// Position and velocity of an end after the step.

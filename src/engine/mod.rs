@@ -7,7 +7,9 @@
 mod assembly;
 mod body;
 mod check;
+mod companions;
 mod ends;
+mod energy;
 mod find;
 mod forces;
 mod group;
@@ -15,6 +17,7 @@ mod held;
 mod jointed;
 mod lone;
 mod measure;
+mod parts;
 mod passive;
 mod prepare;
 mod scene;

@@ -57,13 +57,15 @@ impl Ledger {
         let touched = std::mem::replace(&mut self.held, held) || held;
         known &= elements.iter().all(|element| {
             let line = element.line(bodies);
-            line.is_some_and(|l| element.stiffness * l.inverse_mass * time * time < RESOLVED)
+            line.is_some_and(|l| {
+                element.elastic(l.length).stiffness * l.inverse_mass * time * time < RESOLVED
+            })
         });
         known &= bodies.iter().all(|body| body.torque == DVec3::ZERO)
             && elements
                 .iter()
                 .flat_map(|element| element.ends)
-                .all(|end| !matches!(end, End::Path { velocity, .. } if velocity != DVec3::ZERO));
+                .all(|end| !matches!(end, End::Path(path) if path.velocity != DVec3::ZERO || path.turning != DVec3::ZERO));
         if !known {
             return self.clear();
         }

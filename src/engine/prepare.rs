@@ -1,54 +1,47 @@
 //! Before the step: is the scene still the one we know? Mostly it is, and only what can move is read.
 
 use super::check::{Fault, Parameters};
+use super::companions::Companions;
 use super::ends::{Ends, Place};
 use super::find::Finder;
 use super::forces::SpringLoad;
+use super::parts::{IsElement, Parts};
 use super::scene::{ElementRow, Held, Scene};
 use super::watch::Watch;
-use crate::element::{Anchors, Damper, Spring, SpringDamper, SpringFault};
+use crate::element::SpringFault;
 use bevy::ecs::entity::EntityHashSet;
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
 
-/// The parts of an element.
-pub(crate) type ElementParts<'a> = (
-    Entity,
-    Option<Ref<'a, Spring>>,
-    Option<Ref<'a, Damper>>,
-    Option<Ref<'a, SpringDamper>>,
-    Option<Ref<'a, Anchors>>,
-);
-
-/// What makes an entity an element.
-pub(crate) type IsElement = Or<(With<Spring>, With<Damper>, With<SpringDamper>)>;
-
 /// Finds elements, their ends and the bodies they load.
 pub(crate) fn prepare(
     mut scene: ResMut<Scene>,
-    elements: Query<ElementParts, IsElement>,
+    elements: Query<Parts, IsElement>,
     mut finder: Finder,
     mut loads: Query<
         (Option<&mut SpringLoad>, Option<&ExternalForce>),
         With<RapierRigidBodyHandle>,
     >,
     mut watch: Watch,
+    mut companions: Companions,
     mut commands: Commands,
 ) {
     let scene = &mut *scene;
     let mut same = !watch.saw_change(&scene.index);
     same &= !std::mem::take(&mut scene.stale);
-    same = same && refresh(scene, &elements, &finder.ends);
+    companions.look();
+    same = same && refresh(scene, &elements, &companions, &finder.ends);
+    let modified = &watch.mass_modified;
     same = same
         && scene
             .elements
             .iter_mut()
-            .all(|row| still_faulty(row, &mut finder, &watch.mass_modified, &mut commands));
+            .all(|row| still_faulty(row, &companions, &mut finder, modified, &mut commands));
     scene.renewed = !same;
     if same {
         return;
     }
-    scene.renew(&elements, &mut finder, &watch.mass_modified, &mut commands);
+    scene.renew(&elements, &companions, &mut finder, modified, &mut commands);
     for (slot, row) in scene.bodies.iter_mut().enumerate() {
         let Ok((load, force)) = loads.get_mut(row.entity) else {
             continue;
@@ -82,29 +75,35 @@ pub(crate) fn prepare(
 }
 
 /// Takes in changed numbers and moved ends; says whether the rows still fit the elements.
-fn refresh(scene: &mut Scene, elements: &Query<ElementParts, IsElement>, ends: &Ends) -> bool {
+fn refresh(
+    scene: &mut Scene,
+    elements: &Query<Parts, IsElement>,
+    companions: &Companions,
+    ends: &Ends,
+) -> bool {
     let mut rows = scene.elements.iter_mut();
-    for (entity, spring, damper, pair, anchors) in elements {
-        let Some(row) = rows.next().filter(|row| row.entity == entity) else {
+    let untouched = companions.touched.is_empty();
+    for parts in elements {
+        let Some(row) = rows.next().filter(|row| row.entity == parts.entity) else {
             return false;
         };
-        row.changed = spring.as_ref().is_some_and(Ref::is_changed)
-            || damper.as_ref().is_some_and(Ref::is_changed)
-            || pair.as_ref().is_some_and(Ref::is_changed)
-            || anchors.as_ref().is_some_and(Ref::is_changed);
+        row.changed =
+            parts.is_changed() || (!untouched && companions.touched.contains(&row.entity));
         if row.changed {
-            let parameters = Parameters::read(
-                spring.as_deref(),
-                damper.as_deref(),
-                pair.as_deref(),
-                anchors.as_deref(),
-            );
-            match parameters {
-                Ok(new) if new.is_held_like(&row.parameters) && new.check().is_ok() => {
-                    row.parameters = new;
-                }
-                _ => return false,
+            let Ok(new) = parts.parameters().and_then(|new| {
+                new.check()?;
+                Ok((companions.of(row.entity, &new)?, new))
+            }) else {
+                return false;
+            };
+            let (companion, parameters) = new;
+            if !parameters.is_held_like(&row.parameters) || companion.guide != row.companion.guide {
+                return false;
             }
+            row.change(|row| {
+                row.parameters = parameters;
+                row.companion = companion;
+            });
         }
         if row.fault.is_none() {
             for end in 0..2 {
@@ -163,6 +162,7 @@ fn follow(row: &mut ElementRow, end: usize, ends: &Ends, bodies: &[super::scene:
 /// Looks at an inert element again; says whether it still is.
 fn still_faulty(
     row: &mut ElementRow,
+    companions: &Companions,
     finder: &mut Finder,
     modified: &EntityHashSet,
     commands: &mut Commands,
@@ -170,7 +170,10 @@ fn still_faulty(
     if row.fault.is_none() || row.parameters.ends == Parameters::NONE.ends {
         return true;
     }
-    match finder.find(&row.parameters, &mut row.memory.scales, modified) {
+    let found = companions
+        .of(row.entity, &row.parameters)
+        .and_then(|c| finder.find(&row.parameters, c.guide, &mut row.memory.scales, modified));
+    match found {
         Err(fault) => {
             row.fault = Some(fault);
             report(row, commands);

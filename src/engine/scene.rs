@@ -2,6 +2,8 @@
 
 use super::assembly::Assembly;
 use super::check::{Fault, Parameters};
+use super::companions::Companion;
+use super::energy::EnergyLedger;
 use super::forces::Share;
 use super::group::Groups;
 use super::held::{Expected, Support, Twist};
@@ -45,10 +47,12 @@ impl Held {
 }
 
 /// One element.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct ElementRow {
     pub entity: Entity,
     pub parameters: Parameters,
+    /// What stands beside it makes of it.
+    pub companion: Companion,
     pub held: [Held; 2],
     /// Which ends have to be looked for in every tick: what is not a body itself can be moved by the game.
     pub watched: [bool; 2],
@@ -69,6 +73,7 @@ pub(super) struct ElementRow {
     pub inverse_mass: f64,
     /// How it was solved.
     pub outcome: Outcome,
+    pub ledger: EnergyLedger,
 }
 
 /// What an element remembers from step to step.
@@ -81,6 +86,10 @@ pub(super) struct Memory {
     pub places: [Option<DVec3>; 2],
     /// The bodies' scales, held against the rounding noise of their transforms.
     pub scales: [Option<DVec3>; 2],
+    /// Last twist, full turns counted.
+    pub angle: f64,
+    /// Last length or twist.
+    pub length: f64,
     /// The last coefficients, and how exact they were.
     pub memo: Memo,
     pub controller: Controller,

@@ -75,7 +75,7 @@ fn keep_awake(body: &mut RapierBody) {
 
 /// Natural frequency of an element on its own ends, as of the last step.
 pub(super) fn omega_of(row: &ElementRow) -> f32 {
-    (f64::from(row.parameters.stiffness) * row.inverse_mass).sqrt() as f32
+    (row.slope() * row.inverse_mass).sqrt() as f32
 }
 
 impl Step<'_> {

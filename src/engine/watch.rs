@@ -2,7 +2,9 @@
 //! body, and components that are taken away.
 
 use super::forces::SpringLoad;
-use crate::element::{Anchors, Damper, Spring, SpringDamper};
+use crate::element::{
+    Anchors, Damper, Spring, SpringDamper, TorsionDamper, TorsionSpring, TorsionSpringDamper,
+};
 use bevy::ecs::entity::{EntityHashMap, EntityHashSet};
 use bevy::ecs::entity_disabling::Disabled;
 use bevy::ecs::message::MessageReader;
@@ -36,6 +38,9 @@ pub(crate) struct Watch<'w, 's> {
     springs: RemovedComponents<'w, 's, Spring>,
     dampers: RemovedComponents<'w, 's, Damper>,
     pairs: RemovedComponents<'w, 's, SpringDamper>,
+    torsion_springs: RemovedComponents<'w, 's, TorsionSpring>,
+    torsion_dampers: RemovedComponents<'w, 's, TorsionDamper>,
+    torsion_pairs: RemovedComponents<'w, 's, TorsionSpringDamper>,
     anchors: RemovedComponents<'w, 's, Anchors>,
     masses: MessageReader<'w, 's, MassModifiedEvent>,
     pub(super) mass_modified: Local<'s, EntityHashSet>,
@@ -56,6 +61,9 @@ impl Watch<'_, '_> {
         changed |= self.springs.read().count() > 0;
         changed |= self.dampers.read().count() > 0;
         changed |= self.pairs.read().count() > 0;
+        changed |= self.torsion_springs.read().count() > 0;
+        changed |= self.torsion_dampers.read().count() > 0;
+        changed |= self.torsion_pairs.read().count() > 0;
         changed |= self.anchors.read().count() > 0;
         changed |= self.loads.read().any(|e| index.contains_key(&e));
         changed |= self.forces.read().any(|e| index.contains_key(&e));

@@ -1,0 +1,113 @@
+use super::*;
+
+fn recipe(pull: [f64; 3], push: [f64; 3]) -> Recipe {
+    Recipe {
+        spring: SpringForce::Polynomial { pull, push },
+        drag: DragLaw::Linear(3.0),
+        preload: 0.0,
+        limits: [f64::NEG_INFINITY, f64::INFINITY],
+        most: f64::INFINITY,
+        travel: [f64::NEG_INFINITY, f64::INFINITY],
+        stop: Stop::default(),
+    }
+}
+
+/// Laws with everything that can be combined.
+fn laws() -> Vec<Law> {
+    let stop = Stop {
+        stiffness: 500.0,
+        progression: 4.0,
+        damping: 20.0,
+    };
+    let table = Table::new(&[(-0.5, -30.0), (-0.1, -2.0), (0.2, 5.0), (0.4, 40.0)]);
+    let mut all = Vec::new();
+    for preload in [0.0, -7.0, 4.0] {
+        for limits in [
+            [f64::NEG_INFINITY, f64::INFINITY],
+            [0.0, f64::INFINITY],
+            [f64::NEG_INFINITY, 0.0],
+            [-12.0, 12.0],
+        ] {
+            for spring in [
+                SpringForce::Polynomial {
+                    pull: [40.0, 0.0, 0.0],
+                    push: [40.0, 0.0, 0.0],
+                },
+                SpringForce::Polynomial {
+                    pull: [10.0, 30.0, 200.0],
+                    push: [80.0, 0.0, 5.0],
+                },
+                SpringForce::Table(Arc::new(table.clone())),
+            ] {
+                all.push(Law::new(Recipe {
+                    spring,
+                    preload,
+                    limits,
+                    most: if limits[0].is_finite() { 12.0 } else { f64::INFINITY },
+                    travel: [0.6, 1.4],
+                    stop,
+                    ..recipe([0.0; 3], [0.0; 3])
+                }));
+            }
+        }
+    }
+    all
+}
+
+#[test]
+fn force_is_the_slope_of_the_energy_and_rises_everywhere() {
+    for law in laws() {
+        let mut last = f64::NEG_INFINITY;
+        for i in 1..400 {
+            let length = 0.005 * f64::from(i);
+            let now = law.elastic(length, 1.0);
+            assert!(now.force >= last - 1e-9 && now.stiffness >= 0.0, "{law:?} at {length}");
+            assert!(now.energy >= -1e-9, "{law:?}: {} J at {length}", now.energy);
+            last = now.force;
+            let h = 1e-6;
+            let energy = |l| law.elastic(l, 1.0).energy;
+            let slope = (energy(length + h) - energy(length - h)) / (2.0 * h);
+            let near = 1e-6 * (1.0 + now.force.abs()) + h * now.stiffness.max(600.0);
+            assert!((slope - now.force).abs() < near, "{law:?} at {length}: {slope} {now:?}");
+        }
+    }
+}
+
+#[test]
+fn damping_only_takes() {
+    for mut law in laws() {
+        for drag in [
+            DragLaw::Linear(3.0),
+            DragLaw::Sided { bump: 1.0, rebound: 3.0 },
+            DragLaw::Quadratic { linear: 1.0, quadratic: 5.0 },
+            DragLaw::BlowOff { damping: 9.0, knee: 0.2, beyond: 1.0 },
+            DragLaw::Table(Arc::new(Table::new(&[(-1.0, -9.0), (0.0, 0.0), (1.0, 4.0)]))),
+        ] {
+            law.drag = drag;
+            for i in 1..60 {
+                for j in -20..=20 {
+                    let rate = 0.2 * f64::from(j);
+                    let drag = law.drag(0.03 * f64::from(i), 1.0, rate);
+                    assert!(drag.force * rate >= 0.0 && drag.slope >= 0.0, "{law:?} {rate}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn ropes_never_push_and_buffers_never_pull() {
+    for (limits, sign) in [([0.0, f64::INFINITY], 1.0), ([f64::NEG_INFINITY, 0.0], -1.0)] {
+        let law = Law::new(Recipe {
+            limits,
+            ..recipe([40.0, 0.0, 10.0], [40.0, 0.0, 10.0])
+        });
+        for i in 1..40 {
+            for rate in [-9.0, -0.1, 0.0, 0.1, 9.0] {
+                let length = 0.05 * f64::from(i);
+                let force = law.elastic(length, 1.0).force + law.drag(length, 1.0, rate).force;
+                assert!(force * sign >= 0.0, "{force} N at {length} m, {rate} m/s");
+            }
+        }
+    }
+}

@@ -1,0 +1,322 @@
+//! A lone element with a law of its own, between ends that do not turn.
+//!
+//! Where the law is smooth over a micro-step and the step resolves it, it is [`super::pair`]'s step with
+//! the slopes of the law as stiffness and damping and its true force: for a smooth potential that is the
+//! force-gradient kick of M. Takahashi and M. Imada (1984), so long runs keep their energy. Elsewhere (a rope
+//! goes taut, a stop is hit, the step is too long for the stiffness) the mean force over the step is the one
+//! that does exactly the work of the law's energy: D. Greenspan's and R. LaBudde's (1974) step, which
+//! conserves energy and angular momentum whatever the law and the step.
+
+use super::kick::Memo;
+use super::law::Law;
+use super::pair::{Line, Pair, Separation};
+use super::poles::{Poles, RESOLVED_PHASE, UNRESOLVED_DECAY, decay_ratio};
+use super::tolerance::{Motion, VELOCITY_COUNTS};
+use bevy::math::DVec3;
+
+/// (ω h)² up to which the kick is used: where the law is smooth as a whole, and where it is bent somewhere. The
+/// energy of a kicked motion sways a little, and at a bend the sway would be kept.
+const SMOOTH: f64 = 2.0;
+const BENT: f64 = 0.04;
+/// c h/m up to which it is.
+const LIGHT: f64 = 0.5;
+/// ω h of the energy-keeping steps, which are as many as that takes,
+const FINE: f64 = 0.2;
+/// from so many up to so many in a micro-step.
+const PARTS: [f64; 2] = [2.0, 16.0];
+/// Rounds of estimating how far the motion can reach.
+const REACHES: usize = 6;
+/// Halvings and secants until a step's length is known.
+const TRIES: usize = 80;
+
+/// A pair in motion under a law.
+pub(crate) struct Shock<'a> {
+    pub pair: &'a Pair,
+    pub law: &'a Law,
+    pub state: Separation,
+    memo: &'a mut Memo,
+    saved: [Separation; 3],
+}
+
+impl<'a> Shock<'a> {
+    pub(crate) fn new(
+        pair: &'a Pair,
+        law: &'a Law,
+        mut state: Separation,
+        memo: &'a mut Memo,
+    ) -> Self {
+        // The slope along the line is not that across it, so even without a rest length it has an axis.
+        state.stiff_damper = true;
+        Self {
+            pair,
+            law,
+            state,
+            memo,
+            saved: [state; 3],
+        }
+    }
+
+    fn rest_length(&self) -> f64 {
+        self.pair.rest_length
+    }
+
+    /// Whether the law is smooth from here to a length.
+    fn is_smooth(&self, from: f64, to: f64, rate: f64, step: f64) -> bool {
+        let (law, rest) = (self.law, self.rest_length());
+        let weight = self.pair.inverse_mass * step;
+        from > 0.0
+            && to > 0.0
+            && law.part(from, rest) == law.part(to, rest)
+            && law.drag(from, rest, rate).slope * weight < LIGHT
+            && law.drag(to, rest, rate).slope * weight < LIGHT
+    }
+
+    /// Whether a step resolves the stiffness wherever the present energy can take the motion: going to and
+    /// fro between the two ways of stepping would heap up the sway of the one.
+    fn is_resolved_in_reach(&self, step: f64) -> bool {
+        let (law, pair, rest) = (self.law, self.pair, self.rest_length());
+        let weight = pair.inverse_mass * step * step;
+        let length = self.state.d.length();
+        let energy =
+            law.elastic(length, rest).energy + 0.5 * self.state.v.length_squared() / pair.inverse_mass;
+        let pushed = pair.outside.length() / pair.inverse_mass;
+        let mut reach = (length - rest).abs().max(step * self.state.v.length());
+        let mut stiffest = 0.0;
+        for _ in 0..REACHES {
+            let ends = [rest - reach, rest + reach];
+            stiffest = law.stiffest(ends, rest);
+            let most = energy + pushed * reach;
+            let stored = ends.map(|length| law.elastic(length, rest).energy);
+            let stored = stored[0].min(stored[1]);
+            if stored >= most || stored <= 0.0 {
+                break;
+            }
+            // Exact for the power of four, half of the way in its logarithm for that of two.
+            reach *= (most / stored).sqrt().sqrt();
+        }
+        let limit = if law.is_bent() { BENT } else { SMOOTH };
+        stiffest * weight < limit
+    }
+
+    fn microstep(&mut self, step: f64, resolved: bool) {
+        let before = self.state;
+        let from = before.d.length();
+        if let Some(line) = self.pair.line(&before) {
+            let ahead = (before.d + step * before.v).length();
+            let turns = step * step * line.lateral_square > 0.25 * from * from;
+            if resolved && !turns && self.is_smooth(from, ahead, line.axial, step) {
+                self.kick_through(step);
+                if self.is_smooth(from, self.state.d.length(), line.axial, step) {
+                    return;
+                }
+                self.state = before;
+            }
+        }
+        let ahead = (before.d + step * before.v).length();
+        let stiffest = self.law.stiffest([from, ahead], self.rest_length());
+        let z = stiffest * self.pair.inverse_mass * step * step;
+        let parts = (z.sqrt() / FINE).ceil().clamp(PARTS[0], PARTS[1]);
+        for _ in 0..parts as u32 {
+            self.keep_energy_through(step / parts);
+        }
+    }
+
+    /// Velocity map, drift, kick, drift, velocity map.
+    fn kick_through(&mut self, step: f64) {
+        self.map(step, |axial, offset, speed| (axial - offset) / speed);
+        self.state.d += 0.5 * step * self.state.v;
+        self.kick(step);
+        self.state.d += 0.5 * step * self.state.v;
+        self.note_side();
+        self.map(step, |axial, offset, speed| speed * axial + offset);
+    }
+
+    fn note_side(&mut self) {
+        let length = self.state.d.length();
+        if length > self.pair.rounding {
+            self.state.direction = Some(self.state.d / length);
+        }
+    }
+
+    fn kick(&mut self, step: f64) {
+        let (pair, rest) = (self.pair, self.rest_length());
+        let Some(line) = pair.line(&self.state) else {
+            self.state.v += step * pair.outside;
+            return;
+        };
+        let rate = line.backward_rate(step);
+        let across = pair.outside - line.pushed * line.direction;
+        let after = (line.lateral + step * across).length_squared();
+        let turning = 0.5 * (line.turning(line.lateral_square, step) + line.turning(after, step));
+        let outside = line.pushed + turning;
+        let length = line.length - step * step / 8.0 * turning;
+        let elastic = self.law.elastic(length, rest);
+        let drag = self.law.drag(length, rest, rate);
+        let weight = pair.inverse_mass * step;
+        let damped = drag.slope * weight;
+        let poles = self
+            .memo
+            .poles(elastic.stiffness * weight * step, damped / 2.0);
+        // The damper alone, by its slope, is solved exactly: x(1 − e^(−s))/s for a force x of slope s.
+        let total = -poles.restoring * (elastic.force * pair.inverse_mass - outside)
+            - drag.force * pair.inverse_mass * decay_ratio(damped);
+        self.state.v += step * (total - outside) * line.direction + step * pair.outside;
+    }
+
+    /// Between the true axial velocity and the stepped one, as in [`super::pair`].
+    fn map(&mut self, step: f64, to: impl Fn(f64, f64, f64) -> f64) {
+        let Some(line) = self.pair.line(&self.state) else {
+            return;
+        };
+        let poles = self.poles_at(&line, step);
+        let outside = line.pushed + line.turning(line.lateral_square, step);
+        let elastic = self.law.elastic(line.length, self.rest_length());
+        let unanswered = elastic.force * self.pair.inverse_mass - outside;
+        let axial = to(line.axial, poles.skew * step * unanswered, poles.speed);
+        self.state.v += (axial - line.axial) * line.direction;
+    }
+
+    fn poles_at(&mut self, line: &Line, step: f64) -> Poles {
+        let weight = self.pair.inverse_mass * step;
+        let elastic = self.law.elastic(line.length, self.rest_length());
+        // A slope that changes with the speed would be another one after the map.
+        let damping = self.law.drag.linear().unwrap_or(0.0);
+        self.memo
+            .poles(elastic.stiffness * weight * step, damping * weight / 2.0)
+    }
+
+    /// One step whose mean force does the work of the law's energy.
+    fn keep_energy_through(&mut self, step: f64) {
+        let from = self.state.d.length();
+        let to = self.length_after(from, step);
+        let sigma = self.share(from, to, step);
+        let d = self.after(sigma, step);
+        self.state.v = 2.0 / step * (d - self.state.d) - self.state.v;
+        self.state.d = d;
+        self.note_side();
+    }
+
+    /// Half the step's pull towards the centre for each unit of the mean separation.
+    fn share(&self, from: f64, to: f64, step: f64) -> f64 {
+        let (law, rest) = (self.law, self.rest_length());
+        let middle = 0.5 * (from + to);
+        let rate = (to - from) / step;
+        let mean = if (to - from).abs() > 1e-7 * middle {
+            let [a, b] = [from, to].map(|length| law.elastic(length, rest).energy);
+            (b - a) / (to - from)
+        } else {
+            law.elastic(middle, rest).force
+        };
+        let mut drag = law.drag(middle, rest, rate).force;
+        // As in `poles`: what rounding of the engine's f32 stirs up in unresolved motion has to settle.
+        let slope = law.elastic(middle, rest).stiffness;
+        let z = slope * self.pair.inverse_mass * step * step;
+        let unresolved = (1.0 - RESOLVED_PHASE * RESOLVED_PHASE / z).max(0.0);
+        drag += 2.0 / PARTS[1] * UNRESOLVED_DECAY * unresolved * slope * step / z.max(1.0) * rate;
+        let pull = (mean + drag) / (from + to).max(f64::MIN_POSITIVE);
+        0.5 * step * step * self.pair.inverse_mass * pull
+    }
+
+    fn after(&self, sigma: f64, step: f64) -> DVec3 {
+        let Separation { d, v, .. } = self.state;
+        let free = d + step * v + 0.5 * step * step * self.pair.outside;
+        let weight = 1.0 + sigma;
+        (free - sigma * d) / weight.abs().max(1e-12).copysign(weight)
+    }
+
+    /// The length at which the step's mean force leads to that very length.
+    fn length_after(&self, from: f64, step: f64) -> f64 {
+        let miss = |to: f64| self.after(self.share(from, to, step), step).length() - to;
+        let mut low = (0.0, miss(0.0));
+        let free = self.after(0.0, step).length();
+        let mut high = (free, miss(free));
+        let mut reach = (free - from).abs().max(1e-6);
+        while high.1 > 0.0 {
+            low = high;
+            high.0 += reach;
+            high.1 = miss(high.0);
+            reach *= 2.0;
+            if reach > 1e12 {
+                return free;
+            }
+        }
+        // Illinois: false position that halves the weight of an end that stays.
+        let mut stayed = 0;
+        for _ in 0..TRIES {
+            let width = high.0 - low.0;
+            if width <= 1e-14 * high.0 || low.1 == 0.0 {
+                break;
+            }
+            let secant = (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1);
+            let to = if secant > low.0 && secant < high.0 {
+                secant
+            } else {
+                low.0 + 0.5 * width
+            };
+            let now = miss(to);
+            if now.abs() <= 1e-15 * to {
+                return to;
+            }
+            if now > 0.0 {
+                low = (to, now);
+                if stayed == 1 {
+                    high.1 *= 0.5;
+                }
+                stayed = 1;
+            } else {
+                high = (to, now);
+                if stayed == -1 {
+                    low.1 *= 0.5;
+                }
+                stayed = -1;
+            }
+        }
+        if low.1.abs() < high.1.abs() { low.0 } else { high.0 }
+    }
+}
+
+impl Motion for Shock<'_> {
+    fn save(&mut self, slot: usize) {
+        self.saved[slot] = self.state;
+    }
+
+    fn load(&mut self, slot: usize) {
+        self.state = self.saved[slot];
+    }
+
+    fn least(&mut self, _: f64) -> u32 {
+        1
+    }
+
+    fn run(&mut self, time: f64, count: u32) {
+        let step = time / f64::from(count);
+        let resolved = self.is_resolved_in_reach(step);
+        for _ in 0..count {
+            self.microstep(step, resolved);
+        }
+    }
+
+    fn distance(&self, slot: usize) -> f64 {
+        let (a, b) = (&self.state, &self.saved[slot]);
+        (a.d - b.d).length() + VELOCITY_COUNTS * (a.v - b.v).length()
+    }
+
+    fn extrapolate(&mut self, slot: usize) {
+        self.state.towards(&self.saved[slot]);
+    }
+
+    /// The combination needs a smooth motion.
+    fn is_resolved(&mut self, step: f64) -> bool {
+        let Some(line) = self.pair.line(&self.state) else {
+            return false;
+        };
+        let to = (self.state.d + step * self.state.v).length();
+        let turned = step * step * line.lateral_square;
+        self.is_resolved_in_reach(step)
+            && self.is_smooth(line.length, to, line.axial, step)
+            && turned < line.length * line.length
+    }
+}
+
+#[cfg(test)]
+mod tests;

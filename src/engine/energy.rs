@@ -1,0 +1,103 @@
+//! Where an element's energy comes from and goes.
+
+use super::scene::ElementRow;
+use crate::dynamics::element::{Element, End};
+use crate::dynamics::law::Elastic;
+use crate::dynamics::pair::{Pair, Separation};
+use bevy::math::DVec3;
+
+/// Since the element began to act, J.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct EnergyLedger {
+    /// Turned into heat.
+    pub dissipated: f64,
+    /// Done on it by changes of its parameters and by ends that something else moves.
+    pub work: f64,
+}
+
+impl ElementRow {
+    /// Tension without damping at a length, its slope, and the stored energy.
+    pub(super) fn elastic(&self, length: f64) -> Elastic {
+        let rest_length = f64::from(self.parameters.rest_length.unwrap_or(0.0));
+        match &self.companion.law {
+            Some(law) => law.elastic(length, rest_length),
+            None => {
+                let stiffness = f64::from(self.parameters.stiffness);
+                let stretch = length - rest_length;
+                Elastic {
+                    force: stiffness * stretch,
+                    stiffness,
+                    energy: 0.5 * stiffness * stretch * stretch,
+                }
+            }
+        }
+    }
+
+    /// Tension that damping adds.
+    pub(super) fn drag(&self, length: f64, rate: f64) -> f64 {
+        let rest_length = f64::from(self.parameters.rest_length.unwrap_or(0.0));
+        match &self.companion.law {
+            Some(law) => law.drag(length, rest_length, rate).force,
+            None => f64::from(self.parameters.damping) * rate,
+        }
+    }
+
+    /// Length and rate of a guided element whose ends are and move like this.
+    pub(super) fn guided_extent(&self, ends: [End; 2]) -> (f64, f64) {
+        let mut element = Element {
+            ends,
+            stiffness: 0.0,
+            damping: 0.0,
+            rest_length: 0.0,
+            guide: self.companion.guide,
+            law: None,
+            angle: self.memory.angle,
+            heat: 0.0,
+            work: 0.0,
+            direction: None,
+            stiff_damper: false,
+        };
+        element.aim(&[], 0.0);
+        match element.line(&[]) {
+            Some(line) => (line.length, line.motion(&element, &[], 0.0).axial),
+            None => (self.memory.length, 0.0),
+        }
+    }
+
+    /// Energy of a lone element's motion about the common centre of mass, in the outside forces, and stored.
+    pub(super) fn energy_of(&self, pair: &Pair, state: &Separation) -> f64 {
+        let motion = 0.5 * state.v.length_squared() - pair.outside.dot(state.d);
+        self.elastic(state.d.length()).energy + motion / pair.inverse_mass
+    }
+
+    /// Whether a law of a user's own gives numbers, for ends that are and move apart like this.
+    pub(super) fn is_sound(&self, v: DVec3, d: DVec3) -> bool {
+        if self.companion.law.is_none() {
+            return true;
+        }
+        let elastic = self.elastic(d.length());
+        let drag = self.drag(d.length(), v.dot(d.normalize_or_zero()));
+        (elastic.force + elastic.stiffness + elastic.energy + drag).is_finite()
+    }
+
+    /// Slope of the spring's force as of the last step, N/m.
+    pub(super) fn slope(&self) -> f64 {
+        if self.companion.law.is_none() {
+            return f64::from(self.parameters.stiffness);
+        }
+        self.elastic(self.memory.length).stiffness
+    }
+
+    /// Takes in other numbers; what that changes in stored energy is work that was done.
+    pub(super) fn change(&mut self, change: impl FnOnce(&mut Self)) {
+        let acted = self.memory.places[0].is_some() && self.parameters.rest_length.is_some();
+        let before = self.elastic(self.memory.length).energy;
+        change(self);
+        if acted {
+            let work = self.elastic(self.memory.length).energy - before;
+            if work.is_finite() {
+                self.ledger.work += work;
+            }
+        }
+    }
+}

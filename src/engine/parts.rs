@@ -1,0 +1,128 @@
+//! An element's components, whichever they are, as one set of numbers.
+
+use super::check::{Fault, Names, Parameters};
+use crate::element::{
+    Anchors, Damper, Spring, SpringDamper, TorsionDamper, TorsionSpring, TorsionSpringDamper,
+};
+use bevy::ecs::query::QueryData;
+use bevy::prelude::*;
+
+/// The parts of an element.
+#[derive(QueryData)]
+pub(crate) struct Parts {
+    pub entity: Entity,
+    spring: Option<Ref<'static, Spring>>,
+    damper: Option<Ref<'static, Damper>>,
+    pair: Option<Ref<'static, SpringDamper>>,
+    torsion_spring: Option<Ref<'static, TorsionSpring>>,
+    torsion_damper: Option<Ref<'static, TorsionDamper>>,
+    torsion_pair: Option<Ref<'static, TorsionSpringDamper>>,
+    anchors: Option<Ref<'static, Anchors>>,
+}
+
+/// What makes an entity an element.
+pub(crate) type IsElement = Or<(
+    With<Spring>,
+    With<Damper>,
+    With<SpringDamper>,
+    With<TorsionSpring>,
+    With<TorsionDamper>,
+    With<TorsionSpringDamper>,
+)>;
+
+/// Names of a component's fields; what it has not is the empty string.
+macro_rules! names {
+    ($component:literal, $stiffness:literal, $damping:literal, $rest:literal, $axis:literal) => {
+        Names {
+            ends: [
+                concat!($component, "::body_a"),
+                concat!($component, "::body_b"),
+            ],
+            stiffness: concat!($component, $stiffness),
+            damping: concat!($component, $damping),
+            rest_length: concat!($component, $rest),
+            axis: concat!($component, $axis),
+        }
+    };
+}
+
+const SPRING: Names = names!("Spring", "::stiffness", "", "::rest_length", "");
+const DAMPER: Names = names!("Damper", "", "::damping", "", "");
+const PAIR: Names = names!("SpringDamper", "::stiffness", "::damping", "::rest_length", "");
+const TORSION_SPRING: Names = names!("TorsionSpring", "::stiffness", "", "::rest_angle", "::axis");
+const TORSION_DAMPER: Names = names!("TorsionDamper", "", "::damping", "", "::axis");
+const TORSION_PAIR: Names = names!(
+    "TorsionSpringDamper",
+    "::stiffness",
+    "::damping",
+    "::rest_angle",
+    "::axis"
+);
+
+/// Any rest length but zero will do for a damper: zero means an isotropic spring.
+const NO_MATTER: Option<f32> = Some(1.0);
+
+impl PartsItem<'_, '_> {
+    pub(super) fn is_changed(&self) -> bool {
+        fn changed<T: Component>(part: &Option<Ref<T>>) -> bool {
+            part.as_ref().is_some_and(Ref::is_changed)
+        }
+        changed(&self.pair)
+            || changed(&self.spring)
+            || changed(&self.damper)
+            || changed(&self.anchors)
+            || changed(&self.torsion_spring)
+            || changed(&self.torsion_damper)
+            || changed(&self.torsion_pair)
+    }
+
+    /// Reads whichever component is there.
+    pub(super) fn parameters(&self) -> Result<Parameters, Fault> {
+        let anchors = self.anchors.as_deref().copied().unwrap_or_default();
+        let mut found = None;
+        let mut count = 0;
+        let mut add = |ends, stiffness, damping, rest_length, twist, names| {
+            count += 1;
+            found = Some(Parameters {
+                ends,
+                stiffness,
+                damping,
+                rest_length,
+                anchors: [anchors.a, anchors.b],
+                twist,
+                names,
+            });
+        };
+        if let Some(s) = &self.spring {
+            let ends = [s.body_a, s.body_b];
+            add(ends, s.stiffness, 0.0, s.rest_length, None, &SPRING);
+        }
+        if let Some(d) = &self.damper {
+            let ends = [d.body_a, d.body_b];
+            add(ends, 0.0, d.damping, NO_MATTER, None, &DAMPER);
+        }
+        if let Some(p) = &self.pair {
+            let ends = [p.body_a, p.body_b];
+            add(ends, p.stiffness, p.damping, p.rest_length, None, &PAIR);
+        }
+        if let Some(s) = &self.torsion_spring {
+            let (ends, axis) = ([s.body_a, s.body_b], Some(s.axis));
+            add(ends, s.stiffness, 0.0, s.rest_angle, axis, &TORSION_SPRING);
+        }
+        if let Some(d) = &self.torsion_damper {
+            let (ends, axis) = ([d.body_a, d.body_b], Some(d.axis));
+            add(ends, 0.0, d.damping, NO_MATTER, axis, &TORSION_DAMPER);
+        }
+        if let Some(p) = &self.torsion_pair {
+            let (ends, axis) = ([p.body_a, p.body_b], Some(p.axis));
+            add(ends, p.stiffness, p.damping, p.rest_angle, axis, &TORSION_PAIR);
+        }
+        match (found, count) {
+            (Some(found), 1) => Ok(found),
+            _ => Err(Fault::new(
+                "Spring, Damper, SpringDamper",
+                "stand together on one entity; use one of them, or SpringDamper for both at once",
+            )),
+        }
+    }
+}
