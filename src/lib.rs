@@ -1,5 +1,6 @@
 #![doc = include_str!("../README.md")]
 
+mod diagnostics;
 mod dynamics;
 mod element;
 mod engine;
@@ -9,11 +10,12 @@ mod settings;
 #[cfg(feature = "visual")]
 mod visual;
 
+pub use diagnostics::CoiloverDiagnosticsPlugin;
 pub use element::{
-    Anchors, Breakable, CustomDampingLaw, CustomSpringLaw, Damper, DampingLaw, ForceLaw, ForceTable,
-    MaxForce, Polynomial, Preload, Spring, SpringAction, SpringAxis, SpringBroke, SpringDamper,
-    SpringFault, SpringLaw, SpringTravel, TorsionDamper, TorsionSpring, TorsionSpringDamper,
-    WhenBroken,
+    Anchors, Breakable, CustomDampingLaw, CustomSpringLaw, Damper, DampingLaw, ForceLaw,
+    ForceTable, MaxForce, Polynomial, Preload, Spring, SpringAction, SpringAxis, SpringBroke,
+    SpringDamper, SpringFault, SpringLaw, SpringTravel, SpringTuning, TorsionDamper, TorsionSpring,
+    TorsionSpringDamper, WhenBroken, wire_stiffness,
 };
 pub use engine::SpringLoad;
 pub use plugin::{CoiloverPlugin, CoiloverSystems};
@@ -51,11 +53,11 @@ impl PluginGroup for CoiloverPlugins {
 /// Everything that a game needs.
 pub mod prelude {
     pub use crate::{
-        Anchors, Breakable, CoiloverPlugin, CoiloverPlugins, CoiloverSettings, CoiloverSystems,
-        CustomDampingLaw, CustomSpringLaw, Damper, DampingLaw, ForceLaw, ForceTable, MaxForce,
-        Polynomial, Preload, Spring, SpringAction, SpringAxis, SpringBroke, SpringDamper,
-        SpringFault, SpringLaw, SpringLoad, SpringMethod, SpringReadout, SpringTravel,
-        TorsionDamper, TorsionSpring, TorsionSpringDamper, WhenBroken,
+        Anchors, Breakable, CoiloverDiagnosticsPlugin, CoiloverPlugin, CoiloverPlugins,
+        CoiloverSettings, CoiloverSystems, CustomDampingLaw, CustomSpringLaw, Damper, DampingLaw,
+        ForceLaw, ForceTable, MaxForce, Polynomial, Preload, Spring, SpringAction, SpringAxis,
+        SpringBroke, SpringDamper, SpringFault, SpringLaw, SpringLoad, SpringMethod, SpringReadout,
+        SpringTravel, SpringTuning, TorsionDamper, TorsionSpring, TorsionSpringDamper, WhenBroken,
     };
     #[cfg(feature = "visual")]
     pub use crate::{

@@ -102,6 +102,7 @@ impl Plugin for CoiloverPlugin {
             .register_type::<Preload>()
             .register_type::<MaxForce>()
             .register_type::<Breakable>()
+            .register_type::<SpringTuning>()
             .register_type::<SpringReadout>()
             .register_type::<SpringLoad>()
             .register_type::<SpringFault>()
@@ -130,7 +131,9 @@ impl Plugin for CoiloverPlugin {
                 (engine::read_users, engine::solve)
                     .chain()
                     .in_set(CoiloverSystems::Solve),
-                engine::measure.in_set(CoiloverSystems::Readout),
+                (engine::measure, engine::break_overloaded)
+                    .chain()
+                    .in_set(CoiloverSystems::Readout),
             )
                 // Without Rapier there is nothing to do, and a message has said so.
                 .run_if(resource_exists::<TimestepMode>)

@@ -30,9 +30,9 @@ pub(crate) struct Bound {
 
 impl Bound {
     /// Sees what was done to the network since the last step.
-    pub(crate) fn begin(&mut self, elements: &[Element], bodies: &[Body]) {
-        // What contacts and joints hold is not ours to account for.
-        if bodies.iter().any(|body| body.mobility < 1.0) {
+    pub(crate) fn begin(&mut self, elements: &[Element], bodies: &[Body], linked: bool) {
+        // What contacts and joints hold, or links of a multibody do, is not ours to account for.
+        if linked || bodies.iter().any(|body| body.mobility < 1.0) {
             self.given = None;
             return;
         }

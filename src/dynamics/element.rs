@@ -329,9 +329,15 @@ impl Element {
             return true;
         }
         let (elastic, drag) = (self.elastic(length), self.drag(length, rate));
-        [elastic.force, elastic.stiffness, elastic.energy, drag.force, drag.slope]
-            .iter()
-            .all(|x| x.is_finite())
+        [
+            elastic.force,
+            elastic.stiffness,
+            elastic.energy,
+            drag.force,
+            drag.slope,
+        ]
+        .iter()
+        .all(|x| x.is_finite())
     }
 
     /// Slope of the spring's force, at a length and on the way that a step takes from there.

@@ -98,8 +98,9 @@ fn wrapped(angle: f64) -> f64 {
 
 impl Hold {
     fn inverse_inertia_of(&self, bodies: &[Body]) -> bevy::math::DMat3 {
-        self.body
-            .map_or(bevy::math::DMat3::ZERO, |index| bodies[index].inverse_inertia())
+        self.body.map_or(bevy::math::DMat3::ZERO, |index| {
+            bodies[index].inverse_inertia()
+        })
     }
 }
 

@@ -7,6 +7,10 @@
 //! that does exactly the work of the law's energy: D. Greenspan's and R. LaBudde's (1974) step, which
 //! conserves energy and angular momentum whatever the law and the step.
 
+mod apart;
+
+pub(crate) use apart::Apart;
+
 use super::kick::Memo;
 use super::law::Law;
 use super::pair::{Line, Pair, Separation};
@@ -34,6 +38,8 @@ pub(crate) struct Shock<'a> {
     pub pair: &'a Pair,
     pub law: &'a Law,
     pub state: Separation,
+    /// Of the whole step, s.
+    pub time: f64,
     memo: &'a mut Memo,
     saved: [Separation; 3],
 }
@@ -51,9 +57,17 @@ impl<'a> Shock<'a> {
             pair,
             law,
             state,
+            time: 0.0,
             memo,
             saved: [state; 3],
         }
+    }
+
+    /// Energy of the motion about the common centre of mass, in the outside forces, and stored, J.
+    pub(crate) fn energy(&self) -> f64 {
+        let Separation { d, v, .. } = self.state;
+        let motion = 0.5 * v.length_squared() - self.pair.outside.dot(d);
+        self.law.elastic(d.length(), self.rest_length()).energy + motion / self.pair.inverse_mass
     }
 
     fn rest_length(&self) -> f64 {
@@ -77,8 +91,8 @@ impl<'a> Shock<'a> {
         let (law, pair, rest) = (self.law, self.pair, self.rest_length());
         let weight = pair.inverse_mass * step * step;
         let length = self.state.d.length();
-        let energy =
-            law.elastic(length, rest).energy + 0.5 * self.state.v.length_squared() / pair.inverse_mass;
+        let energy = law.elastic(length, rest).energy
+            + 0.5 * self.state.v.length_squared() / pair.inverse_mass;
         let pushed = pair.outside.length() / pair.inverse_mass;
         let mut reach = (length - rest).abs().max(step * self.state.v.length());
         let mut stiffest = 0.0;
@@ -158,8 +172,8 @@ impl<'a> Shock<'a> {
             .memo
             .poles(elastic.stiffness * weight * step, damped / 2.0);
         // The damper alone, by its slope, is solved exactly: x(1 − e^(−s))/s for a force x of slope s.
-        let total = -poles.restoring * (elastic.force * pair.inverse_mass - outside)
-            - drag.force * pair.inverse_mass * decay_ratio(damped);
+        let braked = drag.force * pair.inverse_mass * decay_ratio(damped);
+        let total = -poles.restoring * (elastic.force * pair.inverse_mass - outside) - braked;
         self.state.v += step * (total - outside) * line.direction + step * pair.outside;
     }
 
@@ -271,7 +285,11 @@ impl<'a> Shock<'a> {
                 stayed = -1;
             }
         }
-        if low.1.abs() < high.1.abs() { low.0 } else { high.0 }
+        if low.1.abs() < high.1.abs() {
+            low.0
+        } else {
+            high.0
+        }
     }
 }
 
@@ -289,6 +307,7 @@ impl Motion for Shock<'_> {
     }
 
     fn run(&mut self, time: f64, count: u32) {
+        self.time = time;
         let step = time / f64::from(count);
         let resolved = self.is_resolved_in_reach(step);
         for _ in 0..count {

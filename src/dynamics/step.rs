@@ -8,6 +8,7 @@ use super::guard::Guard;
 use super::guide::Guide;
 use super::kick::{self, Map, Memo};
 use super::network::{Network, RESOLVED};
+use super::shock::Apart;
 use super::tolerance::{Accuracy, Controller, Method, Motion, Outcome, VELOCITY_COUNTS};
 use bevy::math::DVec3;
 
@@ -52,21 +53,29 @@ impl Component {
     pub(crate) fn advance(&mut self, time: f64, accuracy: Accuracy) -> Outcome {
         self.memory.max_iterations = accuracy.max_iterations.max(1);
         let alone = self.is_alone();
-        if !alone {
-            let Memory { bound, saved, .. } = &mut self.memory;
-            bound.begin(&self.elements, &self.bodies);
-            let start = &mut saved[0];
-            start.bodies.clone_from(&self.bodies);
-            start.elements.clone_from(&self.elements);
-        }
         let mut controller = std::mem::take(&mut self.memory.controller);
+        if let [element] = self.elements.as_mut_slice()
+            && let Some(apart) = Apart::of(element, &self.bodies)
+        {
+            let memo = &mut self.memory.memo;
+            let outcome = apart.advance(element, &mut self.bodies, memo, |motion| {
+                controller.drive(motion, time, accuracy)
+            });
+            self.memory.controller = controller;
+            return outcome;
+        }
+        let Memory { bound, saved, .. } = &mut self.memory;
+        bound.begin(&self.elements, &self.bodies, self.stepped);
+        let start = &mut saved[0];
+        start.bodies.clone_from(&self.bodies);
+        start.elements.clone_from(&self.elements);
         let mut outcome = controller.drive(self, time, accuracy);
         self.memory.controller = controller;
         outcome.method = Method::ClosedForm;
+        self.keep_bound(time);
         if alone {
             return outcome;
         }
-        self.keep_bound(time);
         let (iterates, converged) = self.memory.network.take_effort();
         outcome.method = if iterates {
             Method::Iterative
@@ -77,7 +86,7 @@ impl Component {
         outcome
     }
 
-    /// Takes what a network has gained in energy; where that cannot be had from its motion, the step is
+    /// Takes what was gained in energy; where that cannot be had from its motion, the step is
     /// taken again in the way that only loses energy.
     fn keep_bound(&mut self, time: f64) {
         let mut bound = std::mem::take(&mut self.memory.bound);

@@ -2,7 +2,8 @@
 
 use super::body::{Body, Spin};
 use super::delivery::Schedule;
-use super::element::{Element, End};
+use super::element::{Element, End, Path};
+use super::guide::Guide;
 use super::step::Component;
 use super::tolerance::Accuracy;
 use bevy::math::{DQuat, DVec3};
@@ -42,16 +43,18 @@ fn element(a: End, b: End, stiffness: f64, damping: f64, rest_length: f64) -> El
         stiffness,
         damping,
         rest_length,
+        guide: Guide::Centres,
+        law: None,
+        angle: 0.0,
+        heat: 0.0,
+        work: 0.0,
         direction: None,
         stiff_damper: false,
     }
 }
 
 fn fixed(position: DVec3) -> End {
-    End::Path {
-        position,
-        velocity: DVec3::ZERO,
-    }
+    End::Path(Path::straight(position, DVec3::ZERO))
 }
 
 fn held(index: usize, arm: DVec3) -> End {

@@ -12,6 +12,7 @@ mod spring;
 mod spring_damper;
 mod table;
 mod torsion;
+mod tuning;
 
 pub use anchors::Anchors;
 pub use axis::SpringAxis;
@@ -26,3 +27,4 @@ pub use spring::Spring;
 pub use spring_damper::SpringDamper;
 pub use table::ForceTable;
 pub use torsion::{TorsionDamper, TorsionSpring, TorsionSpringDamper};
+pub use tuning::{SpringTuning, wire_stiffness};

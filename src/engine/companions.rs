@@ -22,6 +22,8 @@ pub(crate) struct Beside {
     preload: Option<&'static Preload>,
     max_force: Option<&'static MaxForce>,
     axis: Option<&'static SpringAxis>,
+    breakable: Option<&'static Breakable>,
+    tuning: Option<&'static SpringTuning>,
 }
 
 type AnyBeside = Or<(
@@ -34,6 +36,8 @@ type AnyBeside = Or<(
     With<Preload>,
     With<MaxForce>,
     With<SpringAxis>,
+    With<Breakable>,
+    With<SpringTuning>,
 )>;
 
 type ChangedBeside = Or<(
@@ -46,6 +50,8 @@ type ChangedBeside = Or<(
     Changed<Preload>,
     Changed<MaxForce>,
     Changed<SpringAxis>,
+    Changed<Breakable>,
+    Changed<SpringTuning>,
 )>;
 
 /// Finds them, and those that changed or went.
@@ -92,6 +98,11 @@ impl Companions<'_, '_> {
         self.touched.extend(gone.8.read());
     }
 
+    /// How an element is to be tuned once its ends are known, if it is.
+    pub(super) fn tuning(&self, entity: Entity) -> Option<SpringTuning> {
+        self.all.get(entity).ok()?.tuning.copied()
+    }
+
     /// What stands beside an element, as its law.
     pub(super) fn of(&self, entity: Entity, p: &Parameters) -> Result<Companion, Fault> {
         let mut guide = p.guide();
@@ -99,6 +110,11 @@ impl Companions<'_, '_> {
             p.check_rest(guide)?;
             return Ok(Companion { law: None, guide });
         };
+        if let Some(limit) = beside.breakable
+            && (limit.force.is_nan() || limit.length.is_nan())
+        {
+            return Err(Fault::new("Breakable", "is NaN"));
+        }
         if let Some(axis) = beside.axis {
             if guide != Guide::Centres {
                 return Err(Fault::new("SpringAxis", "stands on a torsion element"));
@@ -166,7 +182,10 @@ impl BesideItem<'_, '_> {
         if p.names.stiffness.is_empty() {
             return match (self.spring, self.own_spring) {
                 (None, None) => Ok(both([0.0; 3])),
-                _ => Err(Fault::new("SpringLaw", "stands on a damper without a spring")),
+                _ => Err(Fault::new(
+                    "SpringLaw",
+                    "stands on a damper without a spring",
+                )),
             };
         }
         let stiffness = f64::from(p.stiffness);
@@ -190,7 +209,10 @@ impl BesideItem<'_, '_> {
         if p.names.damping.is_empty() {
             return match (self.damping, self.own_damping) {
                 (None, None) => Ok(DragLaw::Linear(0.0)),
-                _ => Err(Fault::new("DampingLaw", "stands on a spring without a damper")),
+                _ => Err(Fault::new(
+                    "DampingLaw",
+                    "stands on a spring without a damper",
+                )),
             };
         }
         match (self.damping, self.own_damping) {
@@ -292,6 +314,10 @@ fn check_travel(travel: &SpringTravel, guide: Guide) -> Result<([f64; 2], Stop),
     }
     // A distance is never below zero.
     let none = guide == Guide::Centres && min == 0.0;
-    let least = if none { f64::NEG_INFINITY } else { f64::from(min) };
+    let least = if none {
+        f64::NEG_INFINITY
+    } else {
+        f64::from(min)
+    };
     Ok(([least, f64::from(max)], stop))
 }

@@ -2,8 +2,8 @@
 
 use super::body::is_movable;
 use super::check::{Fault, Parameters};
-use super::ends::{Ends, Place};
 use super::companions::{Companion, Companions};
+use super::ends::{Ends, Place};
 use super::parts::{IsElement, Parts};
 use super::prepare::report;
 use super::scene::{BodyRow, ElementRow, Held, Memory, Scene};
@@ -27,11 +27,12 @@ pub(crate) struct Finder<'w, 's> {
             &'static RapierContextColliders,
         ),
     >,
+    pub(super) configurations: Query<'w, 's, &'static RapierConfiguration>,
 }
 
 /// Both ends of a sound element.
 pub(super) struct Found {
-    places: [Place; 2],
+    pub(super) places: [Place; 2],
     /// Whether elements can move the body at each end, and if so whether this one turns it.
     turns: [Option<bool>; 2],
 }
@@ -72,7 +73,10 @@ impl Finder<'_, '_> {
             let field = parameters.names.ends[i];
             let alone = matches!(place, Place::Point(_));
             if alone && (parameters.twist.is_some() || (guide.turns() && i == 0)) {
-                return Err(Fault::new(field, "is not a rigid body, so it has no frame to turn in"));
+                return Err(Fault::new(
+                    field,
+                    "is not a rigid body, so it has no frame to turn in",
+                ));
             }
             turns[i] = self.turns(place, field, modified)?;
             if let Some(turns) = &mut turns[i] {
@@ -170,13 +174,22 @@ impl Scene {
                 }
                 row.change(|row| row.parameters = parameters);
                 parameters.check()?;
-                let companion = companions.of(entity, &parameters)?;
+                let mut companion = companions.of(entity, &parameters)?;
                 if companion.guide != row.companion.guide {
                     row.memory.places = [None; 2];
                 }
                 let guide = companion.guide;
+                let found = finder.find(&parameters, guide, &mut row.memory.scales, modified)?;
+                if let Some(tuning) = companions.tuning(entity) {
+                    let mut tuned = parameters;
+                    finder.tune(tuning, guide, &found.places, &mut tuned)?;
+                    tuned.check()?;
+                    companion = companions.of(entity, &tuned)?;
+                    row.parameters = tuned;
+                    row.tuned = true;
+                }
                 row.change(|row| row.companion = companion);
-                finder.find(&parameters, guide, &mut row.memory.scales, modified)
+                Ok(found)
             });
             row.changed |= parts.is_changed() || companions.touched.contains(&entity);
             row.fault = found.as_ref().err().copied();
@@ -260,6 +273,7 @@ impl ElementRow {
             said: None,
             changed: true,
             captured: false,
+            tuned: false,
             active: false,
             memory: Memory::default(),
             inverse_mass: 0.0,

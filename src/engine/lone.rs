@@ -156,8 +156,16 @@ impl Step<'_> {
             rounding,
         };
         let start = Separation::new(d, b.velocity - a.velocity, row.memory.direction);
-        let damped = row.companion.law.is_some() || row.parameters.damping > 0.0;
-        let before = if damped { row.energy_of(&pair, &start) } else { 0.0 };
+        // What is lost is what its damper took: exact for a linear one at any damping.
+        let damped = match &row.companion.law {
+            Some(law) => law.damps(),
+            None => row.parameters.damping > 0.0,
+        };
+        let before = if damped {
+            row.energy_of(&pair, &start)
+        } else {
+            0.0
+        };
         let memory = &mut row.memory;
         let (outcome, end) = match &row.companion.law {
             None => {

@@ -5,9 +5,9 @@ use super::held::{Context, observe};
 use super::parts::IsElement;
 use super::prepare::report;
 use super::scene::{BodyRow, ElementRow, Held, Scene};
-use crate::element::{Spring, SpringDamper, TorsionSpring, TorsionSpringDamper};
 use crate::dynamics::element::{End, Path};
 use crate::dynamics::guide::Guide;
+use crate::element::{Spring, SpringDamper, SpringTuning, TorsionSpring, TorsionSpringDamper};
 use crate::readout::SpringReadout;
 use bevy::math::{DQuat, DVec3};
 use bevy::prelude::*;
@@ -46,8 +46,12 @@ pub(crate) fn measure(
     let mut show = |row: &mut ElementRow, readout: &mut Mut<SpringReadout>| {
         if let Some(points) = row.see(time, &scene.bodies, &sets) {
             report(row, &mut commands);
-            if std::mem::take(&mut row.captured) && row.passing.is_none() {
-                write_back(row, &mut springs);
+            let tuned = std::mem::take(&mut row.tuned);
+            if (std::mem::take(&mut row.captured) && row.passing.is_none()) || tuned {
+                write_back(row, tuned, &mut springs);
+            }
+            if tuned {
+                commands.entity(row.entity).try_remove::<SpringTuning>();
             }
             let seen = row.extent(points, time, &scene.bodies, &sets);
             row.memory.length = seen.0;
@@ -76,25 +80,36 @@ pub(crate) fn measure(
     }
 }
 
-/// Writes a captured rest length into the element's component.
-fn write_back(
-    row: &ElementRow,
-    springs: &mut Query<Springs, IsElement>,
-) {
+/// Writes a captured rest length into the element's component, and coefficients that were worked out.
+fn write_back(row: &ElementRow, tuned: bool, springs: &mut Query<Springs, IsElement>) {
     let Ok((spring, pair, torsion, torsion_pair)) = springs.get_mut(row.entity) else {
         return;
     };
-    if let Some(mut spring) = spring {
-        spring.rest_length = row.parameters.rest_length;
+    let p = &row.parameters;
+    let write = |rest: &mut Option<f32>, stiffness: &mut f32, damping: Option<&mut f32>| {
+        *rest = p.rest_length;
+        if tuned {
+            *stiffness = p.stiffness;
+            if let Some(damping) = damping {
+                *damping = p.damping;
+            }
+        }
+    };
+    if let Some(mut s) = spring {
+        let s = &mut *s;
+        write(&mut s.rest_length, &mut s.stiffness, None);
     }
-    if let Some(mut pair) = pair {
-        pair.rest_length = row.parameters.rest_length;
+    if let Some(mut s) = pair {
+        let s = &mut *s;
+        write(&mut s.rest_length, &mut s.stiffness, Some(&mut s.damping));
     }
-    if let Some(mut torsion) = torsion {
-        torsion.rest_angle = row.parameters.rest_length;
+    if let Some(mut s) = torsion {
+        let s = &mut *s;
+        write(&mut s.rest_angle, &mut s.stiffness, None);
     }
-    if let Some(mut pair) = torsion_pair {
-        pair.rest_angle = row.parameters.rest_length;
+    if let Some(mut s) = torsion_pair {
+        let s = &mut *s;
+        write(&mut s.rest_angle, &mut s.stiffness, Some(&mut s.damping));
     }
 }
 

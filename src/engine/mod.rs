@@ -6,6 +6,7 @@
 
 mod assembly;
 mod body;
+mod breaking;
 mod check;
 mod companions;
 mod ends;
@@ -26,8 +27,10 @@ mod sleep;
 mod solve;
 mod step;
 mod timestep;
+mod tune;
 mod watch;
 
+pub(crate) use breaking::break_overloaded;
 pub use forces::SpringLoad;
 pub(crate) use forces::read_users;
 pub(crate) use measure::measure;

@@ -48,7 +48,13 @@ macro_rules! names {
 
 const SPRING: Names = names!("Spring", "::stiffness", "", "::rest_length", "");
 const DAMPER: Names = names!("Damper", "", "::damping", "", "");
-const PAIR: Names = names!("SpringDamper", "::stiffness", "::damping", "::rest_length", "");
+const PAIR: Names = names!(
+    "SpringDamper",
+    "::stiffness",
+    "::damping",
+    "::rest_length",
+    ""
+);
 const TORSION_SPRING: Names = names!("TorsionSpring", "::stiffness", "", "::rest_angle", "::axis");
 const TORSION_DAMPER: Names = names!("TorsionDamper", "", "::damping", "", "::axis");
 const TORSION_PAIR: Names = names!(
@@ -115,7 +121,14 @@ impl PartsItem<'_, '_> {
         }
         if let Some(p) = &self.torsion_pair {
             let (ends, axis) = ([p.body_a, p.body_b], Some(p.axis));
-            add(ends, p.stiffness, p.damping, p.rest_angle, axis, &TORSION_PAIR);
+            add(
+                ends,
+                p.stiffness,
+                p.damping,
+                p.rest_angle,
+                axis,
+                &TORSION_PAIR,
+            );
         }
         match (found, count) {
             (Some(found), 1) => Ok(found),

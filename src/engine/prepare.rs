@@ -97,7 +97,10 @@ fn refresh(
                 return false;
             };
             let (companion, parameters) = new;
-            if !parameters.is_held_like(&row.parameters) || companion.guide != row.companion.guide {
+            if !parameters.is_held_like(&row.parameters)
+                || companion.guide != row.companion.guide
+                || companions.tuning(row.entity).is_some()
+            {
                 return false;
             }
             row.change(|row| {

@@ -66,6 +66,8 @@ pub(super) struct ElementRow {
     pub changed: bool,
     /// The rest length was found in this tick and has to be written back.
     pub captured: bool,
+    /// The coefficients were worked out in this tick and have to be written back.
+    pub tuned: bool,
     /// Whether some body of it was stepped, or none can be: then there is something to read out.
     pub active: bool,
     pub memory: Memory,

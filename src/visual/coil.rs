@@ -89,12 +89,14 @@ impl Coil {
         let turns = active_turns + HelixEnds::ClosedGround.dead_turns();
         let coil = Self::new(0.5 * coil_diameter, 0.5 * wire_diameter, turns);
         coil.helix(1.0).check()?;
-        let (d, big) = (f64::from(wire_diameter), f64::from(coil_diameter));
-        let stiffness =
-            f64::from(shear_modulus) * d.powi(4) / (8.0 * big.powi(3) * f64::from(active_turns));
         Ok(WoundCoil {
             coil,
-            stiffness: stiffness as f32,
+            stiffness: crate::wire_stiffness(
+                wire_diameter,
+                coil_diameter,
+                active_turns,
+                shear_modulus,
+            ),
             solid_length: coil.solid_length(),
         })
     }

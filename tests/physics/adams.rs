@@ -15,6 +15,8 @@ struct Case {
     rest_length: f32,
     stiffness: f32,
     damping: f32,
+    /// N/m².
+    quadratic: f32,
 }
 
 const CASE_01: Case = Case {
@@ -25,6 +27,7 @@ const CASE_01: Case = Case {
     rest_length: 0.0,
     stiffness: 10.0,
     damping: 0.5,
+    quadratic: 0.0,
 };
 
 /// Case 3 with the linear part of its law.
@@ -36,6 +39,14 @@ const CASE_03: Case = Case {
     rest_length: 2.0,
     stiffness: 50.0,
     damping: 5.0,
+    quadratic: 0.0,
+};
+
+/// Case 3 as it is.
+const CASE_03_QUADRATIC: Case = Case {
+    file: include_str!("../data/tsda_case03.csv"),
+    quadratic: 10.0,
+    ..CASE_03
 };
 
 /// RMS position error over 5 s, m, and the largest angle between orientations, rad.
@@ -50,13 +61,17 @@ fn errors(case: &Case, plugin: CoiloverPlugin) -> (f64, f64) {
     );
     let ground = lab.point(case.ground);
     let body = lab.spawn(brick(1.0, Vec3::new(0.04, 0.1, 0.1), case.center));
-    lab.spawn((
+    let element = lab.spawn((
         SpringDamper::new(ground, body)
             .with_stiffness(case.stiffness)
             .with_damping(case.damping)
             .with_rest_length(case.rest_length),
         Anchors::new(Vec3::ZERO, case.anchor),
     ));
+    if case.quadratic > 0.0 {
+        let law = SpringLaw::polynomial(case.stiffness, case.quadratic, 0.0);
+        lab.app.world_mut().entity_mut(element).insert(law);
+    }
     let rows = reference(case.file);
     let (mut square, mut count, mut turned) = (0.0, 0.0, 0.0_f64);
     for row in rows.iter().step_by(4).skip(1) {
@@ -90,4 +105,9 @@ fn case_1_zero_length_and_zero_rest_length() {
 #[test]
 fn case_3_off_centre_anchor_with_the_linear_law() {
     check("Chrono case 3, linear", &CASE_03);
+}
+
+#[test]
+fn case_3_with_its_quadratic_law() {
+    check("Chrono case 3", &CASE_03_QUADRATIC);
 }

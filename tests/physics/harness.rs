@@ -123,6 +123,13 @@ impl Lab {
         self.spawn(body(mass, at))
     }
 
+    /// A body that starts with a velocity.
+    pub fn moving(&mut self, body: impl Bundle, velocity: Velocity) -> Entity {
+        let entity = self.spawn(body);
+        self.app.world_mut().entity_mut(entity).insert(velocity);
+        entity
+    }
+
     /// A plain entity to hold on to.
     pub fn point(&mut self, at: Vec3) -> Entity {
         self.spawn(Transform::from_translation(at))

@@ -15,6 +15,7 @@ mod engine_settings;
 mod free_fall;
 mod hard_cases;
 mod joints;
+mod laws;
 mod messages;
 mod natural_frequency;
 mod networks;

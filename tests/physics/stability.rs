@@ -317,14 +317,14 @@ impl Net {
         let (mut worst, mut far) = (0.0_f64, 0.0_f64);
         for ((mean, wanted), link) in mean.iter().zip(wanted).zip(&self.links) {
             // The engine adds to a position four times a step, and half a rounding can be lost each time;
-            // a length has two positions.
+            // a length has two positions; half as much again for the trembling that comes of it.
             far = far.max(
                 settled[link.0]
                     .abs()
                     .max(settled[link.1].abs())
                     .max_element(),
             );
-            let rounding = 4.0 * f64::from(f32::EPSILON) * far / f64::from(link.2);
+            let rounding = 6.0 * f64::from(f32::EPSILON) * far / f64::from(link.2);
             worst = worst.max(((mean - wanted).abs() - rounding).max(0.0));
         }
         let masses = self.points.iter().filter_map(|(_, mass)| *mass);

@@ -229,6 +229,11 @@ impl Law {
         ]
     }
 
+    /// Whether it can take energy at all.
+    pub(crate) fn damps(&self) -> bool {
+        self.drag.linear() != Some(0.0) || self.stop.damping > 0.0
+    }
+
     /// Tension that damping adds.
     pub(crate) fn drag(&self, length: f64, rest_length: f64, rate: f64) -> Drag {
         let mut sum = Drag::default();
@@ -238,8 +243,16 @@ impl Law {
         let slack = one_way && spring == 0.0 && !self.springless;
         if !slack {
             sum = self.drag.at(rate);
-            let least = if self.limits[0] == 0.0 { 0.0 } else { -self.most };
-            let greatest = if self.limits[1] == 0.0 { 0.0 } else { self.most };
+            let least = if self.limits[0] == 0.0 {
+                0.0
+            } else {
+                -self.most
+            };
+            let greatest = if self.limits[1] == 0.0 {
+                0.0
+            } else {
+                self.most
+            };
             let total = spring + sum.force;
             if total < least || total > greatest {
                 let clamped = total.clamp(least, greatest) - spring;
@@ -289,7 +302,13 @@ impl Law {
             rest_length + self.at_limits[0],
             rest_length + self.at_limits[1],
         ]
-        .map(|length| if length.is_finite() { length.clamp(low, high) } else { low });
+        .map(|length| {
+            if length.is_finite() {
+                length.clamp(low, high)
+            } else {
+                low
+            }
+        });
         [low, 0.5 * (low + high), high]
             .into_iter()
             .chain(inner)

@@ -44,10 +44,7 @@ impl Table {
             .map(|(p, m)| {
                 let width = p[1].0 - p[0].0;
                 let rise = p[1].1 - p[0].1;
-                let (b, c) = (
-                    width * m[0],
-                    3.0 * rise - width * (2.0 * m[0] + m[1]),
-                );
+                let (b, c) = (width * m[0], 3.0 * rise - width * (2.0 * m[0] + m[1]));
                 let piece = Piece {
                     from: p[0].0,
                     width,
@@ -99,10 +96,7 @@ fn slopes(points: &[(f64, f64)]) -> Vec<f64> {
                 if left * right <= 0.0 {
                     return 0.0;
                 }
-                let (w1, w2) = (
-                    2.0 * width(i) + width(i - 1),
-                    width(i) + 2.0 * width(i - 1),
-                );
+                let (w1, w2) = (2.0 * width(i) + width(i - 1), width(i) + 2.0 * width(i - 1));
                 (w1 + w2) / (w1 / left + w2 / right)
             }
         })
@@ -115,7 +109,13 @@ mod tests {
 
     #[test]
     fn the_curve_meets_its_points_rises_everywhere_and_goes_straight_on() {
-        let points = [(-1.0, -4.0), (-0.2, -4.0), (0.0, 0.0), (0.1, 3.0), (2.0, 3.5)];
+        let points = [
+            (-1.0, -4.0),
+            (-0.2, -4.0),
+            (0.0, 0.0),
+            (0.1, 3.0),
+            (2.0, 3.5),
+        ];
         let table = Table::new(&points);
         for (x, y) in points {
             assert!((table.at(x)[0] - y).abs() < 1e-12, "at {x}");

@@ -43,7 +43,11 @@ fn laws() -> Vec<Law> {
                     spring,
                     preload,
                     limits,
-                    most: if limits[0].is_finite() { 12.0 } else { f64::INFINITY },
+                    most: if limits[0].is_finite() {
+                        12.0
+                    } else {
+                        f64::INFINITY
+                    },
                     travel: [0.6, 1.4],
                     stop,
                     ..recipe([0.0; 3], [0.0; 3])
@@ -61,14 +65,20 @@ fn force_is_the_slope_of_the_energy_and_rises_everywhere() {
         for i in 1..400 {
             let length = 0.005 * f64::from(i);
             let now = law.elastic(length, 1.0);
-            assert!(now.force >= last - 1e-9 && now.stiffness >= 0.0, "{law:?} at {length}");
+            assert!(
+                now.force >= last - 1e-9 && now.stiffness >= 0.0,
+                "{law:?} at {length}"
+            );
             assert!(now.energy >= -1e-9, "{law:?}: {} J at {length}", now.energy);
             last = now.force;
             let h = 1e-6;
             let energy = |l| law.elastic(l, 1.0).energy;
             let slope = (energy(length + h) - energy(length - h)) / (2.0 * h);
             let near = 1e-6 * (1.0 + now.force.abs()) + h * now.stiffness.max(600.0);
-            assert!((slope - now.force).abs() < near, "{law:?} at {length}: {slope} {now:?}");
+            assert!(
+                (slope - now.force).abs() < near,
+                "{law:?} at {length}: {slope} {now:?}"
+            );
         }
     }
 }
@@ -78,17 +88,34 @@ fn damping_only_takes() {
     for mut law in laws() {
         for drag in [
             DragLaw::Linear(3.0),
-            DragLaw::Sided { bump: 1.0, rebound: 3.0 },
-            DragLaw::Quadratic { linear: 1.0, quadratic: 5.0 },
-            DragLaw::BlowOff { damping: 9.0, knee: 0.2, beyond: 1.0 },
-            DragLaw::Table(Arc::new(Table::new(&[(-1.0, -9.0), (0.0, 0.0), (1.0, 4.0)]))),
+            DragLaw::Sided {
+                bump: 1.0,
+                rebound: 3.0,
+            },
+            DragLaw::Quadratic {
+                linear: 1.0,
+                quadratic: 5.0,
+            },
+            DragLaw::BlowOff {
+                damping: 9.0,
+                knee: 0.2,
+                beyond: 1.0,
+            },
+            DragLaw::Table(Arc::new(Table::new(&[
+                (-1.0, -9.0),
+                (0.0, 0.0),
+                (1.0, 4.0),
+            ]))),
         ] {
             law.drag = drag;
             for i in 1..60 {
                 for j in -20..=20 {
                     let rate = 0.2 * f64::from(j);
                     let drag = law.drag(0.03 * f64::from(i), 1.0, rate);
-                    assert!(drag.force * rate >= 0.0 && drag.slope >= 0.0, "{law:?} {rate}");
+                    assert!(
+                        drag.force * rate >= 0.0 && drag.slope >= 0.0,
+                        "{law:?} {rate}"
+                    );
                 }
             }
         }
@@ -97,7 +124,10 @@ fn damping_only_takes() {
 
 #[test]
 fn ropes_never_push_and_buffers_never_pull() {
-    for (limits, sign) in [([0.0, f64::INFINITY], 1.0), ([f64::NEG_INFINITY, 0.0], -1.0)] {
+    for (limits, sign) in [
+        ([0.0, f64::INFINITY], 1.0),
+        ([f64::NEG_INFINITY, 0.0], -1.0),
+    ] {
         let law = Law::new(Recipe {
             limits,
             ..recipe([40.0, 0.0, 10.0], [40.0, 0.0, 10.0])

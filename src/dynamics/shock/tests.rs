@@ -49,23 +49,30 @@ fn period(law: &Law, step: f64, count: u32, periods: f64) -> f64 {
     let mut last = (0.0, 1.0, 0.0);
     let mut crossings = Vec::new();
     let start = [DVec3::new(11.0, 0.0, 0.0), DVec3::ZERO];
-    run(law, &pair(10.0, DVec3::ZERO), start, [step, periods], count, |t, d, v| {
-        let now = (t, d.x - 10.0, v.x);
-        if last.1 < 0.0 && now.1 >= 0.0 {
-            let (mut low, mut high) = (0.0, 1.0);
-            for _ in 0..60 {
-                let s = 0.5 * (low + high);
-                let h = t - last.0;
-                let y = (1.0 + 2.0 * s) * (1.0 - s) * (1.0 - s) * last.1
-                    + s * (1.0 - s) * (1.0 - s) * h * last.2
-                    + s * s * (3.0 - 2.0 * s) * now.1
-                    + s * s * (s - 1.0) * h * now.2;
-                if y < 0.0 { low = s } else { high = s }
+    run(
+        law,
+        &pair(10.0, DVec3::ZERO),
+        start,
+        [step, periods],
+        count,
+        |t, d, v| {
+            let now = (t, d.x - 10.0, v.x);
+            if last.1 < 0.0 && now.1 >= 0.0 {
+                let (mut low, mut high) = (0.0, 1.0);
+                for _ in 0..60 {
+                    let s = 0.5 * (low + high);
+                    let h = t - last.0;
+                    let y = (1.0 + 2.0 * s) * (1.0 - s) * (1.0 - s) * last.1
+                        + s * (1.0 - s) * (1.0 - s) * h * last.2
+                        + s * s * (3.0 - 2.0 * s) * now.1
+                        + s * s * (s - 1.0) * h * now.2;
+                    if y < 0.0 { low = s } else { high = s }
+                }
+                crossings.push(last.0 + low * (t - last.0));
             }
-            crossings.push(last.0 + low * (t - last.0));
-        }
-        last = now;
-    });
+            last = now;
+        },
+    );
     (crossings[crossings.len() - 1] - crossings[0]) / (crossings.len() - 1) as f64
 }
 

@@ -1,0 +1,147 @@
+//! Laws that make no sense are told once, and their elements are inert.
+
+use crate::harness::*;
+use crate::messages::Log;
+use bevy::prelude::*;
+use bevy_coilover::prelude::*;
+
+/// A spoilt element and a sound neighbour; returns what was said of the element.
+fn spoilt(companion: impl Bundle) -> (Option<SpringFault>, usize) {
+    let mut lab = Lab::weightless();
+    let hook = lab.point(Vec3::ZERO);
+    let body = lab.body(1.0, Vec3::X * 1.3);
+    let other = lab.body(1.0, Vec3::Y * 1.3);
+    let pair = |body| {
+        SpringDamper::new(hook, body)
+            .with_stiffness(40.0)
+            .with_damping(1.0)
+            .with_rest_length(1.0)
+    };
+    let element = lab.spawn((pair(body), companion));
+    lab.spawn(pair(other));
+    let log = Log::capture();
+    lab.run(0.5);
+    let naming = format!("{element}: ");
+    let said = log.take().iter().filter(|m| m.starts_with(&naming)).count();
+    assert!(lab.velocity(other).length() > 0.01, "the neighbour swings");
+    assert!(lab.position(body).is_finite() && lab.velocity(body).is_finite());
+    let fault = lab.app.world().get::<SpringFault>(element).cloned();
+    if fault.is_some() {
+        assert!(lab.velocity(body).length() < 1e-6, "it is inert");
+    }
+    (fault, said)
+}
+
+fn check(companion: impl Bundle, field: &str, reason: &str) {
+    let (fault, said) = spoilt(companion);
+    let fault = fault.unwrap_or_else(|| panic!("{field}: nothing was said"));
+    assert_eq!(fault.field, field, "{fault}");
+    assert!(fault.reason.contains(reason), "{fault}");
+    assert_eq!(said, 1, "{field}");
+}
+
+#[test]
+fn tables_that_are_none() {
+    let table = |points: &[(f32, f32)]| SpringLaw::table(points.iter().copied());
+    check(table(&[]), "SpringLaw::Table", "fewer than two");
+    check(table(&[(0.0, 1.0)]), "SpringLaw::Table", "fewer than two");
+    check(
+        table(&[(0.0, 0.0), (1.0, f32::NAN)]),
+        "SpringLaw::Table",
+        "not finite",
+    );
+    check(
+        table(&[(0.0, 0.0), (0.0, 1.0)]),
+        "SpringLaw::Table",
+        "rise strictly",
+    );
+    check(
+        table(&[(0.0, 0.0), (1.0, 2.0), (2.0, 1.0)]),
+        "SpringLaw::Table",
+        "falls",
+    );
+    check(
+        DampingLaw::table([(-1.0, -1.0), (1.0, 2.0)]),
+        "DampingLaw::Table",
+        "at rest",
+    );
+}
+
+#[test]
+fn numbers_out_of_range() {
+    check(
+        SpringLaw::polynomial(1.0, -2.0, 0.0),
+        "Polynomial::quadratic",
+        "negative",
+    );
+    check(
+        DampingLaw::sided(1.0, f32::INFINITY),
+        "DampingLaw::Sided::rebound",
+        "infinite",
+    );
+    check(
+        SpringTravel::new(0.5, 0.4, 100.0),
+        "SpringTravel::max_length",
+        "above min_length",
+    );
+    check(
+        SpringTravel::new(-0.5, 2.0, 100.0),
+        "SpringTravel::min_length",
+        "negative",
+    );
+    check(
+        SpringTravel::new(0.5, 2.0, -1.0),
+        "SpringTravel::stop_stiffness",
+        "negative",
+    );
+    check(MaxForce(0.0), "MaxForce", "above zero");
+    check(MaxForce(f32::NAN), "MaxForce", "above zero");
+    check(Preload(f32::NAN), "Preload", "NaN");
+    check(SpringAxis::World(Vec3::ZERO), "SpringAxis::World", "zero");
+    check(SpringAxis::BodyA(Vec3::X), "SpringDamper::body_a", "frame");
+    check(Breakable::at_force(f32::NAN), "Breakable", "NaN");
+    check(
+        SpringTuning::frequency(-1.0, 0.1),
+        "SpringTuning",
+        "negative",
+    );
+}
+
+#[test]
+fn a_function_of_ones_own_that_gives_nan() {
+    check(CustomSpringLaw::new(|_| f64::NAN), "ForceLaw", "NaN");
+    // Sound where it is, NaN where it goes: bounded, and said once it is there.
+    let (fault, said) = spoilt(CustomSpringLaw::new(|x: f64| {
+        if x < 0.2 { f64::NAN } else { 100.0 * x }
+    }));
+    assert_eq!(said, 1, "{fault:?}");
+}
+
+#[test]
+fn two_laws_at_once() {
+    check(
+        (SpringLaw::Cubic, CustomSpringLaw::new(|x: f64| x)),
+        "SpringLaw",
+        "together",
+    );
+}
+
+#[test]
+fn a_law_that_is_mended_or_taken_away_acts_again() {
+    let mut lab = Lab::weightless();
+    let hook = lab.point(Vec3::ZERO);
+    let body = lab.body(1.0, Vec3::X * 1.3);
+    let spring = Spring::new(hook, body)
+        .with_stiffness(40.0)
+        .with_rest_length(1.0);
+    let element = lab.spawn((spring, SpringLaw::table([])));
+    lab.run(0.2);
+    assert!(lab.velocity(body).length() < 1e-6);
+    lab.app
+        .world_mut()
+        .entity_mut(element)
+        .remove::<SpringLaw>();
+    lab.run(0.2);
+    assert!(lab.velocity(body).length() > 0.1);
+    assert!(lab.app.world().get::<SpringFault>(element).is_none());
+}

@@ -1,0 +1,66 @@
+//! What is pulled too hard breaks, and says so.
+
+use crate::harness::*;
+use bevy::ecs::entity_disabling::Disabled;
+use bevy::prelude::*;
+use bevy_coilover::prelude::*;
+
+#[derive(Resource, Default)]
+struct Broken(Vec<SpringBroke>);
+
+fn rope(limit: Breakable) -> (Lab, Entity, Entity) {
+    let mut lab = Lab::new();
+    lab.app
+        .init_resource::<Broken>()
+        .add_observer(|broke: On<SpringBroke>, mut all: ResMut<Broken>| all.0.push(*broke));
+    let hook = lab.point(Vec3::ZERO);
+    let body = lab.body(1.0, Vec3::NEG_Y);
+    let spring = Spring::new(hook, body)
+        .with_stiffness(100.0)
+        .with_rest_length(1.0);
+    let element = lab.spawn((spring, limit));
+    (lab, body, element)
+}
+
+#[test]
+fn at_its_force_it_breaks_once_and_the_body_falls() {
+    // Let go it swings to 2 m g.
+    let (mut lab, body, element) = rope(Breakable::at_force(15.0));
+    lab.run(2.0);
+    let broken = &lab.app.world().resource::<Broken>().0;
+    assert_eq!(broken.len(), 1, "{broken:?}");
+    assert_eq!(broken[0].entity, element);
+    assert!(
+        broken[0].force > 15.0 && broken[0].force < 17.0,
+        "{broken:?}"
+    );
+    assert!((broken[0].length - 1.0 - broken[0].force / 100.0).abs() < 1e-5);
+    assert!(lab.app.world().get_entity(element).is_err());
+    assert!(lab.position(body).y < -5.0);
+}
+
+#[test]
+fn at_its_length_it_is_disabled_and_can_be_mended() {
+    let (mut lab, body, element) = rope(Breakable::at_length(1.15).disabling());
+    lab.run(0.5);
+    assert_eq!(lab.app.world().resource::<Broken>().0.len(), 1);
+    assert!(lab.app.world().get::<Disabled>(element).is_some());
+    let speed = lab.velocity(body).y;
+    lab.run(0.1);
+    assert!((lab.velocity(body).y - speed + 0.1 * GRAVITY as f32).abs() < 1e-3);
+    lab.app
+        .world_mut()
+        .entity_mut(element)
+        .remove::<(Disabled, Breakable)>();
+    let before = lab.velocity(body).y;
+    lab.run(0.1);
+    assert!(lab.velocity(body).y > before, "it pulls again");
+}
+
+#[test]
+fn a_stronger_one_holds() {
+    let (mut lab, _, element) = rope(Breakable::at_force(21.0));
+    lab.run(5.0);
+    assert!(lab.app.world().resource::<Broken>().0.is_empty());
+    assert!(lab.app.world().get::<Breakable>(element).is_some());
+}

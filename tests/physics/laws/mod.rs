@@ -1,0 +1,12 @@
+//! Do springs with a law of their own move as the law says?
+
+mod axis;
+mod bad;
+mod breaking;
+mod ledger;
+mod one_way;
+mod random;
+mod shock;
+mod smooth;
+mod torsion;
+mod tuning;

@@ -1,0 +1,95 @@
+//! Ropes that only pull, buffers that only push.
+
+use crate::harness::*;
+use bevy::prelude::*;
+use bevy_coilover::prelude::*;
+use bevy_rapier3d::prelude::*;
+
+#[test]
+fn a_bungee_is_a_free_fall_while_slack_and_loses_nothing_when_it_goes_taut() {
+    let mut lab = Lab::new();
+    let bridge = lab.point(Vec3::ZERO);
+    let jumper = lab.body(70.0, Vec3::NEG_Y * 0.5);
+    let rope = Spring::new(bridge, jumper)
+        .with_stiffness(150.0)
+        .with_rest_length(10.0);
+    lab.spawn((rope, SpringAction::Pull));
+    let energy = |lab: &Lab| {
+        let (y, v) = (
+            f64::from(lab.position(jumper).y),
+            f64::from(lab.velocity(jumper).y),
+        );
+        let stretch = (-y - 10.0).max(0.0);
+        70.0 * (GRAVITY * y + 0.5 * v * v) + 75.0 * stretch * stretch
+    };
+    // Nothing of the jump is lost: measured from where she hangs at rest.
+    let sag = 70.0 * GRAVITY / 150.0;
+    let lowest = -70.0 * GRAVITY * (10.0 + sag) + 75.0 * sag * sag;
+    let first = energy(&lab) - lowest;
+    let (mut bounces, mut rising, mut worst, mut worst_fall) = (0, false, 0.0_f64, 0.0_f64);
+    let mut last: Option<(f64, f64)> = None;
+    while bounces < 20 {
+        lab.tick();
+        let (y, v) = (
+            f64::from(lab.position(jumper).y),
+            f64::from(lab.velocity(jumper).y),
+        );
+        worst = worst.max(((energy(&lab) - lowest) / first - 1.0).abs());
+        if let Some((before_y, before_v)) = last
+            && before_y > -9.8
+            && y > -9.8
+        {
+            let dt = lab.dt();
+            let fallen = before_y + dt * before_v - 0.5 * GRAVITY * dt * dt;
+            worst_fall = worst_fall.max((y - fallen).abs());
+        }
+        last = Some((y, v));
+        bounces += usize::from(rising && v < 0.0);
+        rising = v > 0.0;
+    }
+    println!(
+        "bungee: energy within {worst:.1e} over {bounces} bounces (bar 5e-3); free flight of a step within \
+         {worst_fall:.1e} m"
+    );
+    assert!(worst <= 5e-3, "{worst}");
+    assert!(worst_fall < 5e-6, "{worst_fall}");
+}
+
+#[test]
+fn a_buffer_pushes_and_lets_go() {
+    let mut lab = Lab::weightless();
+    let wall = lab.point(Vec3::ZERO);
+    let cart = lab.moving(
+        body(2.0, Vec3::X * 1.5),
+        Velocity::linear(Vec3::NEG_X * 2.0),
+    );
+    let buffer = Spring::new(wall, cart)
+        .with_stiffness(5000.0)
+        .with_rest_length(1.0);
+    lab.spawn((buffer, SpringAction::Push));
+    lab.run(2.0);
+    let speed = lab.velocity(cart).x;
+    println!("buffer: a cart comes in at 2 m/s and leaves at {speed:.5} m/s");
+    assert!((speed - 2.0).abs() < 2e-3, "{speed}");
+}
+
+#[test]
+fn a_slack_rope_with_a_damper_neither_brakes_nor_pushes() {
+    let mut lab = Lab::weightless();
+    let hook = lab.point(Vec3::ZERO);
+    let body = lab.moving(body(1.0, Vec3::X), Velocity::linear(Vec3::X));
+    let rope = SpringDamper::new(hook, body)
+        .with_stiffness(100.0)
+        .with_damping(50.0)
+        .with_rest_length(2.0);
+    let rope = lab.spawn((rope, SpringAction::Pull));
+    lab.run(0.9);
+    assert!((lab.velocity(body).x - 1.0).abs() < 1e-6);
+    let mut least = f32::MAX;
+    for _ in 0..lab.ticks(3.0) {
+        lab.tick();
+        least = least.min(lab.readout(rope).force());
+    }
+    assert!(least >= 0.0, "the rope pushed with {least} N");
+    assert!(lab.velocity(body).x.abs() < 1.0);
+}

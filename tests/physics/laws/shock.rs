@@ -1,0 +1,237 @@
+//! A shock absorber: bump and rebound, stops, preload, force limit.
+
+use crate::harness::*;
+use bevy::prelude::*;
+use bevy_coilover::prelude::*;
+use bevy_rapier3d::prelude::*;
+use std::f64::consts::TAU;
+
+/// Two carriages on prescribed paths, and a damper of 1 : 3 between them.
+#[test]
+fn the_force_velocity_loop_of_a_driven_damper_is_its_law_and_its_work_the_integral() {
+    let (amplitude, frequency) = (0.05, 1.0);
+    let (bump, rebound) = (400.0_f64, 1200.0_f64);
+    let mut lab = Lab::weightless();
+    let wall = lab.point(Vec3::ZERO);
+    // Heavy enough that the damper's drive does not show: the path is the body's own.
+    let slider = lab.spawn((
+        RigidBody::KinematicPositionBased,
+        Transform::from_xyz(0.5, 0.0, 0.0),
+        Velocity::default(),
+    ));
+    let damper = Damper::new(wall, slider).with_damping(1.0);
+    let damper = lab.spawn((damper, DampingLaw::sided(bump as f32, rebound as f32)));
+    let omega = TAU * frequency;
+    // The engine has to know the slider before it can move it.
+    lab.tick();
+    let (mut work, mut worst) = (0.0, 0.0_f64);
+    let cycles = 4.0;
+    for i in 1..=lab.ticks(cycles / frequency) {
+        let t = i as f64 * lab.dt();
+        lab.get_mut::<Transform>(slider).translation.x =
+            0.5 + (amplitude * (omega * t).sin()) as f32;
+        lab.tick();
+        let seen = lab.readout(damper);
+        let rate = f64::from(seen.rate);
+        let wanted = rate * if rate < 0.0 { bump } else { rebound };
+        worst = worst.max((f64::from(seen.damper_force) - wanted).abs());
+        work += f64::from(seen.dissipated_power) * lab.dt();
+    }
+    // ∮ c ẋ dx over a half cycle is c π A² ω/2.
+    let exact =
+        cycles * 0.5 * (bump + rebound) * std::f64::consts::PI * amplitude * amplitude * omega;
+    println!(
+        "bump : rebound 1 : 3: force within {worst:.1e} N of the law, work {:+.2} % of the integral (bar 1 %)",
+        100.0 * (work / exact - 1.0)
+    );
+    assert!(worst < 1e-2 && (work / exact - 1.0).abs() < 0.01);
+}
+
+/// The same with a body that the damper really drives.
+#[test]
+fn a_damped_body_on_a_driven_carriage_loses_what_the_integral_says() {
+    let mut lab = Lab::weightless();
+    let slider = lab.spawn((
+        RigidBody::KinematicPositionBased,
+        Transform::default(),
+        Velocity::default(),
+    ));
+    let load = lab.body(10.0, Vec3::X);
+    let pair = SpringDamper::new(slider, load)
+        .with_stiffness(2000.0)
+        .with_rest_length(1.0);
+    let element = lab.spawn((pair, DampingLaw::sided(40.0, 120.0)));
+    let omega = TAU * 2.0;
+    let path = |t: f64| 0.02 * (omega * t).sin();
+    // The same by the classic Runge–Kutta in a thousand steps a tick's worth: place, speed, heat.
+    let flow = |t: f64, [x, v, _]: [f64; 3]| {
+        let rate = v - 0.02 * omega * (omega * t).cos();
+        let c = if rate < 0.0 { 40.0 } else { 120.0 };
+        let force = 2000.0 * (x - path(t) - 1.0) + c * rate;
+        [v, -force / 10.0, c * rate * rate]
+    };
+    let mut state = [1.0, 0.0, 0.0];
+    for i in 1..=lab.ticks(10.0) {
+        let t = i as f64 * lab.dt();
+        lab.get_mut::<Transform>(slider).translation.x = path(t) as f32;
+        lab.tick();
+        let h = lab.dt() / 50.0;
+        for j in 0..50 {
+            let t = t - lab.dt() + h * f64::from(j);
+            let go = |by: f64, d: [f64; 3]| [0, 1, 2].map(|n| state[n] + by * d[n]);
+            let a = flow(t, state);
+            let b = flow(t + 0.5 * h, go(0.5 * h, a));
+            let c = flow(t + 0.5 * h, go(0.5 * h, b));
+            let d = flow(t + h, go(h, c));
+            state = [0, 1, 2].map(|n| state[n] + h / 6.0 * (a[n] + 2.0 * b[n] + 2.0 * c[n] + d[n]));
+        }
+    }
+    let integral = state[2];
+    let seen = lab.readout(element);
+    let heat = f64::from(seen.dissipated_energy);
+    // What the drive gave is stored, moving or gone.
+    let v = f64::from(lab.velocity(load).length());
+    let balance = f64::from(seen.work) - heat - f64::from(seen.stored_energy) - 5.0 * v * v;
+    println!(
+        "driven damper: ledger {heat:.3} J, by fine integration {integral:.3} J, balance {balance:+.1e} J"
+    );
+    assert!((heat / integral - 1.0).abs() < 0.01, "{heat} {integral}");
+    assert!(balance.abs() < 5e-3 * heat, "{balance}");
+}
+
+fn cart(travel: SpringTravel, speed: f32) -> (Lab, Entity, Entity) {
+    let mut lab = Lab::weightless();
+    let wall = lab.point(Vec3::ZERO);
+    let cart = lab.moving(body(1.0, Vec3::X), Velocity::linear(Vec3::X * speed));
+    let spring = Spring::new(wall, cart)
+        .with_stiffness(100.0)
+        .with_rest_length(1.0);
+    let element = lab.spawn((spring, travel));
+    (lab, cart, element)
+}
+
+#[test]
+fn stops_hit_at_speed_give_nothing_back_but_what_they_were_given() {
+    for progression in [0.0, 20.0] {
+        let travel = SpringTravel::new(0.8, 1.2, 1e4).with_progression(progression);
+        let (mut lab, cart, element) = cart(travel, 5.0);
+        let energy = |lab: &Lab| {
+            let v = f64::from(lab.velocity(cart).length());
+            0.5 * v * v + f64::from(lab.readout(element).stored_energy)
+        };
+        let (mut most, mut least) = (0.0_f64, f64::MAX);
+        for _ in 0..lab.ticks(60.0) {
+            lab.tick();
+            most = most.max(energy(&lab) / 12.5);
+            least = least.min(energy(&lab) / 12.5);
+        }
+        println!(
+            "stops of 100 times the stiffness, progression {progression}: energy {least:.4} to {most:.4} of the first"
+        );
+        assert!(most < 1.002, "gained {most}");
+        assert!(least > 0.95, "lost {least}");
+    }
+}
+
+#[test]
+fn pressed_against_its_stop_it_gives_way_as_the_static_law_says() {
+    let travel = SpringTravel::new(0.8, 1.2, 1e4)
+        .with_progression(20.0)
+        .with_stop_damping(100.0);
+    let (mut lab, cart, element) = cart(travel, 0.0);
+    lab.spawn_force(cart, Vec3::NEG_X * 200.0);
+    lab.run(6.0);
+    let length = f64::from(lab.readout(element).length);
+    // 100 · (1 − L) + 1e4 p (1 + 20 p) = 200 with p = 0.8 − L.
+    let mut p = 0.01_f64;
+    for _ in 0..50 {
+        let f = 100.0 * (0.2 + p) + 1e4 * p * (1.0 + 20.0 * p) - 200.0;
+        p -= f / (100.0 + 1e4 * (1.0 + 40.0 * p));
+    }
+    println!(
+        "static penetration {:.6} m, by the law {p:.6} m",
+        0.8 - length
+    );
+    assert!((0.8 - length - p).abs() < 1e-3 * p, "{length}");
+}
+
+#[test]
+fn preload_shifts_the_place_of_rest_and_a_force_limit_holds() {
+    let mut lab = Lab::weightless();
+    let wall = lab.point(Vec3::ZERO);
+    let body = lab.body(1.0, Vec3::X * 1.1);
+    let pair = SpringDamper::new(wall, body)
+        .with_stiffness(200.0)
+        .with_damping(20.0)
+        .with_rest_length(1.0);
+    let element = lab.spawn((pair, Preload(-30.0)));
+    lab.run(5.0);
+    let length = lab.readout(element).length;
+    assert!((length - 1.15).abs() < 1e-5, "{length}");
+
+    let (mut lab, cart, element) = cart(SpringTravel::new(0.0, f32::INFINITY, 0.0), 0.0);
+    lab.app
+        .world_mut()
+        .entity_mut(element)
+        .remove::<SpringTravel>()
+        .insert(MaxForce(5.0));
+    lab.spawn_force(cart, Vec3::X * 7.0);
+    // 2 N are left over, whatever the stretch.
+    lab.run(1.0);
+    let speed = lab.velocity(cart).x;
+    lab.run(2.0);
+    let gained = lab.velocity(cart).x - speed;
+    assert!((gained - 4.0).abs() < 1e-3, "{gained}");
+    assert!((lab.readout(element).force() - 5.0).abs() < 1e-6);
+}
+
+#[test]
+fn degressive_quadratic_and_tabled_dampers_brake_as_their_equations_say() {
+    // m v̇ = −f(v) from 4 m/s, by fine steps of the classic Runge–Kutta.
+    let laws: [(&str, DampingLaw, fn(f64) -> f64); 4] = [
+        (
+            "quadratic",
+            DampingLaw::Quadratic {
+                linear: 0.5,
+                quadratic: 2.0,
+            },
+            |v| 0.5 * v + 2.0 * v * v,
+        ),
+        (
+            "blow-off",
+            DampingLaw::BlowOff {
+                damping: 4.0,
+                knee: 1.0,
+                beyond: 0.5,
+            },
+            |v| 4.0 * v.min(1.0) + 0.5 * (v - 1.0).max(0.0),
+        ),
+        ("sided", DampingLaw::sided(9.0, 1.5), |v| 1.5 * v),
+        (
+            "table",
+            DampingLaw::table([(-5.0, -5.0), (0.0, 0.0), (5.0, 5.0)]),
+            |v| v,
+        ),
+    ];
+    for (name, law, force) in laws {
+        let mut lab = Lab::weightless();
+        let wall = lab.point(Vec3::ZERO);
+        let body = lab.moving(body(1.0, Vec3::X), Velocity::linear(Vec3::X * 4.0));
+        lab.spawn((Damper::new(wall, body), law));
+        let (mut v, mut worst) = (4.0_f64, 0.0_f64);
+        for _ in 0..lab.ticks(2.0) {
+            lab.tick();
+            let h = lab.dt() / 100.0;
+            for _ in 0..100 {
+                let a = -force(v);
+                let b = -force(v + 0.5 * h * a);
+                let c = -force(v + 0.5 * h * b);
+                let d = -force(v + h * c);
+                v += h / 6.0 * (a + 2.0 * b + 2.0 * c + d);
+            }
+            worst = worst.max((f64::from(lab.velocity(body).x) - v).abs());
+        }
+        println!("{name} damper from 4 m/s: speed within {worst:.1e} m/s");
+        assert!(worst < 8e-3, "{name}: {worst}");
+    }
+}

@@ -1,0 +1,152 @@
+//! Torsion springs and dampers.
+
+use crate::harness::*;
+use bevy::prelude::*;
+use bevy_coilover::prelude::*;
+use bevy_rapier3d::prelude::*;
+use std::f64::consts::TAU;
+
+const INERTIA: f32 = 0.2;
+/// rad; small enough that at 2 rad per step the engine's cap of 45° a step is far.
+const REST: f64 = 0.1;
+
+/// A wheel that turns freely about z, and the wall that holds its spring.
+fn wheel(lab: &mut Lab, spin: f32) -> (Entity, Entity) {
+    let wall = lab.spawn((RigidBody::Fixed, Transform::default()));
+    let wheel = lab.moving(
+        brick(1.0, Vec3::splat(INERTIA), Vec3::X),
+        Velocity::angular(Vec3::Z * spin),
+    );
+    (wall, wheel)
+}
+
+#[test]
+fn period_and_decay_are_exact_at_any_stiffness_that_the_step_resolves() {
+    for (step, zeta) in [(0.02, 0.0), (0.3, 0.0), (1.0, 0.1), (2.0, 0.0), (0.3, 0.3)] {
+        let mut lab = Lab::weightless();
+        let (wall, wheel) = wheel(&mut lab, 0.0);
+        let omega = step * 60.0;
+        let k = f64::from(INERTIA) * omega * omega;
+        let c = 2.0 * zeta * f64::from(INERTIA) * omega;
+        let element = lab.spawn(
+            TorsionSpringDamper::new(wall, wheel, Vec3::Z)
+                .with_stiffness(k as f32)
+                .with_damping(c as f32)
+                .with_rest_angle(REST as f32),
+        );
+        let (gamma, mut worst) = (zeta * omega, 0.0_f64);
+        let turn = (omega * omega - gamma * gamma).sqrt();
+        for i in 1..=lab.ticks((40.0 / omega).min(20.0)) {
+            lab.tick();
+            let t = i as f64 * lab.dt();
+            let swing = (turn * t).cos() + gamma / turn * (turn * t).sin();
+            let wanted = REST - REST * (-gamma * t).exp() * swing;
+            worst = worst.max((f64::from(lab.readout(element).length) - wanted).abs());
+        }
+        println!("torsion, ω·dt {step} ζ {zeta}: angle within {worst:.1e} of {REST} rad");
+        assert!(worst < 2e-4, "{worst}");
+    }
+}
+
+#[test]
+fn three_turns_are_wound_up_and_let_go() {
+    let mut lab = Lab::weightless();
+    let (wall, wheel) = wheel(&mut lab, 0.0);
+    let turns = 3.0 * TAU;
+    let element = lab.spawn(
+        TorsionSpring::new(wall, wheel, Vec3::Z)
+            .with_stiffness(0.8)
+            .with_rest_angle(turns as f32),
+    );
+    // ω = 2 rad/s: from 0 over 3 turns to 6 turns and back.
+    let (mut worst, mut most) = (0.0_f64, 0.0_f64);
+    for i in 1..=lab.ticks(20.0) {
+        lab.tick();
+        let t = i as f64 * lab.dt();
+        let angle = f64::from(lab.readout(element).length);
+        worst = worst.max((angle - turns * (1.0 - (2.0 * t).cos())).abs());
+        most = most.max(angle);
+    }
+    println!(
+        "three turns: unwinds to {:.3} turns, angle within {worst:.1e} rad over 20 s",
+        most / TAU
+    );
+    assert!(most > 1.99 * turns && worst < 0.02, "{most} {worst}");
+    // The moment is that of the turns, not of the place within one.
+    let seen = lab.readout(element);
+    let moment = 0.8 * (seen.length - turns as f32);
+    assert!((seen.spring_force - moment).abs() < 1e-4);
+}
+
+#[test]
+fn between_two_free_bodies_the_angular_momentum_stays() {
+    let mut lab = Lab::weightless();
+    let a = lab.spawn(brick(1.0, Vec3::new(0.1, 0.2, 0.3), Vec3::ZERO));
+    let b = lab.moving(
+        brick(2.0, Vec3::new(0.3, 0.25, 0.1), Vec3::X),
+        Velocity::angular(Vec3::new(0.4, -0.2, 2.0)),
+    );
+    let element = lab.spawn(
+        TorsionSpringDamper::new(a, b, Vec3::Z)
+            .with_stiffness(5.0)
+            .with_damping(0.0)
+            .with_rest_angle(0.0),
+    );
+    let momentum = |lab: &Lab| {
+        [(a, [0.1, 0.2, 0.3]), (b, [0.3, 0.25, 0.1])]
+            .into_iter()
+            .fold(Vec3::ZERO, |sum, (body, inertia)| {
+                let rotation = lab.get::<Transform>(body).rotation;
+                let local = rotation.inverse() * lab.get::<Velocity>(body).angular;
+                sum + rotation * (Vec3::from(inertia) * local)
+            })
+    };
+    let energy = |lab: &Lab| {
+        let motion: f32 = [(a, [0.1, 0.2, 0.3]), (b, [0.3, 0.25, 0.1])]
+            .into_iter()
+            .map(|(body, inertia)| {
+                let rotation = lab.get::<Transform>(body).rotation;
+                let local = rotation.inverse() * lab.get::<Velocity>(body).angular;
+                0.5 * (Vec3::from(inertia) * local).dot(local)
+            })
+            .sum();
+        motion + lab.readout(element).stored_energy
+    };
+    let (first, stored) = (momentum(&lab), energy(&lab));
+    let (mut worst, mut most, mut least) = (0.0_f32, 0.0_f32, f32::MAX);
+    for _ in 0..lab.ticks(10.0) {
+        lab.tick();
+        worst = worst.max(momentum(&lab).distance(first) / first.length());
+        most = most.max(energy(&lab) / stored);
+        least = least.min(energy(&lab) / stored);
+    }
+    println!(
+        "two tumbling bodies, 10 s: angular momentum within {worst:.1e}, energy {least:.4} to {most:.4}"
+    );
+    assert!(
+        worst < 1e-3 && most < 1.05 && least > 0.8,
+        "{worst} {least} {most}"
+    );
+}
+
+#[test]
+fn a_turning_shaft_drags_a_wheel_along() {
+    let mut lab = Lab::weightless();
+    let shaft = lab.spawn((
+        RigidBody::KinematicVelocityBased,
+        Transform::default(),
+        Velocity::angular(Vec3::Z * 3.0),
+    ));
+    let wheel = lab.spawn(brick(1.0, Vec3::splat(INERTIA), Vec3::X));
+    let element = lab.spawn(TorsionDamper::new(shaft, wheel, Vec3::Z).with_damping(0.4));
+    lab.run(0.5);
+    let spin = f64::from(lab.get::<Velocity>(wheel).angular.z);
+    let wanted = 3.0 * (1.0 - (-0.4 / f64::from(INERTIA) * 0.5_f64).exp());
+    println!("a shaft at 3 rad/s: the wheel has {spin:.5} rad/s, by theory {wanted:.5}");
+    assert!((spin - wanted).abs() < 2e-3, "{spin} {wanted}");
+    // The shaft's work is motion and heat.
+    let seen = lab.readout(element);
+    let motion = 0.5 * f64::from(INERTIA) * spin * spin;
+    let balance = f64::from(seen.work - seen.dissipated_energy) - motion;
+    assert!(balance.abs() < 1e-3 * motion, "{balance} {seen:?}");
+}
