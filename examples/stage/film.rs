@@ -1,7 +1,7 @@
 //! Frames without a window.
 
 use super::means::Film;
-use super::{DT, Stage, look, offscreen, physics, say};
+use super::{DT, PictureAt, Stage, look, offscreen, physics, say};
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use std::path::{Path, PathBuf};
@@ -41,13 +41,16 @@ pub fn shoot(stage: &Stage, film: Film) -> AppExit {
     app.cleanup();
     set_ticks(&mut app, 0);
     offscreen::settle(&mut app);
+    // A single picture may be of an earlier moment than the check.
+    let shown = match (&film, app.world().get_resource::<PictureAt>()) {
+        (Film::Still(_), Some(at)) => (at.0 / DT).round() as u32,
+        _ => ticks,
+    };
     let mut taken = 0;
     for frame in 0..frames {
         // All the ticks up to this frame in one update, then one picture of where they led.
-        let upto = |f: u32| ticks * f / frames;
-        set_ticks(&mut app, upto(frame + 1) - upto(frame));
-        app.update();
-        set_ticks(&mut app, 0);
+        let upto = |f: u32| shown * f / frames;
+        pass(&mut app, upto(frame + 1) - upto(frame));
         offscreen::settle(&mut app);
         let Some(picture) = offscreen::shoot(&mut app, &image) else {
             continue;
@@ -57,6 +60,7 @@ pub fn shoot(stage: &Stage, film: Film) -> AppExit {
             Err(wrong) => eprintln!("{}: {wrong}", path(frame).display()),
         }
     }
+    pass(&mut app, ticks.saturating_sub(shown));
     let good = say(stage, app.world_mut());
     println!(
         "  {taken} of {frames} pictures written, the last is {}",
@@ -72,6 +76,13 @@ pub fn shoot(stage: &Stage, film: Film) -> AppExit {
 fn save(picture: Image, path: &Path) -> Result<(), String> {
     let picture = picture.try_into_dynamic().map_err(|e| e.to_string())?;
     picture.to_rgb8().save(path).map_err(|e| e.to_string())
+}
+
+/// So many fixed ticks in one update.
+fn pass(app: &mut App, ticks: u32) {
+    set_ticks(app, ticks);
+    app.update();
+    set_ticks(app, 0);
 }
 
 /// The clock of the next updates: so many fixed ticks each.

@@ -40,6 +40,10 @@ pub struct Stage {
     pub target: Vec3,
 }
 
+/// Inserted by a `setup`: the second that `--screenshot` shows, where the end is not the best of it.
+#[derive(Resource)]
+pub struct PictureAt(pub f32);
+
 /// What the command line asks for.
 #[derive(Default)]
 struct Arguments {
