@@ -34,7 +34,7 @@ fn main() -> AppExit {
                 .add_systems(Startup, setup)
                 .add_systems(FixedUpdate, record.after(CoiloverSystems::Readout));
         },
-        seconds: 12.0,
+        seconds: 9.0,
         check,
         eye: Vec3::new(1.6, 1.9, 6.0),
         target: Vec3::new(0.1, 1.15, 0.0),

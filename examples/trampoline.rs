@@ -1,4 +1,4 @@
-//! A trampoline: a cloth of 16 × 16 points and 480 springs in a frame, onto which balls fall. None falls
+//! A trampoline: a cloth of 16 × 16 points and 420 springs in a frame, onto which balls fall. None falls
 //! through, none rises higher than it fell from, and in the end the frame carries what lies on the cloth.
 //!
 //! Opens a window where there is a display; `--screenshot FILE` and `--headless` do without.
@@ -29,8 +29,8 @@ const BALLS: [(f32, f32, Vec2, f32); 3] = [
     (0.32, 2.0, Vec2::new(0.4, 0.55), 0.7),
 ];
 /// The balls are let go after this, s.
-const DROP: f32 = 3.0;
-const SECONDS: f32 = 14.0;
+const DROP: f32 = 2.0;
+const SECONDS: f32 = 9.0;
 const GRAVITY: f32 = 9.81;
 
 fn main() -> AppExit {
@@ -140,7 +140,7 @@ fn setup(mut commands: Commands) {
                         .with_stiffness(STIFFNESS)
                         .with_damping(DAMPING)
                         .with_rest_length(REST),
-                    Coil::new(0.026, 0.005, 8.0),
+                    Coil::new(0.026, 0.006, 5.0),
                 ));
             }
         }

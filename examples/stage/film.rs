@@ -39,8 +39,8 @@ pub fn shoot(stage: &Stage, film: Film) -> AppExit {
     );
     app.finish();
     app.cleanup();
-    set_ticks(&mut app, 0);
-    offscreen::settle(&mut app);
+    // Everything is spawned, and no time passes yet.
+    pass(&mut app, 0);
     // A single picture may be of an earlier moment than the check.
     let shown = match (&film, app.world().get_resource::<PictureAt>()) {
         (Film::Still(_), Some(at)) => (at.0 / DT).round() as u32,
@@ -60,7 +60,9 @@ pub fn shoot(stage: &Stage, film: Film) -> AppExit {
             Err(wrong) => eprintln!("{}: {wrong}", path(frame).display()),
         }
     }
-    pass(&mut app, ticks.saturating_sub(shown));
+    if shown < ticks {
+        pass(&mut app, ticks - shown);
+    }
     let good = say(stage, app.world_mut());
     println!(
         "  {taken} of {frames} pictures written, the last is {}",
