@@ -41,6 +41,14 @@ impl Finding {
             good: measured.abs() < limit,
         }
     }
+
+    /// Good where a figure lies between two.
+    pub fn between(what: &str, measured: f32, least: f32, most: f32, unit: &str) -> Self {
+        Self {
+            text: format!("{what}: {measured:.3} {unit}, between {least} and {most} {unit}"),
+            good: (least..=most).contains(&measured),
+        }
+    }
 }
 
 /// On an element: its read-outs, tick by tick, with the time in seconds.

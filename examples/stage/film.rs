@@ -1,20 +1,29 @@
 //! Frames without a window.
 
 use super::means::Film;
-use super::{DT, Stage, look, offscreen, physics, say};
+use super::{DT, PictureAt, Stage, look, offscreen, physics, say};
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
+use gif::{Encoder, Frame, Repeat};
+use image::imageops::FilterType;
+use std::fs::File;
+use std::io::BufWriter;
 use std::path::{Path, PathBuf};
 
 const SIZE: (u32, u32) = (1280, 720);
 /// Frames of a film.
 const FRAMES: u32 = 48;
+/// Pictures a second of an animation, its length in seconds, and its size.
+const RATE: u32 = 20;
+const LENGTH: u32 = 3;
+const SMALL: (u16, u16) = (640, 360);
 
 /// Writes the pictures; whether the check holds is for the exit code too.
 pub fn shoot(stage: &Stage, film: Film) -> AppExit {
     let ticks = (stage.seconds / DT).round() as u32;
     let (frames, folder) = match &film {
         Film::Frames(folder) => (FRAMES, Some(folder.clone())),
+        Film::Animation(file) => (RATE * LENGTH, file.parent().map(PathBuf::from)),
         Film::Still(file) => (1, file.parent().map(PathBuf::from)),
     };
     if let Some(folder) = folder.filter(|f| !f.as_os_str().is_empty())
@@ -25,7 +34,17 @@ pub fn shoot(stage: &Stage, film: Film) -> AppExit {
     }
     let path = |frame: u32| match &film {
         Film::Frames(folder) => folder.join(format!("frame_{frame:03}.png")),
-        Film::Still(file) => file.clone(),
+        Film::Animation(file) | Film::Still(file) => file.clone(),
+    };
+    let mut animation = match &film {
+        Film::Animation(file) => match Animation::begin(file) {
+            Ok(animation) => Some(animation),
+            Err(wrong) => {
+                eprintln!("{}: {wrong}", file.display());
+                return AppExit::error();
+            }
+        },
+        _ => None,
     };
 
     let (mut app, image) = offscreen::app(SIZE.0, SIZE.1);
@@ -39,23 +58,42 @@ pub fn shoot(stage: &Stage, film: Film) -> AppExit {
     );
     app.finish();
     app.cleanup();
-    set_ticks(&mut app, 0);
-    offscreen::settle(&mut app);
+    // Everything is spawned, and no time passes yet.
+    pass(&mut app, 0);
+    // A single picture may be of an earlier moment than the check.
+    let shown = match (&film, app.world().get_resource::<PictureAt>()) {
+        (Film::Still(_), Some(at)) => (at.0 / DT).round() as u32,
+        _ => ticks,
+    };
+    // An animation shows the end, in its own time.
+    let begun = match &film {
+        Film::Animation(_) => ticks.saturating_sub((LENGTH as f32 / DT) as u32),
+        _ => 0,
+    };
+    pass(&mut app, begun);
     let mut taken = 0;
     for frame in 0..frames {
         // All the ticks up to this frame in one update, then one picture of where they led.
-        let upto = |f: u32| ticks * f / frames;
-        set_ticks(&mut app, upto(frame + 1) - upto(frame));
-        app.update();
-        set_ticks(&mut app, 0);
-        offscreen::settle(&mut app);
+        let upto = |f: u32| begun + (shown - begun) * f / frames;
+        pass(&mut app, upto(frame + 1) - upto(frame));
+        // Later pictures of an animation need nothing new.
+        if frame == 0 || animation.is_none() {
+            offscreen::settle(&mut app);
+        }
         let Some(picture) = offscreen::shoot(&mut app, &image) else {
             continue;
         };
-        match save(picture, &path(frame)) {
+        let saved = match &mut animation {
+            Some(animation) => animation.add(picture),
+            None => save(picture, &path(frame)),
+        };
+        match saved {
             Ok(()) => taken += 1,
             Err(wrong) => eprintln!("{}: {wrong}", path(frame).display()),
         }
+    }
+    if shown < ticks {
+        pass(&mut app, ticks - shown);
     }
     let good = say(stage, app.world_mut());
     println!(
@@ -72,6 +110,38 @@ pub fn shoot(stage: &Stage, film: Film) -> AppExit {
 fn save(picture: Image, path: &Path) -> Result<(), String> {
     let picture = picture.try_into_dynamic().map_err(|e| e.to_string())?;
     picture.to_rgb8().save(path).map_err(|e| e.to_string())
+}
+
+/// An animated GIF, picture by picture.
+struct Animation(Encoder<BufWriter<File>>);
+
+impl Animation {
+    fn begin(path: &Path) -> Result<Self, String> {
+        let file = BufWriter::new(File::create(path).map_err(|e| e.to_string())?);
+        let (width, height) = SMALL;
+        let encoder = Encoder::new(file, width, height, &[]).and_then(|mut encoder| {
+            encoder.set_repeat(Repeat::Infinite)?;
+            Ok(encoder)
+        });
+        encoder.map(Self).map_err(|e| e.to_string())
+    }
+
+    fn add(&mut self, picture: Image) -> Result<(), String> {
+        let picture = picture.try_into_dynamic().map_err(|e| e.to_string())?;
+        let (width, height) = SMALL;
+        let small = picture.resize_exact(width.into(), height.into(), FilterType::Triangle);
+        let mut frame = Frame::from_rgb_speed(width, height, &small.to_rgb8(), 10);
+        // Hundredths of a second.
+        frame.delay = (100 / RATE) as u16;
+        self.0.write_frame(&frame).map_err(|e| e.to_string())
+    }
+}
+
+/// So many fixed ticks in one update.
+fn pass(app: &mut App, ticks: u32) {
+    set_ticks(app, ticks);
+    app.update();
+    set_ticks(app, 0);
 }
 
 /// The clock of the next updates: so many fixed ticks each.

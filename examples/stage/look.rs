@@ -13,6 +13,8 @@ pub enum Shape {
     Ball(f32, Paint),
     /// Radius and height, about Y.
     Cylinder(f32, f32, Paint),
+    /// Radius, and height without the round ends, about Y.
+    Capsule(f32, f32, Paint),
 }
 
 #[derive(Clone, Copy)]
@@ -111,6 +113,7 @@ fn show_shapes(
                 Cylinder::new(radius, height).mesh().resolution(64).build(),
                 paint,
             ),
+            Shape::Capsule(radius, height, paint) => (Capsule3d::new(radius, height).into(), paint),
         };
         commands.entity(entity).insert((
             Mesh3d(meshes.add(mesh)),

@@ -8,6 +8,8 @@ use std::path::PathBuf;
 pub enum Film {
     /// Several through the whole time, numbered, in a folder.
     Frames(PathBuf),
+    /// The last seconds of it as one animated GIF.
+    Animation(PathBuf),
     /// The last one.
     Still(PathBuf),
 }
@@ -30,6 +32,7 @@ impl fmt::Display for Means {
             Means::Film { film, adapter, why } => {
                 let place = match film {
                     Film::Frames(folder) => format!("frames into {}", folder.display()),
+                    Film::Animation(file) => format!("an animation into {}", file.display()),
                     Film::Still(file) => format!("a picture into {}", file.display()),
                 };
                 write!(f, "rendering {place} with {adapter}, because {why}")
@@ -41,18 +44,14 @@ impl fmt::Display for Means {
 
 impl Means {
     /// The best that the machine has: window, frames, or read-outs.
-    pub fn find(headless: bool, screenshot: Option<PathBuf>, frames: Option<PathBuf>) -> Self {
+    pub fn find(headless: bool, asked: Option<Film>) -> Self {
         if headless {
             return Means::Headless("--headless was given".into());
         }
-        let asked = screenshot.is_some() || frames.is_some();
-        let film = match (screenshot, frames) {
-            (Some(file), _) => Film::Still(file),
-            (None, Some(folder)) => Film::Frames(folder),
-            (None, None) => Film::Frames("renders".into()),
-        };
+        let unasked = asked.is_none();
+        let film = asked.unwrap_or(Film::Frames("renders".into()));
         let no_display = match display() {
-            Ok(()) if !asked => {
+            Ok(()) if unasked => {
                 return match adapter() {
                     Some(_) => Means::Window,
                     None => Means::Headless("there is a display but no graphics adapter".into()),

@@ -19,7 +19,7 @@ use bevy::prelude::*;
 use bevy::time::TimeUpdateStrategy;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
-use means::Means;
+use means::{Film, Means};
 use std::path::PathBuf;
 
 /// Seconds of a tick.
@@ -40,12 +40,15 @@ pub struct Stage {
     pub target: Vec3,
 }
 
+/// Inserted by a `setup`: the second that `--screenshot` shows, where the end is not the best of it.
+#[derive(Resource)]
+pub struct PictureAt(pub f32);
+
 /// What the command line asks for.
 #[derive(Default)]
 struct Arguments {
     headless: bool,
-    screenshot: Option<PathBuf>,
-    frames: Option<PathBuf>,
+    film: Option<Film>,
 }
 
 impl Arguments {
@@ -61,8 +64,9 @@ impl Arguments {
             };
             match word.as_str() {
                 "--headless" => out.headless = true,
-                "--screenshot" => out.screenshot = Some(path()?),
-                "--frames" => out.frames = Some(path()?),
+                "--screenshot" => out.film = Some(Film::Still(path()?)),
+                "--frames" => out.film = Some(Film::Frames(path()?)),
+                "--film" => out.film = Some(Film::Animation(path()?)),
                 _ => return Err(format!("unknown argument {word}")),
             }
         }
@@ -75,11 +79,11 @@ pub fn run(stage: &Stage) -> AppExit {
     let arguments = match Arguments::read() {
         Ok(arguments) => arguments,
         Err(wrong) => {
-            eprintln!("{wrong}; use --headless, --screenshot FILE or --frames FOLDER");
+            eprintln!("{wrong}; use --headless, --screenshot FILE, --frames FOLDER or --film FILE");
             return AppExit::error();
         }
     };
-    let means = Means::find(arguments.headless, arguments.screenshot, arguments.frames);
+    let means = Means::find(arguments.headless, arguments.film);
     println!("{}: {means}", stage.title);
     match means {
         Means::Window => window(stage),

@@ -7,7 +7,7 @@ use image::{RgbImage, imageops};
 use std::path::Path;
 use std::process::Command;
 
-const SCENES: [&str; 8] = [
+const SCENES: [&str; 12] = [
     "spring_3d",
     "damper_3d",
     "damper_visible",
@@ -15,6 +15,10 @@ const SCENES: [&str; 8] = [
     "coilover_visible",
     "free_fall",
     "natural_frequency",
+    "suspension",
+    "trampoline",
+    "tensegrity",
+    "newtons_chain",
     "showcase",
 ];
 /// Pictures are compared and kept this small: what matters is still seen.
