@@ -1,0 +1,65 @@
+//! Speed against error: bevy_coilover beside everything that a game could use instead.
+//!
+//! `cargo run --release -p compare` runs every scene with every method and writes what it measured to
+//! `docs/speed_vs_error.md`, with tables as CSV and charts as SVG beside it; `--help` tells the options.
+
+mod campaign;
+mod clock;
+mod follow;
+mod method;
+mod options;
+mod problem;
+mod rig;
+mod scenes;
+mod table;
+
+use indicatif::{ProgressBar, ProgressStyle};
+use options::{HELP, Options, Request};
+use scenes::SCENES;
+use std::error::Error;
+use std::process::ExitCode;
+use table::Table;
+
+fn main() -> ExitCode {
+    let known: Vec<&str> = SCENES.iter().map(|s| s.name).collect();
+    let done = match Options::parse(&known) {
+        Ok(Request::Help) => {
+            println!("{HELP}");
+            Ok(())
+        }
+        Ok(Request::List) => {
+            println!("{}", known.join("\n"));
+            Ok(())
+        }
+        Ok(Request::Scale(..)) => Ok(()),
+        Ok(Request::Run(options)) => run(&options),
+        Err(error) => Err(error.into()),
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("{error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run(options: &Options) -> Result<(), Box<dyn Error>> {
+    let folder = options.out.join("docs/speed_vs_error");
+    std::fs::create_dir_all(&folder)?;
+    let mut work = Vec::new();
+    for scene in SCENES.iter().filter(|s| options.wants(s.name)) {
+        let table = Table::open(&folder, scene.name);
+        let chunks = campaign::missing(options, &table);
+        work.push((scene, table, chunks));
+    }
+    let count: usize = work.iter().flat_map(|(_, _, c)| c).map(Vec::len).sum();
+    let bar = ProgressBar::new(count as u64).with_style(ProgressStyle::with_template(
+        "{bar:30} {pos}/{len} {elapsed} {wide_msg}",
+    )?);
+    for (scene, mut table, chunks) in work {
+        campaign::run(options, scene, &mut table, chunks, &bar)?;
+    }
+    bar.finish_and_clear();
+    Ok(())
+}
