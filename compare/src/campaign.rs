@@ -2,7 +2,7 @@
 
 use crate::clock::race;
 use crate::follow::follow;
-use crate::method::{Setting, rates};
+use crate::method::{Method, Setting, rates};
 use crate::options::Options;
 use crate::scenes::Scene;
 use crate::table::{Row, Table};
@@ -11,11 +11,16 @@ use std::io;
 
 /// Settings of a scene that are asked for and missing, one list per time step: those run against each
 /// other, and are written before the next begin.
-pub fn missing(options: &Options, table: &Table) -> Vec<Vec<Setting>> {
+pub fn missing(options: &Options, scene: &Scene, table: &Table) -> Vec<Vec<Setting>> {
+    let damped = (scene.make)().links.iter().any(|l| l.damping > 0.0);
+    let methods = options
+        .methods
+        .iter()
+        .filter(|m| damped || **m != Method::AvianBare);
     let mut chunks = Vec::new();
     for rate in rates(options.quick) {
         let mut chunk = Vec::new();
-        for method in &options.methods {
+        for method in methods.clone() {
             for dial in method.dials(options.quick) {
                 let setting = Setting {
                     method: *method,

@@ -1,7 +1,8 @@
 //! Time per step, measured so that two methods can be compared.
 //!
 //! All methods of a race run in turns: what else the machine does meets them alike. Each turn is a batch of
-//! whole updates of the app; the median over the turns is told, with its quartiles.
+//! whole updates of the app; the median over the turns is told, with its quartiles. Whoever has been
+//! disturbed, so that its median is well above its lower quartile, gets more turns.
 
 use crate::method::Setting;
 use crate::problem::Problem;
@@ -23,6 +24,10 @@ pub struct Times {
     pub low: f64,
     pub high: f64,
 }
+
+/// Ratio of median to lower quartile from which on more turns are taken, up to so many times as many.
+const DISTURBED: f64 = 1.1;
+const MORE: usize = 4;
 
 struct Runner {
     rig: Rig,
@@ -52,11 +57,15 @@ pub fn race(problem: &Problem, settings: &[Setting], turns: u32) -> Vec<Times> {
             }
         })
         .collect();
-    for turn in 0..turns as usize {
+    for turn in 0..MORE * turns as usize {
+        let needed = |r: &Runner| turn < turns as usize || r.is_disturbed();
         // Another one begins each time, so that nobody always follows the same one.
         let count = runners.len();
         for i in 0..count {
             let runner = &mut runners[(i + turn) % count];
+            if !needed(runner) {
+                continue;
+            }
             if f64::from(runner.ticks + runner.batch) * runner.setting.dt() > longest {
                 runner.rig = warm(problem, runner.setting);
                 runner.ticks = WARM_UP;
@@ -71,6 +80,13 @@ pub fn race(problem: &Problem, settings: &[Setting], turns: u32) -> Vec<Times> {
         }
     }
     runners.into_iter().map(|r| Times::of(r.turns)).collect()
+}
+
+impl Runner {
+    fn is_disturbed(&self) -> bool {
+        let times = Times::of(self.turns.clone());
+        times.median > DISTURBED * times.low
+    }
 }
 
 fn warm(problem: &Problem, setting: Setting) -> Rig {

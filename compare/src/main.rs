@@ -4,19 +4,27 @@
 //! `docs/speed_vs_error.md`, with tables as CSV and charts as SVG beside it; `--help` tells the options.
 
 mod campaign;
+mod chart;
 mod clock;
 mod follow;
+mod front;
+mod machine;
 mod method;
 mod options;
+mod paint;
 mod problem;
+mod readme;
+mod report;
 mod rig;
 mod scenes;
 mod table;
+mod words;
 
 use indicatif::{ProgressBar, ProgressStyle};
 use options::{HELP, Options, Request};
 use scenes::SCENES;
 use std::error::Error;
+use std::path::Path;
 use std::process::ExitCode;
 use table::Table;
 
@@ -50,7 +58,7 @@ fn run(options: &Options) -> Result<(), Box<dyn Error>> {
     let mut work = Vec::new();
     for scene in SCENES.iter().filter(|s| options.wants(s.name)) {
         let table = Table::open(&folder, scene.name);
-        let chunks = campaign::missing(options, &table);
+        let chunks = campaign::missing(options, scene, &table);
         work.push((scene, table, chunks));
     }
     let count: usize = work.iter().flat_map(|(_, _, c)| c).map(Vec::len).sum();
@@ -61,5 +69,29 @@ fn run(options: &Options) -> Result<(), Box<dyn Error>> {
         campaign::run(options, scene, &mut table, chunks, &bar)?;
     }
     bar.finish_and_clear();
+    publish(options, &folder)
+}
+
+/// Writes charts and report from all tables that there are.
+fn publish(options: &Options, folder: &Path) -> Result<(), Box<dyn Error>> {
+    let mut scenes = Vec::new();
+    for scene in &SCENES {
+        let rows = Table::open(folder, scene.name).rows;
+        if !rows.is_empty() {
+            let path = folder.join(format!("{}.svg", scene.name));
+            chart::draw(&path, scene.title, &rows)?;
+            scenes.push((scene, rows));
+        }
+    }
+    let headline = report::headline(&scenes);
+    let mut text = format!("{}## In short\n\n{headline}\n\n", report::opening());
+    for (scene, rows) in &scenes {
+        text.push_str(&report::section(scene, rows));
+    }
+    std::fs::write(
+        options.out.join("docs/speed_vs_error.md"),
+        text.trim_end().to_owned() + "\n",
+    )?;
+    readme::copy(&options.out.join("README.md"), &headline)?;
     Ok(())
 }

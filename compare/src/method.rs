@@ -9,10 +9,23 @@ pub enum Method {
     Force,
     Joint,
     Avian,
+    /// Avian's joint without its damping, which brakes across the line too.
+    AvianBare,
 }
 
 impl Method {
-    pub const ALL: [Self; 4] = [Self::Ours, Self::Force, Self::Joint, Self::Avian];
+    pub const ALL: [Self; 5] = [
+        Self::Ours,
+        Self::Force,
+        Self::Joint,
+        Self::Avian,
+        Self::AvianBare,
+    ];
+
+    /// Whether it runs in Avian instead of Rapier.
+    pub fn is_avian(self) -> bool {
+        matches!(self, Self::Avian | Self::AvianBare)
+    }
 
     /// As on the command line and in the tables' files.
     pub fn name(self) -> &'static str {
@@ -21,6 +34,7 @@ impl Method {
             Self::Force => "force",
             Self::Joint => "joint",
             Self::Avian => "avian",
+            Self::AvianBare => "avian-bare",
         }
     }
 
@@ -30,6 +44,7 @@ impl Method {
             Self::Force => "force once per step",
             Self::Joint => "Rapier SpringJoint",
             Self::Avian => "Avian distance joint",
+            Self::AvianBare => "Avian, undamped",
         }
     }
 
@@ -39,7 +54,7 @@ impl Method {
             Self::Ours => Dial::Microsteps(1),
             Self::Force => Dial::None,
             Self::Joint => Dial::Iterations(4),
-            Self::Avian => Dial::Substeps(6),
+            Self::Avian | Self::AvianBare => Dial::Substeps(6),
         }
     }
 
@@ -61,7 +76,7 @@ impl Method {
                 .into_iter()
                 .map(Dial::Iterations)
                 .collect(),
-            Self::Avian => pick(&[6, 12, 24, 48], &[6, 24])
+            Self::Avian | Self::AvianBare => pick(&[6, 12, 24, 48], &[6, 24])
                 .into_iter()
                 .map(Dial::Substeps)
                 .collect(),

@@ -10,7 +10,7 @@ Speed against error: bevy_coilover beside what a game could use instead.
 cargo run --release -p compare -- [OPTIONS]
 
   --scene NAME    only this scene; may be given again (see --list)
-  --method NAME   only this method: ours, force, joint or avian; may be given again
+  --method NAME   only this method: ours, force, joint, avian, avian-bare; may be given again
   --quick         few settings, few repeats, two time steps
   --fresh         measure again what the tables already hold
   --out DIR       write DIR/docs/speed_vs_error.md and the table in DIR/README.md (default: the repository)

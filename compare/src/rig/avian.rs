@@ -5,7 +5,7 @@
 //! damper of c that it can be told.
 
 use super::State;
-use crate::method::Dial;
+use crate::method::{Dial, Method};
 use crate::problem::{Body, Kind, Problem};
 use avian3d::prelude::*;
 use bevy::prelude::*;
@@ -20,7 +20,7 @@ pub fn plug(app: &mut App, problem: &Problem, dial: Dial) {
 }
 
 /// Spawns bodies and joints.
-pub fn fill(world: &mut World, problem: &Problem) -> Vec<Entity> {
+pub fn fill(world: &mut World, problem: &Problem, method: Method) -> Vec<Entity> {
     if problem.ground {
         world.spawn((
             RigidBody::Static,
@@ -37,7 +37,7 @@ pub fn fill(world: &mut World, problem: &Problem) -> Vec<Entity> {
             .with_limits(link.rest, link.rest)
             .with_compliance(link.stiffness.recip());
         let mut joint = world.spawn(joint);
-        if link.damping > 0.0 {
+        if link.damping > 0.0 && method == Method::Avian {
             let inverse = problem.bodies[a].inverse_mass() + problem.bodies[b].inverse_mass();
             joint.insert(JointDamping {
                 linear: link.damping * inverse,

@@ -3,7 +3,7 @@
 mod avian;
 mod rapier;
 
-use crate::method::{Method, Setting};
+use crate::method::Setting;
 use crate::problem::Problem;
 use bevy::ecs::schedule::SingleThreadedExecutor;
 use bevy::math::{DQuat, DVec3};
@@ -34,7 +34,7 @@ impl Rig {
         app.add_plugins((MinimalPlugins, TransformPlugin))
             .insert_resource(Time::<Fixed>::from_duration(tick))
             .insert_resource(TimeUpdateStrategy::ManualDuration(tick));
-        let avian = setting.method == Method::Avian;
+        let avian = setting.method.is_avian();
         if avian {
             avian::plug(&mut app, problem, setting.dial);
         } else {
@@ -50,7 +50,10 @@ impl Rig {
         // The first update passes no time, so no step is taken.
         app.update();
         let (bodies, read): (_, fn(&World, Entity) -> Option<State>) = if avian {
-            (avian::fill(app.world_mut(), problem), avian::read)
+            (
+                avian::fill(app.world_mut(), problem, setting.method),
+                avian::read,
+            )
         } else {
             (
                 rapier::fill(app.world_mut(), problem, setting.method),

@@ -48,7 +48,7 @@ pub fn plug(app: &mut App, problem: &Problem, setting: Setting) {
         Method::Force => {
             app.add_systems(FixedUpdate, pull.before(PhysicsSet::SyncBackend));
         }
-        Method::Joint | Method::Avian => {}
+        Method::Joint | Method::Avian | Method::AvianBare => {}
     }
 }
 
@@ -86,7 +86,7 @@ pub fn fill(world: &mut World, problem: &Problem, method: Method) -> Vec<Entity>
                     link: *link,
                 });
             }
-            Method::Avian => {}
+            Method::Avian | Method::AvianBare => {}
         }
     }
     if method == Method::Force {
