@@ -16,20 +16,30 @@ mod problem;
 mod readme;
 mod report;
 mod rig;
+mod scale;
 mod scenes;
+mod stability;
+mod study;
+mod sweep;
 mod table;
 mod words;
 
 use indicatif::{ProgressBar, ProgressStyle};
 use options::{HELP, Options, Request};
+use scale::Scale;
 use scenes::SCENES;
+use stability::Map;
 use std::error::Error;
 use std::path::Path;
 use std::process::ExitCode;
+use study::Study;
+use sweep::Sweep;
 use table::Table;
 
 fn main() -> ExitCode {
-    let known: Vec<&str> = SCENES.iter().map(|s| s.name).collect();
+    let mut known: Vec<&str> = SCENES.iter().map(|s| s.name).collect();
+    known.extend([Sweep.name(), Scale.name()]);
+    known.extend(Map::ALL.iter().map(Map::name));
     let done = match Options::parse(&known) {
         Ok(Request::Help) => {
             println!("{HELP}");
@@ -39,7 +49,10 @@ fn main() -> ExitCode {
             println!("{}", known.join("\n"));
             Ok(())
         }
-        Ok(Request::Scale(..)) => Ok(()),
+        Ok(Request::Scale(method, springs)) => {
+            scale::tell(method, springs);
+            Ok(())
+        }
         Ok(Request::Run(options)) => run(&options),
         Err(error) => Err(error.into()),
     };
@@ -61,19 +74,30 @@ fn run(options: &Options) -> Result<(), Box<dyn Error>> {
         let chunks = campaign::missing(options, scene, &table);
         work.push((scene, table, chunks));
     }
+    let studies = study::asked(&Sweep, options).len()
+        + study::asked(&Scale, options).len()
+        + Map::ALL
+            .iter()
+            .map(|map| study::asked(map, options).len())
+            .sum::<usize>();
     let count: usize = work.iter().flat_map(|(_, _, c)| c).map(Vec::len).sum();
-    let bar = ProgressBar::new(count as u64).with_style(ProgressStyle::with_template(
+    let bar = ProgressBar::new((count + studies) as u64).with_style(ProgressStyle::with_template(
         "{bar:30} {pos}/{len} {elapsed} {wide_msg}",
     )?);
     for (scene, mut table, chunks) in work {
         campaign::run(options, scene, &mut table, chunks, &bar)?;
     }
+    let mut extras = study::run(&Sweep, options, &folder, &bar)?;
+    for map in Map::ALL {
+        extras += &study::run(&map, options, &folder, &bar)?;
+    }
+    extras += &study::run(&Scale, options, &folder, &bar)?;
     bar.finish_and_clear();
-    publish(options, &folder)
+    publish(options, &folder, &extras)
 }
 
 /// Writes charts and report from all tables that there are.
-fn publish(options: &Options, folder: &Path) -> Result<(), Box<dyn Error>> {
+fn publish(options: &Options, folder: &Path, extras: &str) -> Result<(), Box<dyn Error>> {
     let mut scenes = Vec::new();
     for scene in &SCENES {
         let rows = Table::open(folder, scene.name).rows;
@@ -88,6 +112,7 @@ fn publish(options: &Options, folder: &Path) -> Result<(), Box<dyn Error>> {
     for (scene, rows) in &scenes {
         text.push_str(&report::section(scene, rows));
     }
+    text.push_str(extras);
     std::fs::write(
         options.out.join("docs/speed_vs_error.md"),
         text.trim_end().to_owned() + "\n",

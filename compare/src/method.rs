@@ -38,6 +38,10 @@ impl Method {
         }
     }
 
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|m| m.name() == name)
+    }
+
     pub fn title(self) -> &'static str {
         match self {
             Self::Ours => "bevy_coilover",

@@ -88,8 +88,5 @@ impl Options {
 }
 
 fn method(name: &str) -> Result<Method, lexopt::Error> {
-    Method::ALL
-        .into_iter()
-        .find(|m| m.name() == name)
-        .ok_or_else(|| format!("no method {name:?}").into())
+    Method::named(name).ok_or_else(|| format!("no method {name:?}").into())
 }

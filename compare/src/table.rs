@@ -102,7 +102,7 @@ impl Row {
         else {
             return None;
         };
-        let method = Method::ALL.into_iter().find(|m| m.name() == *method)?;
+        let method = Method::named(method)?;
         let dial = method
             .dials(false)
             .into_iter()

@@ -1,0 +1,78 @@
+//! What is measured beside the scenes, kept as CSV likewise.
+
+use crate::method::Method;
+use crate::options::Options;
+use crate::paint::Drawn;
+use indicatif::ProgressBar;
+use std::error::Error;
+use std::fs;
+use std::path::Path;
+
+/// A measurement of every method, with a table, a picture and a section of its own.
+pub trait Study {
+    type Item;
+    /// As on the command line, and of its files.
+    fn name(&self) -> &'static str;
+    /// Items that a method has when all is measured.
+    fn wanted(&self, quick: bool) -> usize;
+    fn measure(&self, method: Method, quick: bool) -> Result<Vec<Self::Item>, Box<dyn Error>>;
+    fn method(item: &Self::Item) -> Method;
+    fn header(&self) -> String;
+    fn line(item: &Self::Item) -> String;
+    fn parse(cells: &[&str]) -> Option<Self::Item>;
+    fn draw(&self, path: &Path, items: &[Self::Item]) -> Drawn;
+    fn section(&self, items: &[Self::Item]) -> String;
+}
+
+/// Measures what is asked for and missing, draws what there is, and tells it.
+pub fn run<S: Study>(
+    study: &S,
+    options: &Options,
+    folder: &Path,
+    bar: &ProgressBar,
+) -> Result<String, Box<dyn Error>> {
+    let path = folder.join(format!("{}.csv", study.name()));
+    let text = fs::read_to_string(&path).unwrap_or_default();
+    let mut items: Vec<S::Item> = text
+        .lines()
+        .skip(1)
+        .filter_map(|line| S::parse(&line.split(',').collect::<Vec<_>>()))
+        .collect();
+    let wanted = study.wanted(options.quick);
+    let mut news = false;
+    for method in asked(study, options) {
+        let there = items.iter().filter(|i| S::method(i) == method).count();
+        if there < wanted || options.fresh {
+            bar.set_message(format!("{}: {}", study.name(), method.name()));
+            let measured = study.measure(method, options.quick)?;
+            items.retain(|i| S::method(i) != method);
+            items.extend(measured);
+            bar.inc(1);
+            news = true;
+        }
+    }
+    if items.is_empty() {
+        return Ok(String::new());
+    }
+    items.sort_by_key(|i| S::method(i));
+    if news {
+        let lines: Vec<String> = items.iter().map(S::line).collect();
+        fs::write(&path, format!("{}\n{}\n", study.header(), lines.join("\n")))?;
+    }
+    study.draw(&folder.join(format!("{}.svg", study.name())), &items)?;
+    Ok(study.section(&items))
+}
+
+/// Methods that a study is to measure. Avian's second one differs in damping alone, which no study needs.
+pub fn asked<S: Study>(study: &S, options: &Options) -> Vec<Method> {
+    if !options.wants(study.name()) {
+        return Vec::new();
+    }
+    let methods = options.methods.iter().copied();
+    methods.filter(|m| *m != Method::AvianBare).collect()
+}
+
+/// A number, or the name of its method.
+pub fn number(cell: &str) -> Option<f64> {
+    cell.parse().ok()
+}
