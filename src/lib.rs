@@ -5,6 +5,7 @@ mod element;
 mod engine;
 mod plugin;
 mod readout;
+mod recommend;
 mod settings;
 #[cfg(feature = "visual")]
 mod visual;
@@ -13,6 +14,7 @@ pub use element::{Anchors, Damper, Spring, SpringDamper, SpringFault};
 pub use engine::SpringLoad;
 pub use plugin::{CoiloverPlugin, CoiloverSystems};
 pub use readout::{SpringMethod, SpringReadout};
+pub use recommend::recommend;
 pub use settings::CoiloverSettings;
 #[cfg(feature = "visual")]
 pub use visual::{
@@ -47,7 +49,7 @@ impl PluginGroup for CoiloverPlugins {
 pub mod prelude {
     pub use crate::{
         Anchors, CoiloverPlugin, CoiloverPlugins, CoiloverSettings, CoiloverSystems, Damper,
-        Spring, SpringDamper, SpringFault, SpringLoad, SpringMethod, SpringReadout,
+        Spring, SpringDamper, SpringFault, SpringLoad, SpringMethod, SpringReadout, recommend,
     };
     #[cfg(feature = "visual")]
     pub use crate::{

@@ -3,6 +3,7 @@
 //! `cargo run --release -p compare` runs every scene with every method and writes what it measured to
 //! `docs/speed_vs_error.md`, with tables as CSV and charts as SVG beside it; `--help` tells the options.
 
+mod advice;
 mod campaign;
 mod chart;
 mod clock;
@@ -113,6 +114,7 @@ fn publish(options: &Options, folder: &Path, extras: &str) -> Result<(), Box<dyn
         text.push_str(&report::section(scene, rows));
     }
     text.push_str(extras);
+    text.push_str(&advice::section(&scenes));
     std::fs::write(
         options.out.join("docs/speed_vs_error.md"),
         text.trim_end().to_owned() + "\n",

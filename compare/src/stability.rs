@@ -135,8 +135,17 @@ impl Study for Map {
                 .margin(8)
                 .x_label_area_size(40)
                 .y_label_area_size(62)
-                .build_cartesian_2d(0..phases.len(), 0..rows.len())?;
-            let mesh = |list: &[f64], i: usize| list.get(i).map_or(String::new(), |x| short(*x));
+                .build_cartesian_2d(
+                    (0..phases.len() - 1).into_segmented(),
+                    (0..rows.len() - 1).into_segmented(),
+                )?;
+            let label = |list: &[f64], at: &SegmentValue<usize>, every: usize| match at {
+                SegmentValue::CenterOf(i) if i % every == 0 => {
+                    list.get(*i).map_or(String::new(), |x| short(*x))
+                }
+                _ => String::new(),
+            };
+            let every = if phases.len() > 8 { 3 } else { 1 };
             chart
                 .configure_mesh()
                 .disable_mesh()
@@ -145,21 +154,17 @@ impl Study for Map {
                 .x_desc("ω·dt, radians per step")
                 .y_desc(self.axis())
                 .x_labels(phases.len())
-                .x_label_formatter(&|i| {
-                    let shown = i % 3 == 0 || phases.len() < 8;
-                    if shown {
-                        mesh(&phases, *i)
-                    } else {
-                        String::new()
-                    }
-                })
-                .y_label_formatter(&|i| mesh(rows, *i))
+                .y_labels(rows.len())
+                .x_label_formatter(&|i| label(&phases, i, every))
+                .y_label_formatter(&|i| label(rows, i, 1))
                 .draw()?;
             for f in fields.iter().filter(|f| f.method == method) {
                 let place = |list: &[f64], x: f64| list.iter().position(|y| *y == x);
                 if let (Some(x), Some(y)) = (place(&phases, f.phase), place(rows, f.other)) {
                     let paint = shade(f.error).filled();
-                    chart.draw_series([Rectangle::new([(x, y), (x + 1, y + 1)], paint)])?;
+                    let at = |x, y| (SegmentValue::Exact(x), SegmentValue::Exact(y));
+                    let corners = [at(x, y), at(x + 1, y + 1)];
+                    chart.draw_series([Rectangle::new(corners, paint)])?;
                 }
             }
         }

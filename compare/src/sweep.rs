@@ -203,7 +203,7 @@ fn draw(path: &Path, points: &[Point]) -> Drawn {
         if zeta == ZETAS[0] {
             chart
                 .configure_series_labels()
-                .position(SeriesLabelPosition::LowerRight)
+                .position(SeriesLabelPosition::UpperLeft)
                 .background_style(WHITE.mix(0.85))
                 .label_font(font(13))
                 .draw()?;
