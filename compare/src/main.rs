@@ -54,6 +54,10 @@ fn main() -> ExitCode {
             scale::tell(method, springs);
             Ok(())
         }
+        Ok(Request::Updates(counts)) => {
+            scale::update(counts);
+            Ok(())
+        }
         Ok(Request::Run(options)) => run(&options),
         Err(error) => Err(error.into()),
     };

@@ -36,6 +36,8 @@ pub enum Request {
     List,
     /// Of the scale sweep, in a process of its own: method and number of springs.
     Scale(Method, u32),
+    /// For counting instructions: pairs of bodies, how many of them with one of our springs, and updates.
+    Updates([u32; 3]),
 }
 
 impl Options {
@@ -76,6 +78,10 @@ impl Options {
                 Long("scale-of") => {
                     let method = method(&parser.value()?.string()?)?;
                     return Ok(Request::Scale(method, parser.value()?.parse()?));
+                }
+                Long("updates") => {
+                    let mut number = || parser.value()?.parse();
+                    return Ok(Request::Updates([number()?, number()?, number()?]));
                 }
                 other => return Err(other.unexpected()),
             }

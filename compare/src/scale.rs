@@ -118,6 +118,14 @@ pub fn tell(method: Method, springs: u32) {
     println!("{} {} {} {memory}", times.median, times.low, times.high);
 }
 
+/// Runs so many updates of so many pairs, of which so many have one of our springs.
+pub fn update([bodies, springs, updates]: [u32; 3]) {
+    let mut problem = pairs(bodies);
+    problem.links.truncate(springs as usize);
+    let mut rig = Rig::new(&problem, Setting::default_of(Method::Ours, 60));
+    (0..updates).for_each(|_| rig.tick());
+}
+
 /// Has another process measure it.
 fn ask(method: Method, springs: u32) -> Result<Load, Box<dyn Error>> {
     let output = Command::new(std::env::current_exe()?)

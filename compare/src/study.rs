@@ -32,12 +32,7 @@ pub fn run<S: Study>(
     bar: &ProgressBar,
 ) -> Result<String, Box<dyn Error>> {
     let path = folder.join(format!("{}.csv", study.name()));
-    let text = fs::read_to_string(&path).unwrap_or_default();
-    let mut items: Vec<S::Item> = text
-        .lines()
-        .skip(1)
-        .filter_map(|line| S::parse(&line.split(',').collect::<Vec<_>>()))
-        .collect();
+    let mut items = open::<S>(&path);
     let wanted = study.wanted(options.quick);
     let mut news = false;
     for method in asked(study, options) {
@@ -58,9 +53,17 @@ pub fn run<S: Study>(
     if news {
         let lines: Vec<String> = items.iter().map(S::line).collect();
         fs::write(&path, format!("{}\n{}\n", study.header(), lines.join("\n")))?;
+        // So that the next run draws the same from the file.
+        items = open::<S>(&path);
     }
     study.draw(&folder.join(format!("{}.svg", study.name())), &items)?;
     Ok(study.section(&items))
+}
+
+fn open<S: Study>(path: &Path) -> Vec<S::Item> {
+    let text = fs::read_to_string(path).unwrap_or_default();
+    let cells = |line: &str| S::parse(&line.split(',').collect::<Vec<_>>());
+    text.lines().skip(1).filter_map(cells).collect()
 }
 
 /// Methods that a study is to measure. Avian's second one differs in damping alone, which no study needs.
@@ -72,7 +75,7 @@ pub fn asked<S: Study>(study: &S, options: &Options) -> Vec<Method> {
     methods.filter(|m| *m != Method::AvianBare).collect()
 }
 
-/// A number, or the name of its method.
+/// A number, if it is one.
 pub fn number(cell: &str) -> Option<f64> {
     cell.parse().ok()
 }

@@ -100,8 +100,12 @@ pub fn verdict(rows: &[Row]) -> String {
         " Held to the same time step as well, it is for {} of {sum}.",
         sum - left
     );
-    if lost > 0 {
-        let _ = write!(text, " {lost} settings of the others diverge.");
+    match lost {
+        0 => {}
+        1 => text.push_str(" One setting of the others diverges."),
+        _ => {
+            let _ = write!(text, " {lost} settings of the others diverge.");
+        }
     }
     for method in [Method::Joint, Method::Force, Method::Avian] {
         text.push_str(&against(rows, method));
