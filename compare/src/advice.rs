@@ -88,7 +88,7 @@ mod tests {
                 // Elsewhere single precision decides; and a spring that is not resolved takes more anyway.
                 if error < 1e-4
                     || row.setting.rate > 120
-                    || (stiffness as f32).sqrt() * dt > 2.0 * n as f32
+                    || f32::sqrt(stiffness) * dt > 2.0 * n as f32
                 {
                     continue;
                 }

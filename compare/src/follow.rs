@@ -39,12 +39,12 @@ pub fn follow(problem: &Problem, setting: Setting) -> Strayed {
             for (body, place) in problem.truth.watched.iter().zip(places) {
                 let off = rig.state(*body).position.distance(place);
                 // Not with `max`, which would drop what is not a number.
-                if !(off <= strayed.error) {
+                if off > strayed.error || off.is_nan() {
                     strayed.error = off;
                 }
             }
         }
-        if !(strayed.error <= 10.0 * problem.size) {
+        if strayed.error > 10.0 * problem.size || strayed.error.is_nan() {
             strayed.diverged = true;
             break;
         }

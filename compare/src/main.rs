@@ -7,12 +7,14 @@ mod advice;
 mod campaign;
 mod chart;
 mod clock;
+mod describe;
 mod follow;
 mod front;
 mod machine;
 mod method;
 mod options;
 mod paint;
+mod peers;
 mod problem;
 mod readme;
 mod report;
@@ -54,6 +56,7 @@ fn main() -> ExitCode {
             scale::tell(method, springs);
             Ok(())
         }
+        Ok(Request::Describe(folder)) => describe::write_all(&folder).map_err(Into::into),
         Ok(Request::Updates(counts)) => {
             scale::update(counts);
             Ok(())
@@ -118,6 +121,7 @@ fn publish(options: &Options, folder: &Path, extras: &str) -> Result<(), Box<dyn
         text.push_str(&report::section(scene, rows));
     }
     text.push_str(extras);
+    text.push_str(&peers::section(folder));
     text.push_str(&advice::section(&scenes));
     std::fs::write(
         options.out.join("docs/speed_vs_error.md"),

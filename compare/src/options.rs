@@ -13,7 +13,9 @@ cargo run --release -p compare -- [OPTIONS]
   --method NAME   only this method: ours, force, joint, avian, avian-bare; may be given again
   --quick         few settings, few repeats, two time steps
   --fresh         measure again what the tables already hold
+  --report        measure nothing, write report and charts from the tables
   --out DIR       write DIR/docs/speed_vs_error.md and the table in DIR/README.md (default: the repository)
+  --describe DIR  write the scenes of points as text, for compare/peers
   --list          print the scenes' names
   --help          print this
 
@@ -26,6 +28,7 @@ pub struct Options {
     pub methods: Vec<Method>,
     pub quick: bool,
     pub fresh: bool,
+    report: bool,
     pub out: PathBuf,
 }
 
@@ -36,13 +39,15 @@ pub enum Request {
     List,
     /// Of the scale sweep, in a process of its own: method and number of springs.
     Scale(Method, u32),
+    /// Write the scenes as text, into a folder.
+    Describe(PathBuf),
     /// For counting instructions: pairs of bodies, how many of them with one of our springs, and updates.
     Updates([u32; 3]),
 }
 
 impl Options {
     pub fn wants(&self, scene: &str) -> bool {
-        self.scenes.is_empty() || self.scenes.iter().any(|s| s == scene)
+        !self.report && (self.scenes.is_empty() || self.scenes.iter().any(|s| s == scene))
     }
 
     /// Turns that each setting is timed for.
@@ -57,6 +62,7 @@ impl Options {
             methods: Vec::new(),
             quick: false,
             fresh: false,
+            report: false,
             out: PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/..")),
         };
         let mut parser = lexopt::Parser::from_env();
@@ -72,6 +78,7 @@ impl Options {
                 Long("method") => options.methods.push(method(&parser.value()?.string()?)?),
                 Long("quick") => options.quick = true,
                 Long("fresh") => options.fresh = true,
+                Long("report") => options.report = true,
                 Long("out") => options.out = parser.value()?.into(),
                 Long("list") => return Ok(Request::List),
                 Short('h') | Long("help") => return Ok(Request::Help),
@@ -79,6 +86,7 @@ impl Options {
                     let method = method(&parser.value()?.string()?)?;
                     return Ok(Request::Scale(method, parser.value()?.parse()?));
                 }
+                Long("describe") => return Ok(Request::Describe(parser.value()?.into())),
                 Long("updates") => {
                     let mut number = || parser.value()?.parse();
                     return Ok(Request::Updates([number()?, number()?, number()?]));
