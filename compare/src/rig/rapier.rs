@@ -77,8 +77,13 @@ pub fn fill(world: &mut World, problem: &Problem, method: Method) -> Vec<Entity>
                 let joint = SpringJointBuilder::new(link.rest, link.stiffness, link.damping)
                     .local_anchor1(link.anchors[0])
                     .local_anchor2(link.anchors[1]);
-                // A body may carry several joints as children.
-                world.spawn((ImpulseJoint::new(a, joint), ChildOf(b)));
+                let joint = ImpulseJoint::new(a, joint);
+                if world.get::<ImpulseJoint>(b).is_none() {
+                    world.entity_mut(b).insert(joint);
+                } else {
+                    // Further ones are children.
+                    world.spawn((joint, ChildOf(b)));
+                }
             }
             Method::Force => {
                 world.spawn(Pull {
