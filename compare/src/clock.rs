@@ -75,7 +75,13 @@ pub fn race(problem: &Problem, settings: &[Setting], turns: u32) -> Vec<Times> {
                 runner.rig = warm(problem, runner.setting);
                 runner.ticks = WARM_UP;
             }
-            let each = runner.turn();
+            let Runner {
+                rig, batch, ticks, ..
+            } = runner;
+            let each = turn_of(*batch, || {
+                rig.tick();
+                *ticks += 1;
+            });
             runner.turns.push(each);
         }
     }
@@ -83,30 +89,32 @@ pub fn race(problem: &Problem, settings: &[Setting], turns: u32) -> Vec<Times> {
 }
 
 impl Runner {
-    /// Time of an update, s.
-    fn turn(&mut self) -> f64 {
-        let mut each = f64::NAN;
-        for _ in 0..TRIES {
-            let waited = waiting();
-            let start = Instant::now();
-            for _ in 0..self.batch {
-                self.rig.tick();
-            }
-            let turn = start.elapsed().as_secs_f64();
-            self.ticks += self.batch;
-            each = turn / f64::from(self.batch);
-            match (waited, waiting()) {
-                (Some(before), Some(after)) if after - before > WAIT * turn => {}
-                _ => break,
-            }
-        }
-        each
-    }
-
     fn is_disturbed(&self) -> bool {
         let shortest = self.turns.iter().copied().fold(f64::INFINITY, f64::min);
         Times::of(self.turns.clone()).median > DISTURBED * shortest
     }
+}
+
+/// Time of an update, s: of so many in a row, during which this thread had a core to itself if that can be had.
+pub fn turn_of(updates: u32, mut update: impl FnMut()) -> f64 {
+    let (mut best, mut least) = (f64::NAN, f64::INFINITY);
+    for _ in 0..TRIES {
+        let before = waiting();
+        let start = Instant::now();
+        (0..updates).for_each(|_| update());
+        let turn = start.elapsed().as_secs_f64();
+        let share = match (before, waiting()) {
+            (Some(before), Some(after)) => (after - before) / turn,
+            _ => 0.0,
+        };
+        if share < least {
+            (best, least) = (turn / f64::from(updates), share);
+        }
+        if share < WAIT {
+            break;
+        }
+    }
+    best
 }
 
 /// How long this thread has waited for a core so far, s.

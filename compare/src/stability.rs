@@ -57,6 +57,23 @@ impl Map {
     }
 }
 
+impl Map {
+    fn field(self, method: Method, phase: f64, other: f64) -> Field {
+        let setting = Setting::default_of(method, RATE);
+        let strayed = follow(&self.problem(phase / setting.dt(), other), setting);
+        Field {
+            method,
+            phase,
+            other,
+            error: if strayed.diverged {
+                f64::INFINITY
+            } else {
+                strayed.error / AMPLITUDE
+            },
+        }
+    }
+}
+
 impl Study for Map {
     type Item = Field;
 
@@ -71,23 +88,13 @@ impl Study for Map {
         self.rows().len() * columns(quick).len()
     }
 
-    fn measure(&self, method: Method, quick: bool) -> Result<Vec<Field>, Box<dyn Error>> {
-        let setting = Setting::default_of(method, RATE);
+    fn measure(&self, methods: &[Method], quick: bool) -> Result<Vec<Field>, Box<dyn Error>> {
         let mut fields = Vec::new();
-        for other in self.rows() {
-            for phase in columns(quick) {
-                let strayed = follow(&self.problem(phase / setting.dt(), *other), setting);
-                let error = if strayed.diverged {
-                    f64::INFINITY
-                } else {
-                    strayed.error / AMPLITUDE
-                };
-                fields.push(Field {
-                    method,
-                    phase,
-                    other: *other,
-                    error,
-                });
+        for method in methods {
+            for other in self.rows() {
+                for phase in columns(quick) {
+                    fields.push(self.field(*method, phase, *other));
+                }
             }
         }
         Ok(fields)

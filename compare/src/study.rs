@@ -15,7 +15,7 @@ pub trait Study {
     fn name(&self) -> &'static str;
     /// Items that a method has when all is measured.
     fn wanted(&self, quick: bool) -> usize;
-    fn measure(&self, method: Method, quick: bool) -> Result<Vec<Self::Item>, Box<dyn Error>>;
+    fn measure(&self, methods: &[Method], quick: bool) -> Result<Vec<Self::Item>, Box<dyn Error>>;
     fn method(item: &Self::Item) -> Method;
     fn header(&self) -> String;
     fn line(item: &Self::Item) -> String;
@@ -34,23 +34,24 @@ pub fn run<S: Study>(
     let path = folder.join(format!("{}.csv", study.name()));
     let mut items = open::<S>(&path);
     let wanted = study.wanted(options.quick);
-    let mut news = false;
-    for method in asked(study, options) {
-        let there = items.iter().filter(|i| S::method(i) == method).count();
-        if there < wanted || options.fresh {
-            bar.set_message(format!("{}: {}", study.name(), method.name()));
-            let measured = study.measure(method, options.quick)?;
-            items.retain(|i| S::method(i) != method);
-            items.extend(measured);
-            bar.inc(1);
-            news = true;
-        }
+    let missing: Vec<Method> = asked(study, options)
+        .into_iter()
+        .filter(|method| {
+            let there = items.iter().filter(|i| S::method(i) == *method).count();
+            there < wanted || options.fresh
+        })
+        .collect();
+    if !missing.is_empty() {
+        bar.set_message(study.name());
+        items.retain(|i| !missing.contains(&S::method(i)));
+        items.extend(study.measure(&missing, options.quick)?);
+        bar.inc(missing.len() as u64);
     }
     if items.is_empty() {
         return Ok(String::new());
     }
     items.sort_by_key(|i| S::method(i));
-    if news {
+    if !missing.is_empty() {
         let lines: Vec<String> = items.iter().map(S::line).collect();
         fs::write(&path, format!("{}\n{}\n", study.header(), lines.join("\n")))?;
         // So that the next run draws the same from the file.

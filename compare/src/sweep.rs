@@ -43,10 +43,10 @@ impl Study for Sweep {
         ZETAS.len() * steps(quick)
     }
 
-    fn measure(&self, method: Method, quick: bool) -> Result<Vec<Point>, Box<dyn Error>> {
+    fn measure(&self, methods: &[Method], quick: bool) -> Result<Vec<Point>, Box<dyn Error>> {
         let mut points = Vec::new();
         let last = steps(quick) - 1;
-        for zeta in ZETAS {
+        for (method, zeta) in methods.iter().flat_map(|m| ZETAS.map(|zeta| (*m, zeta))) {
             for i in 0..=last {
                 // 0.01 … 10
                 let phase = 10.0_f64.powf(3.0 * i as f64 / last as f64 - 2.0);
