@@ -242,9 +242,9 @@ fn draw(path: &Path, loads: &[Load]) -> Drawn {
 fn section(loads: &[Load]) -> String {
     let mut text = String::from(
         "## From ten springs to a hundred thousand\n\nIsolated springs between two moving bodies each, without \
-         shapes, at 60 steps a second, each method at its default; every cell is the fastest of three processes of its own, \
-         in turns. Memory is \
-         the most that the process has had, bodies and engine included.\n\n\
+         shapes, at 60 steps a second, each method at its default; every cell is the fastest \
+         of three processes of its own, in turns. Memory is the most that the process has had, bodies and engine \
+         included.\n\n\
          ![Time over number of springs](speed_vs_error/scale.svg)\n\n\
          | method | springs | update | quartiles | per spring | peak memory |\n|---|---|---|---|---|---|\n",
     );
@@ -262,6 +262,31 @@ fn section(loads: &[Load]) -> String {
                 .map_or("–".into(), |b| format!("{:.0} MiB", b / MIB)),
         );
     }
+    text.push_str(&ratios(loads));
     text.push('\n');
+    text
+}
+
+/// Our updates beside the others', in words.
+fn ratios(loads: &[Load]) -> String {
+    let mut text = String::new();
+    for other in [Method::Joint, Method::Force, Method::Avian] {
+        let of = |method, springs| {
+            let mut loads = loads.iter();
+            loads.find(|l: &&Load| l.method == method && l.springs == springs)
+        };
+        let ratios: Vec<String> = counts(false)
+            .iter()
+            .filter_map(|n| Some((n, of(Method::Ours, *n)?, of(other, *n)?)))
+            .map(|(n, ours, peer)| format!("{:.2} at {n}", ours.times.median / peer.times.median))
+            .collect();
+        if !ratios.is_empty() {
+            let (title, ratios) = (other.title(), ratios.join(", "));
+            let _ = writeln!(
+                text,
+                "\n- Time of our update, of that with {title}: {ratios}."
+            );
+        }
+    }
     text
 }
