@@ -242,6 +242,39 @@ fn section(points: &[Point]) -> String {
         }
     }
     text.push('\n');
+    text.push_str(&verdict(points));
+    text
+}
+
+/// Where ours is nearest to the truth, and where it is not.
+fn verdict(points: &[Point]) -> String {
+    let mut text = String::new();
+    for zeta in ZETAS {
+        let of = |p: &&Point| p.zeta == zeta;
+        let error = |p: &Point| p.error.unwrap_or(f64::INFINITY);
+        let ours = points.iter().filter(|p| of(p) && p.method == Method::Ours);
+        let (mut sum, mut lost) = (0, Vec::new());
+        for our in ours {
+            let mut peers = points
+                .iter()
+                .filter(|p| of(p) && p.method != Method::Ours && p.phase == our.phase);
+            sum += 1;
+            if peers.any(|peer| error(peer) <= error(our)) {
+                lost.push(digits(our.phase));
+            }
+        }
+        let won = sum - lost.len();
+        let _ = write!(
+            text,
+            "- ζ = {zeta}: our error is below every other's at {won} of {sum} ω·dt"
+        );
+        if lost.is_empty() {
+            text.push_str(".\n");
+        } else {
+            let _ = writeln!(text, "; it is not at {}.", lost.join(", "));
+        }
+    }
+    text.push('\n');
     text
 }
 
