@@ -6,6 +6,7 @@ mod element;
 mod engine;
 mod plugin;
 mod readout;
+mod recommend;
 mod settings;
 #[cfg(feature = "visual")]
 mod visual;
@@ -20,6 +21,7 @@ pub use element::{
 pub use engine::SpringLoad;
 pub use plugin::{CoiloverPlugin, CoiloverSystems};
 pub use readout::{SpringMethod, SpringReadout};
+pub use recommend::recommend;
 pub use settings::CoiloverSettings;
 #[cfg(feature = "visual")]
 pub use visual::{
@@ -58,6 +60,7 @@ pub mod prelude {
         ForceLaw, ForceTable, MaxForce, Polynomial, Preload, Spring, SpringAction, SpringAxis,
         SpringBroke, SpringDamper, SpringFault, SpringLaw, SpringLoad, SpringMethod, SpringReadout,
         SpringTravel, SpringTuning, TorsionDamper, TorsionSpring, TorsionSpringDamper, WhenBroken,
+        recommend,
     };
     #[cfg(feature = "visual")]
     pub use crate::{

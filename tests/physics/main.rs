@@ -20,6 +20,7 @@ mod messages;
 mod natural_frequency;
 mod networks;
 mod quarter_car;
+mod recommend;
 mod repeatability;
 mod sleeping;
 mod spinning_pair;

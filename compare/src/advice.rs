@@ -1,0 +1,106 @@
+//! Which micro-steps and tick rate for which spring.
+
+use crate::front::find;
+use crate::method::{Dial, Method, Setting};
+use crate::scenes::Scene;
+use crate::table::Row;
+use crate::words::length;
+use bevy_coilover::recommend;
+use std::fmt::Write;
+
+const RATES: [u32; 5] = [30, 60, 120, 240, 480];
+const TOLERANCES: [f32; 4] = [1e-2, 1e-3, 1e-4, 1e-5];
+
+/// The section, its tables made by the crate's own function and from what was measured.
+pub fn section(scenes: &[(&Scene, Vec<Row>)]) -> String {
+    let mut text = String::from(
+        "## How to choose\n\n\
+         ω = √(k/m) is the spring's own angular frequency, dt the time step.\n\n\
+         - **ω·dt up to 2.** One micro-step has frequency and decay right; a lone element's motion along its line \
+         is exact. What is left comes from turning, and falls with the square of micro-steps and tick rate alike: \
+         micro-steps cost less.\n\
+         - **ω·dt above 2.** The spring's own motion is not resolved. If it matters, take at least ω·dt/2 \
+         micro-steps; if it does not, leave it. The maps above show what one micro-step makes of it; there a \
+         `SpringJoint` can be nearer, since it damps what it cannot resolve.\n\
+         - **Elements that share bodies** (chains, cloth, stars): three times as many micro-steps for the same \
+         error, or extrapolation, which is the best bargain up to about ω·dt = 1.5 of the stiffest mode.\n\
+         - **Contacts** follow the engine's step, not ours: raise the tick rate for them.\n\n\
+         `recommend(stiffness, damping, mass, dt, tolerance)` returns the micro-steps of a lone element that swings \
+         over a metre. For ω·dt up to 2 and little damping:\n\n| steps per second |",
+    );
+    for tolerance in TOLERANCES {
+        let _ = write!(text, " {tolerance:e} m/s |");
+    }
+    text.push_str("\n|---|---|---|---|---|\n");
+    for rate in RATES {
+        let _ = write!(text, "| {rate} |");
+        for tolerance in TOLERANCES {
+            let n = recommend(1.0, 0.0, 1.0, (rate as f32).recip(), tolerance);
+            let _ = write!(text, " {n} |");
+        }
+        text.push('\n');
+    }
+    text.push_str(
+        "\nMeasured at 60 steps a second, largest error of each scene:\n\n\
+         | scene | 1 | 2 | 4 | 8 | 16 micro-steps | extrapolated | tolerance 1e-3 |\n|---|---|---|---|---|---|---|---|\n",
+    );
+    let dials = [1, 2, 4, 8, 16]
+        .map(Dial::Microsteps)
+        .into_iter()
+        .chain([Dial::Extrapolated, Dial::Tolerance(3)]);
+    for (scene, rows) in scenes {
+        let _ = write!(text, "| {} |", scene.title);
+        for dial in dials.clone() {
+            let setting = Setting {
+                method: Method::Ours,
+                dial,
+                rate: 60,
+            };
+            let cell = find(rows, setting).map_or("–".into(), |row| length(&row));
+            let _ = write!(text, " {cell} |");
+        }
+        text.push('\n');
+    }
+    text.push('\n');
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::table::Table;
+    use std::path::Path;
+
+    #[test]
+    fn recommended_microsteps_are_those_of_the_measured_table() {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/speed_vs_error");
+        let mut seen = 0;
+        for (scene, stiffness, damping) in [
+            ("pendulum-soft", 50.0, 0.0),
+            ("pendulum-damped", 500.0, 5.0),
+            ("pendulum-stiff", 5e4, 100.0),
+        ] {
+            for row in Table::open(&folder, scene).rows {
+                let (Dial::Microsteps(n), error) = (row.setting.dial, row.strayed.error) else {
+                    continue;
+                };
+                let dt = row.setting.dt() as f32;
+                // Elsewhere single precision decides; and a spring that is not resolved takes more anyway.
+                if error < 1e-4
+                    || row.setting.rate > 120
+                    || f32::sqrt(stiffness) * dt > 2.0 * n as f32
+                {
+                    continue;
+                }
+                let told = recommend(stiffness, damping, 1.0, dt, error as f32 / 10.0);
+                assert!(
+                    (n..=2 * n + 1).contains(&told),
+                    "{scene} at {} Hz: {n} gave {error:e} m, recommended {told}",
+                    row.setting.rate
+                );
+                seen += 1;
+            }
+        }
+        assert!(seen >= 12, "{seen} rows");
+    }
+}

@@ -1,0 +1,78 @@
+//! Runs what is missing from the tables.
+
+use crate::clock::race;
+use crate::follow::follow;
+use crate::method::{Method, Setting, rates};
+use crate::options::Options;
+use crate::scenes::Scene;
+use crate::table::{Row, Table};
+use indicatif::ProgressBar;
+use std::io;
+
+/// Settings of a scene that are asked for and missing, one list per time step: those run against each
+/// other, and are written before the next begin.
+pub fn missing(options: &Options, scene: &Scene, table: &Table) -> Vec<Vec<Setting>> {
+    let damped = (scene.make)().links.iter().any(|l| l.damping > 0.0);
+    let methods = options
+        .methods
+        .iter()
+        .filter(|m| damped || **m != Method::AvianBare);
+    let mut chunks = Vec::new();
+    for rate in rates(options.quick) {
+        let mut chunk = Vec::new();
+        for method in methods.clone() {
+            for dial in method.dials(options.quick) {
+                let setting = Setting {
+                    method: *method,
+                    dial,
+                    rate: *rate,
+                };
+                if options.fresh || !table.has(setting, options.turns()) {
+                    chunk.push(setting);
+                }
+            }
+        }
+        if !chunk.is_empty() {
+            chunks.push(chunk);
+        }
+    }
+    chunks
+}
+
+/// Follows and times them.
+pub fn run(
+    options: &Options,
+    scene: &Scene,
+    table: &mut Table,
+    chunks: Vec<Vec<Setting>>,
+    bar: &ProgressBar,
+) -> io::Result<()> {
+    for chunk in chunks {
+        let problem = (scene.make)();
+        let mut strayed = Vec::new();
+        for setting in &chunk {
+            bar.set_message(format!(
+                "{}: {}, {} at {} Hz",
+                scene.name,
+                setting.method.name(),
+                setting.dial,
+                setting.rate
+            ));
+            strayed.push(follow(&problem, *setting));
+            bar.inc(1);
+        }
+        bar.set_message(format!("{}: the clock runs", scene.name));
+        let times = race(&problem, &chunk, options.turns());
+        let rows = chunk.iter().zip(strayed).zip(times);
+        let rows = rows
+            .map(|((setting, strayed), times)| Row {
+                setting: *setting,
+                strayed,
+                times,
+                turns: options.turns(),
+            })
+            .collect();
+        table.put(rows)?;
+    }
+    Ok(())
+}

@@ -1,0 +1,161 @@
+//! Time per step, measured so that two methods can be compared.
+//!
+//! All methods of a race run in turns: what else the machine does meets them alike. Each turn is a batch of
+//! whole updates of the app; the median over the turns is told, with its quartiles. Whoever has been
+//! disturbed, so that its median is well above its shortest turn, gets more of them; a turn in which the
+//! thread had to wait for a core is taken again, where the system tells.
+
+use crate::method::Setting;
+use crate::problem::Problem;
+use crate::rig::Rig;
+use std::time::Instant;
+
+/// Updates before the clock runs.
+const WARM_UP: u32 = 10;
+/// A turn takes about so long, s.
+const TURN: f64 = 1.5e-3;
+/// Most simulated seconds before a scene starts anew: a scene at rest says little.
+const LONGEST: f64 = 10.0;
+
+/// Time per step, s.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Times {
+    pub median: f64,
+    /// Quartiles.
+    pub low: f64,
+    pub high: f64,
+}
+
+/// Ratio of median to shortest turn from which on more turns are taken, up to so many times as many.
+const DISTURBED: f64 = 1.2;
+const MORE: usize = 4;
+
+/// Share of a turn that may pass waiting for a core, and how often it is tried to have it so.
+const WAIT: f64 = 0.02;
+const TRIES: u32 = 8;
+
+struct Runner {
+    rig: Rig,
+    setting: Setting,
+    batch: u32,
+    ticks: u32,
+    turns: Vec<f64>,
+}
+
+/// Times the settings against each other, in so many turns each.
+pub fn race(problem: &Problem, settings: &[Setting], turns: u32) -> Vec<Times> {
+    let longest = problem.seconds.clamp(3.0, LONGEST);
+    let mut runners: Vec<Runner> = settings
+        .iter()
+        .map(|setting| {
+            let mut rig = warm(problem, *setting);
+            let start = Instant::now();
+            (0..3).for_each(|_| rig.tick());
+            let once = start.elapsed().as_secs_f64() / 3.0;
+            let most = (longest / setting.dt()) as u32 - WARM_UP;
+            Runner {
+                rig,
+                setting: *setting,
+                batch: ((TURN / once).ceil() as u32).clamp(1, most),
+                ticks: WARM_UP + 3,
+                turns: Vec::new(),
+            }
+        })
+        .collect();
+    for turn in 0..MORE * turns as usize {
+        let needed = |r: &Runner| turn < turns as usize || r.is_disturbed();
+        // Another one begins each time, so that nobody always follows the same one.
+        let count = runners.len();
+        for i in 0..count {
+            let runner = &mut runners[(i + turn) % count];
+            if !needed(runner) {
+                continue;
+            }
+            if f64::from(runner.ticks + runner.batch) * runner.setting.dt() > longest {
+                runner.rig = warm(problem, runner.setting);
+                runner.ticks = WARM_UP;
+            }
+            let Runner {
+                rig, batch, ticks, ..
+            } = runner;
+            let each = turn_of(*batch, || {
+                rig.tick();
+                *ticks += 1;
+            });
+            runner.turns.push(each);
+        }
+    }
+    runners.into_iter().map(|r| Times::of(r.turns)).collect()
+}
+
+impl Runner {
+    fn is_disturbed(&self) -> bool {
+        let shortest = self.turns.iter().copied().fold(f64::INFINITY, f64::min);
+        Times::of(self.turns.clone()).median > DISTURBED * shortest
+    }
+}
+
+/// Time of an update, s: of so many in a row, during which this thread had a core to itself if that can be had.
+pub fn turn_of(updates: u32, mut update: impl FnMut()) -> f64 {
+    let (mut best, mut least) = (f64::NAN, f64::INFINITY);
+    for _ in 0..TRIES {
+        let before = waiting();
+        let start = Instant::now();
+        (0..updates).for_each(|_| update());
+        let turn = start.elapsed().as_secs_f64();
+        let share = match (before, waiting()) {
+            (Some(before), Some(after)) => (after - before) / turn,
+            _ => 0.0,
+        };
+        if share < least {
+            (best, least) = (turn / f64::from(updates), share);
+        }
+        if share < WAIT {
+            break;
+        }
+    }
+    best
+}
+
+/// How long this thread has waited for a core so far, s.
+fn waiting() -> Option<f64> {
+    let text = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
+    let nanoseconds: f64 = text.split_whitespace().nth(1)?.parse().ok()?;
+    Some(1e-9 * nanoseconds)
+}
+
+fn warm(problem: &Problem, setting: Setting) -> Rig {
+    let mut rig = Rig::new(problem, setting);
+    (0..WARM_UP).for_each(|_| rig.tick());
+    rig
+}
+
+impl Times {
+    /// Of at least one turn.
+    pub fn of(mut turns: Vec<f64>) -> Self {
+        turns.sort_by(f64::total_cmp);
+        let at = |share: f64| {
+            let last = turns.len().saturating_sub(1);
+            turns
+                .get((share * last as f64).round() as usize)
+                .copied()
+                .unwrap_or(f64::NAN)
+        };
+        Self {
+            median: at(0.5),
+            low: at(0.25),
+            high: at(0.75),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Times;
+
+    #[test]
+    fn median_and_quartiles() {
+        let times = Times::of(vec![5.0, 1.0, 3.0, 2.0, 4.0]);
+        assert_eq!([times.low, times.median, times.high], [2.0, 3.0, 4.0]);
+    }
+}

@@ -1,0 +1,97 @@
+//! Who is better than whom: less error in no more time.
+
+use crate::method::{Method, Setting};
+use crate::table::Row;
+
+/// The rows that no other row beats in both error and computing time, cheapest first.
+pub fn front(rows: &[Row]) -> Vec<Row> {
+    let mut sorted: Vec<Row> = rows
+        .iter()
+        .filter(|r| !r.strayed.diverged)
+        .copied()
+        .collect();
+    sorted.sort_by(|a, b| a.work().total_cmp(&b.work()));
+    let mut front: Vec<Row> = Vec::new();
+    for row in sorted {
+        if front
+            .last()
+            .is_none_or(|last| row.strayed.error < last.strayed.error)
+        {
+            front.push(row);
+        }
+    }
+    front
+}
+
+/// Settings of others that none of ours beats: less error, in no more computing time per simulated second.
+pub fn unbeaten(rows: &[Row]) -> Vec<Row> {
+    let ours = |r: &&Row| r.setting.method == Method::Ours && !r.strayed.diverged;
+    rows.iter()
+        .filter(|r| r.setting.method != Method::Ours && !r.strayed.diverged)
+        .filter(|peer| {
+            !rows
+                .iter()
+                .filter(ours)
+                .any(|o| o.work() <= peer.work() && o.strayed.error < peer.strayed.error)
+        })
+        .copied()
+        .collect()
+}
+
+/// Settings of others that none of ours beats with a step as long as theirs.
+pub fn unbeaten_at_their_step(rows: &[Row]) -> Vec<Row> {
+    let mut left = Vec::new();
+    for rate in crate::method::rates(false) {
+        let same: Vec<Row> = rows
+            .iter()
+            .filter(|r| r.setting.rate == *rate)
+            .copied()
+            .collect();
+        left.extend(unbeaten(&same));
+    }
+    left
+}
+
+/// The row of a setting.
+pub fn find(rows: &[Row], setting: Setting) -> Option<Row> {
+    rows.iter().find(|r| r.setting == setting).copied()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::clock::Times;
+    use crate::follow::Strayed;
+
+    fn row(method: Method, rate: u32, step: f64, error: f64) -> Row {
+        Row {
+            setting: Setting::default_of(method, rate),
+            strayed: Strayed {
+                error,
+                energy: None,
+                momentum: None,
+                diverged: false,
+            },
+            times: Times {
+                median: step,
+                low: step,
+                high: step,
+            },
+            turns: 1,
+        }
+    }
+
+    #[test]
+    fn less_error_in_no_more_time() {
+        let rows = [
+            row(Method::Ours, 30, 11e-6, 1e-3),
+            row(Method::Ours, 60, 11e-6, 1e-4),
+            row(Method::Joint, 60, 10e-6, 1e-2),
+            row(Method::Force, 30, 9e-6, 1.0),
+        ];
+        // Ours at half the rate costs less than the joint; the force at that rate costs less still.
+        assert_eq!(unbeaten(&rows), vec![rows[3]]);
+        assert_eq!(unbeaten_at_their_step(&rows), vec![rows[3], rows[2]]);
+        assert_eq!(front(&rows), vec![rows[3], rows[0], rows[1]]);
+    }
+}

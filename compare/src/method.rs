@@ -1,0 +1,153 @@
+//! The ways to make a spring, each with its own dial, and the settings that are compared.
+
+use std::fmt;
+
+/// Whose spring it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Method {
+    Ours,
+    Force,
+    Joint,
+    Avian,
+    /// Avian's joint without its damping, which brakes across the line too.
+    AvianBare,
+}
+
+impl Method {
+    pub const ALL: [Self; 5] = [
+        Self::Ours,
+        Self::Force,
+        Self::Joint,
+        Self::Avian,
+        Self::AvianBare,
+    ];
+
+    /// Whether it runs in Avian instead of Rapier.
+    pub fn is_avian(self) -> bool {
+        matches!(self, Self::Avian | Self::AvianBare)
+    }
+
+    /// As on the command line and in the tables' files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Ours => "ours",
+            Self::Force => "force",
+            Self::Joint => "joint",
+            Self::Avian => "avian",
+            Self::AvianBare => "avian-bare",
+        }
+    }
+
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|m| m.name() == name)
+    }
+
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::Ours => "bevy_coilover",
+            Self::Force => "force once per step",
+            Self::Joint => "Rapier SpringJoint",
+            Self::Avian => "Avian distance joint",
+            Self::AvianBare => "Avian, undamped",
+        }
+    }
+
+    /// The setting that a user gets without asking.
+    pub fn default_dial(self) -> Dial {
+        match self {
+            Self::Ours => Dial::Microsteps(1),
+            Self::Force => Dial::None,
+            Self::Joint => Dial::Iterations(4),
+            Self::Avian | Self::AvianBare => Dial::Substeps(6),
+        }
+    }
+
+    /// Every position of the dial, or the few that a quick look takes.
+    pub fn dials(self, quick: bool) -> Vec<Dial> {
+        let pick = |all: &[u32], few: &[u32]| if quick { few.to_vec() } else { all.to_vec() };
+        match self {
+            Self::Ours => {
+                let mut dials: Vec<Dial> = pick(&[1, 2, 4, 8, 16], &[1, 4])
+                    .into_iter()
+                    .map(Dial::Microsteps)
+                    .collect();
+                dials.push(Dial::Extrapolated);
+                dials.extend(pick(&[2, 3, 4], &[3]).into_iter().map(Dial::Tolerance));
+                dials
+            }
+            Self::Force => vec![Dial::None],
+            Self::Joint => pick(&[4, 8, 16, 32], &[4, 16])
+                .into_iter()
+                .map(Dial::Iterations)
+                .collect(),
+            Self::Avian | Self::AvianBare => pick(&[6, 12, 24, 48], &[6, 24])
+                .into_iter()
+                .map(Dial::Substeps)
+                .collect(),
+        }
+    }
+}
+
+/// A position of a method's own accuracy dial.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Dial {
+    None,
+    Microsteps(u32),
+    Extrapolated,
+    /// 10⁻ⁿ metres per second.
+    Tolerance(u32),
+    Iterations(u32),
+    Substeps(u32),
+}
+
+impl fmt::Display for Dial {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::None => write!(f, "-"),
+            Self::Microsteps(1) => write!(f, "1 micro-step"),
+            Self::Microsteps(n) => write!(f, "{n} micro-steps"),
+            Self::Extrapolated => write!(f, "extrapolated"),
+            Self::Tolerance(n) => write!(f, "tolerance 1e-{n}"),
+            Self::Iterations(n) => write!(f, "{n} iterations"),
+            Self::Substeps(n) => write!(f, "{n} substeps"),
+        }
+    }
+}
+
+/// A method as it is run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Setting {
+    pub method: Method,
+    pub dial: Dial,
+    /// Steps per second.
+    pub rate: u32,
+}
+
+impl Setting {
+    /// The method's defaults at so many steps per second.
+    pub fn default_of(method: Method, rate: u32) -> Self {
+        Self {
+            method,
+            dial: method.default_dial(),
+            rate,
+        }
+    }
+
+    /// Length of a step, s.
+    pub fn dt(self) -> f64 {
+        f64::from(self.rate).recip()
+    }
+
+    pub fn is_default(self) -> bool {
+        self.dial == self.method.default_dial()
+    }
+}
+
+/// Steps per second that are compared.
+pub fn rates(quick: bool) -> &'static [u32] {
+    if quick {
+        &[60, 240]
+    } else {
+        &[30, 60, 120, 240, 480, 960]
+    }
+}

@@ -1,0 +1,49 @@
+//! What the charts have in common.
+
+use crate::method::Method;
+use plotters::coord::Shift;
+use plotters::prelude::*;
+use std::error::Error;
+
+/// A drawing of an SVG file.
+pub type Sheet<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+/// What drawing may end in.
+pub type Drawn = Result<(), Box<dyn Error>>;
+
+pub const INK: RGBColor = RGBColor(40, 44, 52);
+pub const FAINT: RGBColor = RGBColor(225, 228, 232);
+
+/// Ours at fourth order, beside ours.
+pub const EXTRAPOLATED: RGBColor = RGBColor(110, 60, 190);
+
+/// The colour of a method in every chart.
+pub fn colour(method: Method) -> RGBColor {
+    match method {
+        Method::Ours => RGBColor(20, 90, 200),
+        Method::Force => RGBColor(200, 40, 50),
+        Method::Joint => RGBColor(230, 130, 0),
+        Method::Avian => RGBColor(30, 140, 70),
+        Method::AvianBare => RGBColor(130, 190, 120),
+    }
+}
+
+/// A font of the reader's, of a size.
+pub fn font(size: u32) -> TextStyle<'static> {
+    ("sans-serif", size).into_font().color(&INK)
+}
+
+/// A range of a logarithmic axis that holds all of these, with room; whole decades if asked.
+pub fn decades(values: impl Iterator<Item = f64>, whole: bool) -> std::ops::Range<f64> {
+    let (mut low, mut high) = (f64::INFINITY, 0.0_f64);
+    for v in values.filter(|v| v.is_finite() && *v > 0.0) {
+        (low, high) = (low.min(v), high.max(v));
+    }
+    if low > high {
+        return 0.1..10.0;
+    }
+    if whole {
+        10.0_f64.powf(low.log10().floor())..10.0_f64.powf(high.log10().ceil())
+    } else {
+        low / 1.6..high * 1.6
+    }
+}

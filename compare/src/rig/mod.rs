@@ -1,0 +1,79 @@
+//! A problem set up in an engine, headless, one step per `tick`.
+
+mod avian;
+mod rapier;
+
+use crate::method::Setting;
+use crate::problem::Problem;
+use bevy::ecs::schedule::SingleThreadedExecutor;
+use bevy::math::{DQuat, DVec3};
+use bevy::prelude::*;
+use bevy::time::TimeUpdateStrategy;
+use std::time::Duration;
+
+/// An app whose every update is one step.
+pub struct Rig {
+    app: App,
+    bodies: Vec<Entity>,
+    read: fn(&World, Entity) -> Option<State>,
+}
+
+/// Where a body is and how it moves.
+#[derive(Clone, Copy, Debug)]
+pub struct State {
+    pub position: DVec3,
+    pub rotation: DQuat,
+    pub velocity: DVec3,
+    pub spin: DVec3,
+}
+
+impl Rig {
+    pub fn new(problem: &Problem, setting: Setting) -> Self {
+        let mut app = App::new();
+        let tick = Duration::from_secs_f64(setting.dt());
+        app.add_plugins((MinimalPlugins, TransformPlugin))
+            .insert_resource(Time::<Fixed>::from_duration(tick))
+            .insert_resource(TimeUpdateStrategy::ManualDuration(tick));
+        let avian = setting.method.is_avian();
+        if avian {
+            avian::plug(&mut app, problem, setting.dial);
+        } else {
+            rapier::plug(&mut app, problem, setting);
+        }
+        app.finish();
+        app.cleanup();
+        // Waking worker threads costs more than what these scenes have to do.
+        let mut schedules = app.world_mut().resource_mut::<Schedules>();
+        for (_, schedule) in schedules.iter_mut() {
+            schedule.set_executor(SingleThreadedExecutor::new());
+        }
+        // The first update passes no time, so no step is taken.
+        app.update();
+        let (bodies, read): (_, fn(&World, Entity) -> Option<State>) = if avian {
+            (
+                avian::fill(app.world_mut(), problem, setting.method),
+                avian::read,
+            )
+        } else {
+            (
+                rapier::fill(app.world_mut(), problem, setting.method),
+                rapier::read,
+            )
+        };
+        Self { app, bodies, read }
+    }
+
+    pub fn tick(&mut self) {
+        self.app.update();
+    }
+
+    /// Of a body of the problem; not a number where the engine has lost it.
+    pub fn state(&self, body: usize) -> State {
+        (self.read)(self.app.world(), self.bodies[body]).unwrap_or(State {
+            position: DVec3::NAN,
+            rotation: DQuat::IDENTITY,
+            velocity: DVec3::NAN,
+            spin: DVec3::NAN,
+        })
+    }
+}

@@ -1,0 +1,34 @@
+//! The scenes, one a file. Nonlinear laws (Duffing) belong here too, once an element can have one.
+
+mod dumbbell;
+mod networks;
+pub mod oscillator;
+mod pendulum;
+mod quarter_car;
+mod star;
+
+use crate::problem::Problem;
+
+/// A scene of which the work–precision picture is drawn.
+pub struct Scene {
+    pub name: &'static str,
+    pub title: &'static str,
+    /// A sentence on what moves, and on where the truth comes from.
+    pub note: &'static str,
+    pub make: fn() -> Problem,
+}
+
+pub const SCENES: [Scene; 9] = [
+    oscillator::SCENE,
+    pendulum::SOFT,
+    pendulum::DAMPED,
+    pendulum::STIFF,
+    dumbbell::SCENE,
+    networks::CHAIN,
+    networks::LATTICE,
+    star::SCENE,
+    quarter_car::SCENE,
+];
+
+/// Standard gravity as the references have it, m/s².
+const GRAVITY: f32 = 9.81;

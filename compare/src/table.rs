@@ -1,0 +1,161 @@
+//! The measurements of a scene, kept as CSV from run to run.
+
+use crate::clock::Times;
+use crate::follow::Strayed;
+use crate::method::{Method, Setting, rates};
+use std::path::{Path, PathBuf};
+use std::{fs, io};
+
+/// A setting and what came of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Row {
+    pub setting: Setting,
+    pub strayed: Strayed,
+    pub times: Times,
+    /// Turns that it was timed for.
+    pub turns: u32,
+}
+
+/// All rows of a scene.
+pub struct Table {
+    path: PathBuf,
+    pub rows: Vec<Row>,
+}
+
+const HEADER: &str = "method,setting,steps_per_second,largest_error_m,energy_drift,momentum_drift,diverged,\
+                      step_us,step_us_quartile_1,step_us_quartile_3,turns";
+
+impl Table {
+    /// What an earlier run left, or nothing.
+    pub fn open(folder: &Path, scene: &str) -> Self {
+        let path = folder.join(format!("{scene}.csv"));
+        let text = fs::read_to_string(&path).unwrap_or_default();
+        let rows = text.lines().skip(1).filter_map(Row::parse).collect();
+        Self { path, rows }
+    }
+
+    /// Whether a setting has been timed for at least so many turns.
+    pub fn has(&self, setting: Setting, turns: u32) -> bool {
+        self.rows
+            .iter()
+            .any(|row| row.setting == setting && row.turns >= turns)
+    }
+
+    /// Takes rows in, in place of older ones, and writes the file.
+    pub fn put(&mut self, rows: Vec<Row>) -> io::Result<()> {
+        for row in rows {
+            self.rows.retain(|old| old.setting != row.setting);
+            self.rows.push(row);
+        }
+        self.rows
+            .sort_by_key(|r| (r.setting.method, r.setting.rate, r.setting.dial));
+        let lines: Vec<String> = self.rows.iter().map(Row::line).collect();
+        fs::write(&self.path, format!("{HEADER}\n{}\n", lines.join("\n")))
+    }
+}
+
+impl Row {
+    /// Computing time per second of the scene, s.
+    pub fn work(&self) -> f64 {
+        self.times.median * f64::from(self.setting.rate)
+    }
+
+    fn line(&self) -> String {
+        let optional = |x: Option<f64>| x.map(|x| format!("{x:.3e}")).unwrap_or_default();
+        let Strayed {
+            error,
+            energy,
+            momentum,
+            diverged,
+        } = self.strayed;
+        let us = |s: f64| format!("{:.2}", 1e6 * s);
+        format!(
+            "{},{},{},{error:.3e},{},{},{},{},{},{},{}",
+            self.setting.method.name(),
+            self.setting.dial,
+            self.setting.rate,
+            optional(energy),
+            optional(momentum),
+            u8::from(diverged),
+            us(self.times.median),
+            us(self.times.low),
+            us(self.times.high),
+            self.turns,
+        )
+    }
+
+    fn parse(line: &str) -> Option<Self> {
+        let cells: Vec<&str> = line.split(',').collect();
+        let [
+            method,
+            dial,
+            rate,
+            error,
+            energy,
+            momentum,
+            diverged,
+            median,
+            low,
+            high,
+            turns,
+        ] = cells.as_slice()
+        else {
+            return None;
+        };
+        let method = Method::named(method)?;
+        let dial = method
+            .dials(false)
+            .into_iter()
+            .find(|d| d.to_string() == *dial)?;
+        let rate = rate.parse().ok().filter(|r| rates(false).contains(r))?;
+        let us = |cell: &str| cell.parse::<f64>().ok().map(|us| 1e-6 * us);
+        Some(Self {
+            setting: Setting { method, dial, rate },
+            strayed: Strayed {
+                error: error.parse().ok()?,
+                energy: energy.parse().ok(),
+                momentum: momentum.parse().ok(),
+                diverged: *diverged == "1",
+            },
+            times: Times {
+                median: us(median)?,
+                low: us(low)?,
+                high: us(high)?,
+            },
+            turns: turns.parse().ok()?,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::method::Dial;
+
+    #[test]
+    fn a_row_survives_its_file() {
+        for error in [1.25e-4, f64::NAN] {
+            let row = Row {
+                setting: Setting {
+                    method: Method::Ours,
+                    dial: Dial::Tolerance(3),
+                    rate: 240,
+                },
+                strayed: Strayed {
+                    error,
+                    energy: Some(1e-3),
+                    momentum: None,
+                    diverged: error.is_nan(),
+                },
+                times: Times {
+                    median: 42.5e-6,
+                    low: 40e-6,
+                    high: 45e-6,
+                },
+                turns: 15,
+            };
+            let back = Row::parse(&row.line()).map(|r| r.line());
+            assert_eq!(back, Some(row.line()));
+        }
+    }
+}

@@ -1,0 +1,90 @@
+//! Does the command work, and is what the repository tells no older than the methods?
+
+use std::collections::HashMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+const BEGIN: &str = "<!-- speed_vs_error:begin -->";
+const END: &str = "<!-- speed_vs_error:end -->";
+
+/// Errors of single precision, m: below them two builds may differ.
+const FLOOR: f64 = 5e-5;
+
+fn repository() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+}
+
+fn read(path: &Path) -> String {
+    fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+}
+
+/// What stands between the markers.
+fn marked(text: &str) -> &str {
+    let (_, rest) = text.split_once(BEGIN).expect("a first marker");
+    rest.split_once(END).expect("a last marker").0.trim()
+}
+
+/// Largest error of every setting in a table; infinite where it diverged.
+fn errors(table: &str) -> HashMap<String, f64> {
+    table
+        .lines()
+        .skip(1)
+        .map(|line| {
+            let cells: Vec<&str> = line.split(',').collect();
+            let error = if cells[6] == "1" {
+                f64::INFINITY
+            } else {
+                cells[3].parse().expect("an error")
+            };
+            (cells[..3].join(","), error)
+        })
+        .collect()
+}
+
+#[test]
+fn the_quick_command_works_and_finds_what_the_tables_tell() {
+    let out = Path::new(env!("CARGO_TARGET_TMPDIR")).join("smoke");
+    let _ = fs::remove_dir_all(&out);
+    fs::create_dir_all(&out).expect("a folder");
+    fs::write(out.join("README.md"), format!("a\n{BEGIN}\n{END}\nb\n")).expect("a file");
+    let scenes = ["oscillator", "pendulum-soft"];
+    let status = Command::new(env!("CARGO_BIN_EXE_compare"))
+        .args(["--quick", "--scene", scenes[0], "--scene", scenes[1]])
+        .arg("--out")
+        .arg(&out)
+        .status()
+        .expect("it runs");
+    assert!(status.success());
+    let report = read(&out.join("docs/speed_vs_error.md"));
+    let readme = read(&out.join("README.md"));
+    assert!(marked(&report).contains("| Single oscillator |"));
+    assert_eq!(marked(&report), marked(&readme));
+    for scene in scenes {
+        let file = |ending: &str| format!("docs/speed_vs_error/{scene}.{ending}");
+        assert!(read(&out.join(file("svg"))).contains("</svg>"));
+        let told = errors(&read(&repository().join(file("csv"))));
+        let found = errors(&read(&out.join(file("csv"))));
+        assert!(!found.is_empty());
+        for (setting, found) in found {
+            let told = told
+                .get(&setting)
+                .unwrap_or_else(|| panic!("{scene}: no {setting} in the repository's table"));
+            let alike =
+                found == *told || (found <= 1.5 * told + FLOOR && *told <= 1.5 * found + FLOOR);
+            assert!(
+                alike,
+                "{scene}, {setting}: error {found:e} m, the table says {told:e} m; run `cargo run --release -p \
+                 compare -- --fresh` and commit what it writes"
+            );
+        }
+    }
+}
+
+#[test]
+fn the_readme_tells_what_the_report_tells() {
+    let report = read(&repository().join("docs/speed_vs_error.md"));
+    let readme = read(&repository().join("README.md"));
+    assert_eq!(marked(&report), marked(&readme));
+    assert!(marked(&readme).lines().count() > 8);
+}
