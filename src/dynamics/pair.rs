@@ -5,13 +5,21 @@
 //! outside accelerations. It is [`super::kick`] without arms and inertia, at a fraction of the price.
 
 use super::kick::Memo;
+use super::law::Law;
 use super::poles::{Poles, RESOLVED_PHASE};
+use super::shock::Shock;
 use super::step::EXTRAPOLATION_LIMIT;
 use super::tolerance::{Motion, VELOCITY_COUNTS};
 use bevy::math::DVec3;
 
 /// c h/m above which a step's energy is watched; see [`super::guard`].
 const STRONG: f64 = 0.5;
+
+/// c h/m beyond which energy-keeping steps would turn a motion round instead of stopping it.
+const FIERCE: f64 = 40.0;
+
+/// Share of kinetic and stored energy that a step may gain before it is taken again.
+const GAIN: f64 = 0.02;
 
 /// The element and what is constant about its ends over an engine step.
 #[derive(Clone, Copy, Debug)]
@@ -139,8 +147,8 @@ impl Pair {
         let z = self.stiffness_number(step);
         let poles = memo.poles(z, self.damping * self.inverse_mass * step / 2.0);
         let mut aimed = self.aim(state, step);
-        let watched = self.damping * self.inverse_mass * step >= STRONG;
-        let before = watched.then(|| self.energy(state)).flatten();
+        let watched = self.damping * self.inverse_mass * step >= STRONG || !is_resolved(z);
+        let before = watched.then(|| (self.energy(state), *state));
         self.map(state, aimed, &poles, step, |axial, offset, speed| {
             ((axial - offset) / poles.speed, 1.0 / speed)
         });
@@ -153,8 +161,8 @@ impl Pair {
         self.map(state, aimed, &poles, step, |axial, offset, speed| {
             (poles.speed * axial + offset, speed)
         });
-        if let Some(before) = before {
-            self.keep_energy(state, before);
+        if let Some((Some(energy), start)) = before {
+            self.keep_energy(state, energy, &start, time, memo);
         }
     }
 
@@ -284,20 +292,54 @@ impl Pair {
         Some(0.5 * self.stiffness * stretch * stretch + motion / self.inverse_mass)
     }
 
-    /// Takes a surplus out of the motion along the line.
-    fn keep_energy(&self, state: &mut Separation, before: f64) {
-        let (Some(line), Some(after)) = (self.line(state), self.energy(state)) else {
-            return;
-        };
-        let surplus = after - before;
-        if surplus <= 1e-9 * before.abs() {
+    /// A step that went too far for its energy, because it follows neither the motion nor its decay, is taken
+    /// again by [`super::shock`], which keeps energy at any stiffness. Very strong damping is not its field;
+    /// there the surplus is taken out of the motion along the line.
+    fn keep_energy(
+        &self,
+        state: &mut Separation,
+        before: f64,
+        start: &Separation,
+        time: f64,
+        memo: &mut Memo,
+    ) {
+        let surplus = |state: &Separation| self.energy(state).map_or(0.0, |after| after - before);
+        let scale = before.abs().max(self.scale(start));
+        if surplus(state) <= 1e-9 * before.abs() {
             return;
         }
-        let rate = line.axial;
-        let left = (rate * rate - 2.0 * self.inverse_mass * surplus)
-            .max(0.0)
-            .sqrt();
-        state.v += (left.copysign(rate) - rate) * line.direction;
+        let damped = self.damping * self.inverse_mass * time;
+        if surplus(state) > GAIN * scale && damped < FIERCE {
+            let law = Law::linear(self.stiffness, self.damping);
+            let mut again = Shock::new(self, &law, *start, memo);
+            again.keep_energy(time);
+            let kept = again.state;
+            if surplus(&kept) < surplus(state) {
+                *state = Separation {
+                    stiff_damper: start.stiff_damper,
+                    ..kept
+                };
+            }
+        }
+        let surplus = surplus(state);
+        if damped >= STRONG
+            && surplus > 1e-9 * before.abs()
+            && let Some(line) = self.line(state)
+        {
+            let rate = line.axial;
+            let left = (rate * rate - 2.0 * self.inverse_mass * surplus)
+                .max(0.0)
+                .sqrt();
+            state.v += (left.copysign(rate) - rate) * line.direction;
+        }
+    }
+
+    /// Kinetic and stored energy.
+    fn scale(&self, state: &Separation) -> f64 {
+        let stored = self.line(state).map_or(0.0, |line| {
+            0.5 * self.stiffness * (line.length - self.rest_length).powi(2)
+        });
+        stored + 0.5 * state.v.length_squared() / self.inverse_mass
     }
 }
 

@@ -112,6 +112,13 @@ impl<'a> Shock<'a> {
         stiffest * weight < limit
     }
 
+    /// The whole time in energy-keeping steps, as fine as they come.
+    pub(super) fn keep_energy(&mut self, time: f64) {
+        for _ in 0..PARTS[1] as u32 {
+            self.keep_energy_through(time / PARTS[1]);
+        }
+    }
+
     fn microstep(&mut self, step: f64, resolved: bool) {
         let before = self.state;
         let from = before.d.length();

@@ -266,3 +266,36 @@ fn a_body_without_inertia_keeps_its_spin() {
     let spin = lab.get::<Velocity>(body).angular;
     assert!((spin - Vec3::Z).length() < 1e-2, "{spin}");
 }
+
+#[test]
+fn stretched_and_kicked_outwards_no_spring_wins_energy_in_its_first_steps() {
+    let mut worst = 0.0_f64;
+    for phase in [1.0, 2.4, 3.0, 6.2, 10.0, 30.0, 100.0] {
+        for zeta in [0.0, 0.1, 1.0, 3.0] {
+            let mut lab = Lab::weightless();
+            let omega = phase / DT;
+            let hook = lab.point(Vec3::ZERO);
+            let body = lab.body(1.0, Vec3::X * 1.1);
+            lab.get_mut::<Velocity>(body).linear = Vec3::X * (0.05 * omega);
+            let element = lab.spawn(
+                SpringDamper::new(hook, body)
+                    .with_stiffness(omega * omega)
+                    .with_damping(2.0 * zeta * omega)
+                    .with_rest_length(1.0),
+            );
+            let first = 0.5 * f64::from(omega * omega) * (0.1 * 0.1 + 0.05 * 0.05);
+            let mut most = 0.0_f64;
+            for _ in 0..120 {
+                lab.tick();
+                let v = f64::from(lab.velocity(body).length());
+                let energy = 0.5 * v * v + f64::from(lab.readout(element).stored_energy);
+                most = most.max(energy / first);
+            }
+            println!(
+                "kicked outwards, ω·dt {phase} ζ {zeta}: energy at most {most:.3} of the first"
+            );
+            worst = worst.max(most);
+        }
+    }
+    assert!(worst < 1.05, "{worst}");
+}

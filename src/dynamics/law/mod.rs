@@ -135,6 +135,27 @@ impl Stop {
 }
 
 impl Law {
+    /// The law of an element without one: stiffness (N/m) and damping (N s/m).
+    pub(crate) fn linear(stiffness: f64, damping: f64) -> Self {
+        let coefficients = [stiffness, 0.0, 0.0];
+        let unlimited = [f64::NEG_INFINITY, f64::INFINITY];
+        Self {
+            spring: SpringForce::Polynomial {
+                pull: coefficients,
+                push: coefficients,
+            },
+            drag: DragLaw::Linear(damping),
+            preload: 0.0,
+            limits: unlimited,
+            at_limits: unlimited,
+            travel: unlimited,
+            stop: Stop::default(),
+            reference: 0.0,
+            most: f64::INFINITY,
+            springless: stiffness == 0.0,
+        }
+    }
+
     pub(crate) fn new(recipe: Recipe) -> Self {
         let springless = match &recipe.spring {
             SpringForce::Polynomial { pull, push } => *pull == [0.0; 3] && *push == [0.0; 3],
