@@ -40,6 +40,9 @@ pub(crate) struct Body {
     /// How much of a free body's motion contacts and joints leave it: 1 free, 0 held. Already in
     /// `inverse_mass` and `acceleration`.
     pub mobility: f64,
+    /// Unit direction that contacts hold, if they hold only that: then the inverse mass is less along it
+    /// alone, and the masses along all axes are the same.
+    pub held: Option<DVec3>,
     /// What elements have given it so far in this step: impulse (N s) and angular impulse (N m s).
     pub given: (DVec3, DVec3),
 }
@@ -158,10 +161,38 @@ impl Body {
         self.rotation = (frame * self.principal.inverse()).normalize();
     }
 
+    /// Change of velocity by an impulse.
+    pub(crate) fn answer(&self, impulse: DVec3) -> DVec3 {
+        self.inverse_mass * self.left(impulse)
+    }
+
+    /// See `Hold::held`.
+    pub(crate) fn held_part(&self) -> DVec3 {
+        self.held
+            .map_or(DVec3::ZERO, |held| (1.0 - self.mobility).sqrt() * held)
+    }
+
+    /// What a contact leaves of a motion.
+    pub(crate) fn left(&self, motion: DVec3) -> DVec3 {
+        match self.held {
+            Some(held) => motion - (1.0 - self.mobility) * held.dot(motion) * held,
+            None => motion,
+        }
+    }
+
+    /// The force for an acceleration: the other way round.
+    pub(crate) fn force_for(&self, acceleration: DVec3) -> DVec3 {
+        let free = super::delivery::force_for(acceleration, self.inverse_mass);
+        match self.held {
+            Some(held) => free + (self.mobility.recip() - 1.0) * held.dot(free) * held,
+            None => free,
+        }
+    }
+
     /// An impulse (N s) at `arm` from the centre of mass, with the inverse inertia at hand.
     pub(crate) fn apply(&mut self, impulse: DVec3, arm: DVec3, inverse_inertia: DMat3) {
         self.given.0 += impulse;
-        self.velocity += self.inverse_mass * impulse;
+        self.velocity += self.answer(impulse);
         if arm == DVec3::ZERO {
             return;
         }
@@ -216,7 +247,7 @@ impl Body {
             _ => DVec3::ZERO,
         };
         self.given = (
-            self.mass() * (self.velocity - start.velocity - time * self.acceleration),
+            self.force_for(self.velocity - start.velocity - time * self.acceleration),
             turned - time * self.torque,
         );
     }

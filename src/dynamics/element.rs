@@ -70,6 +70,8 @@ pub(crate) struct Hold {
     /// From the centre of mass to the held point, world frame.
     pub arm: DVec3,
     pub inverse_mass: DVec3,
+    /// Direction in which a contact leaves only a share of it, times the square root of what it takes.
+    pub held: DVec3,
     pub inverse_inertia: DMat3,
     /// Pushed about an axis instead of along it.
     pub twist: bool,
@@ -129,6 +131,7 @@ impl End {
                 body: None,
                 arm: DVec3::ZERO,
                 inverse_mass: DVec3::ZERO,
+                held: DVec3::ZERO,
                 inverse_inertia: DMat3::ZERO,
                 twist: false,
                 position: path.position,
@@ -140,6 +143,7 @@ impl End {
                         body: Some(index),
                         arm,
                         inverse_mass: body.inverse_mass,
+                        held: body.held_part(),
                         inverse_inertia: DMat3::ZERO,
                         twist: false,
                         position: body.position,
@@ -150,6 +154,7 @@ impl End {
                     body: Some(index),
                     arm,
                     inverse_mass: body.inverse_mass,
+                    held: body.held_part(),
                     inverse_inertia: body.inverse_inertia(),
                     twist: false,
                     position: body.position + arm,
@@ -219,7 +224,8 @@ impl Hold {
         let w = self.inverse_mass;
         // Not rounded by the direction, so that equal lines have bitwise equal coefficients.
         let linear = if w.x == w.y && w.y == w.z {
-            w.x
+            let taken = self.held.dot(direction);
+            w.x * (1.0 - taken * taken)
         } else {
             (w * direction).dot(direction)
         };
@@ -406,6 +412,7 @@ impl Line {
             let w = hold.inverse_mass;
             w.x == w.y
                 && w.y == w.z
+                && hold.held == DVec3::ZERO
                 && hold
                     .body
                     .is_none_or(|index| bodies[index].spin == Spin::Still)

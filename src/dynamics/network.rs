@@ -270,7 +270,7 @@ impl Network {
         let right = &mut self.right;
         right.clear(bodies.len(), self.system.turns());
         for (i, body) in bodies.iter().enumerate() {
-            right.linear[i] = super::delivery::force_for(body.acceleration, body.inverse_mass);
+            right.linear[i] = body.force_for(body.acceleration);
             if self.system.turns() {
                 right.angular[i] = body.torque;
             }

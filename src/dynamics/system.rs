@@ -47,7 +47,7 @@ pub(super) struct Effort {
 #[derive(Clone, Default)]
 pub(super) struct System {
     pub struts: Vec<Strut>,
-    mass: Vec<DVec3>,
+    mass: Vec<DMat3>,
     inertia: Vec<DMat3>,
     /// 1 on axes that are free, 0 on locked ones.
     free: Twists,
@@ -171,8 +171,13 @@ impl System {
             let w = body.inverse_mass;
             let free = DVec3::select(w.cmpgt(DVec3::ZERO), DVec3::ONE, DVec3::ZERO);
             self.free.linear[i] = free;
-            self.mass
-                .push(DVec3::select(w.cmpgt(DVec3::ZERO), w.recip(), DVec3::ONE));
+            let mut mass =
+                DMat3::from_diagonal(DVec3::select(w.cmpgt(DVec3::ZERO), w.recip(), DVec3::ONE));
+            if let Some(held) = body.held {
+                let more = (body.mobility.recip() - 1.0) / w.x;
+                mass += DMat3::from_cols(held * held.x, held * held.y, held * held.z) * more;
+            }
+            self.mass.push(mass);
             if self.turns {
                 let mut inverse = body.inverse_inertia();
                 let mut free = DVec3::ONE;
@@ -294,8 +299,7 @@ impl System {
         self.blocks.clear();
         self.blocks_turning.clear();
         if !self.turns {
-            self.blocks
-                .extend(self.mass.iter().map(|m| DMat3::from_diagonal(*m)));
+            self.blocks.extend_from_slice(&self.mass);
             for strut in &self.struts {
                 let own = strut.matrix();
                 for body in strut.bodies.into_iter().filter(|b| *b != NOBODY) {
@@ -310,7 +314,7 @@ impl System {
         }
         for (mass, inertia) in self.mass.iter().zip(&self.inertia) {
             let mut block = Matrix6::zeros();
-            put(&mut block, 0, 0, DMat3::from_diagonal(*mass));
+            put(&mut block, 0, 0, *mass);
             put(&mut block, 3, 3, *inertia);
             self.blocks_turning.push(block);
         }
@@ -354,12 +358,7 @@ impl System {
         }
         matrix.fill(0.0);
         for (i, mass) in self.mass.iter().enumerate() {
-            put(
-                &mut matrix,
-                width * i,
-                width * i,
-                DMat3::from_diagonal(*mass),
-            );
+            put(&mut matrix, width * i, width * i, *mass);
             if self.turns {
                 put(&mut matrix, width * i + 3, width * i + 3, self.inertia[i]);
             }

@@ -24,6 +24,7 @@ fn point(mass: f64, position: DVec3, gravity: DVec3) -> Body {
         acceleration: gravity,
         torque: DVec3::ZERO,
         mobility: 1.0,
+        held: None,
         given: (DVec3::ZERO, DVec3::ZERO),
     }
 }

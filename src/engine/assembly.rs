@@ -140,7 +140,12 @@ impl Assembly {
                 (known, _) => known,
             };
             let mobility = held::mobility(row, support, &self.start[slot], load.0);
-            self.component.bodies[slot] = held::held(&self.start[slot], mobility);
+            let direction = match (row.support, support) {
+                (Support::Unknown, Support::Contact { push, .. }) => Some(push),
+                (Support::Contact { .. }, _) => row.held,
+                _ => None,
+            };
+            self.component.bodies[slot] = held::held(&self.start[slot], mobility, direction);
         }
         if self.component.stepped {
             self.look_back(step, members, bodies, set);

@@ -124,6 +124,7 @@ pub(super) fn read(body: &RapierBody, gravity: Vec3, user: &ExternalForce, turns
             + inverse_mass * user.force.as_dvec3(),
         torque: user.torque.as_dvec3(),
         mobility: 1.0,
+        held: None,
         given: (DVec3::ZERO, DVec3::ZERO),
     };
     if turns {

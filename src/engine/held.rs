@@ -54,6 +54,9 @@ pub(super) struct Expected {
 /// Share of the elements' load that must be left after outside forces for mobility to be measured.
 const BALANCE: f64 = 0.02;
 
+/// Least mobility along one direction: what is held more, is held as well by so little.
+const STIFF: f64 = 1e-4;
+
 /// Mobility above which a body counts as free.
 const FREE: f64 = 0.999;
 
@@ -151,6 +154,17 @@ impl Expected {
             ))
     }
 
+    /// The direction in which a contact answered the load, and the share of the free motion that it left
+    /// there; none if the load was too small to tell.
+    fn missing(&self, change: &Twist) -> Option<(DVec3, f64)> {
+        let free = self.free_change.linear.as_dvec3();
+        let missing = free - change.linear.as_dvec3();
+        let direction = missing.try_normalize()?;
+        let along = free.dot(direction);
+        let tells = along > 0.05 * free.length() && along > 0.0;
+        tells.then(|| (direction, (1.0 - missing.length() / along).clamp(0.0, 1.0)))
+    }
+
     /// Share of the free motion along the elements' load that was left; none if the load was too small
     /// to tell.
     fn share(&self, change: &Twist, support: Support) -> Option<f64> {
@@ -216,7 +230,13 @@ pub(super) fn observe(row: &mut BodyRow, body: &RapierBody, context: &Context) {
     row.support = support(row.handle, body, context);
     if row.support == Support::None {
         row.mobility = 1.0;
+    } else if let (Support::Contact { .. }, false) = (row.support, row.turns) {
+        if let Some((direction, share)) = expected.missing(&change) {
+            row.held = Some(direction);
+            row.mobility = if share > FREE { 1.0 } else { share };
+        }
     } else if let Some(share) = expected.share(&change, row.support) {
+        row.held = None;
         row.mobility = if share > FREE { 1.0 } else { share };
     }
 }
@@ -357,10 +377,17 @@ pub(super) fn mobility(row: &BodyRow, support: Support, free: &Body, force: DVec
     }
 }
 
-/// The body as the integrator is to see it: with so much of its mobility left.
-pub(super) fn held(free: &Body, mobility: f64) -> Body {
+/// The body as the integrator is to see it: with so much of its mobility left, along one direction if that
+/// is all that contacts hold.
+pub(super) fn held(free: &Body, mobility: f64, direction: Option<DVec3>) -> Body {
     let mut body = *free;
-    if mobility < 1.0 {
+    let w = free.inverse_mass;
+    let alike = w.x == w.y && w.y == w.z && free.spin == Spin::Still;
+    if let Some(direction) = direction.filter(|_| alike && mobility < 1.0) {
+        body.mobility = mobility.max(STIFF);
+        body.held = Some(direction);
+        body.acceleration = body.left(free.acceleration);
+    } else if mobility < 1.0 {
         if let Spin::Free { .. } = body.spin {
             body.spin = Spin::Locked {
                 velocity: free.angular_velocity(),
@@ -390,7 +417,15 @@ pub(super) fn deliver(
         _ => (force_for(free.acceleration, free.inverse_mass), free.torque),
     };
     let mut force = (given.0 / time, given.1 / time);
-    if terms.takes_impulses && terms.schedule.substeps > 1 {
+    // Against a partner that moves, the force has to act evenly: each jerk would reach it.
+    let evenly = matches!(
+        support,
+        Support::Contact {
+            on_fixed: false,
+            ..
+        }
+    );
+    if terms.takes_impulses && terms.schedule.substeps > 1 && !evenly {
         let back = 1.0 / (n - 1.0);
         let total = (force.0 + outside.0, force.1 + outside.1);
         let linvel = free.velocity - back * time * (free.inverse_mass * total.0);

@@ -120,6 +120,8 @@ pub(super) struct BodyRow {
     pub rest: Option<Rest>,
     /// How much of a free body's motion contacts and joints leave it; see [`super::held`].
     pub mobility: f64,
+    /// The direction in which contacts hold it, for a body that does not turn.
+    pub held: Option<DVec3>,
     /// What keeps it from moving freely.
     pub support: Support,
     /// What the coming step is to do.
@@ -145,6 +147,7 @@ impl BodyRow {
             share: None,
             rest: None,
             mobility: 1.0,
+            held: None,
             support: Support::Unknown,
             expected: None,
             link: None,
