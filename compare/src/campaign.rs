@@ -12,11 +12,14 @@ use std::io;
 /// Settings of a scene that are asked for and missing, one list per time step: those run against each
 /// other, and are written before the next begin.
 pub fn missing(options: &Options, scene: &Scene, table: &Table) -> Vec<Vec<Setting>> {
-    let damped = (scene.make)().links.iter().any(|l| l.damping > 0.0);
-    let methods = options
-        .methods
-        .iter()
-        .filter(|m| damped || **m != Method::AvianBare);
+    let problem = (scene.make)();
+    let damped = problem.links.iter().any(|l| l.damping > 0.0);
+    let nonlinear = problem.is_nonlinear();
+    let methods = options.methods.iter().filter(|m| match m {
+        Method::Ours | Method::Force => true,
+        Method::Joint | Method::Avian => !nonlinear,
+        Method::AvianBare => damped && !nonlinear,
+    });
     let mut chunks = Vec::new();
     for rate in rates(options.quick) {
         let mut chunk = Vec::new();

@@ -18,6 +18,13 @@ pub struct Problem {
     pub truth: Truth,
 }
 
+impl Problem {
+    /// Whether there is a spring that no joint can be.
+    pub fn is_nonlinear(&self) -> bool {
+        self.links.iter().any(|link| link.cubic > 0.0)
+    }
+}
+
 /// A body, or a fixed point.
 #[derive(Clone, Copy)]
 pub struct Body {
@@ -47,7 +54,7 @@ pub enum Kind {
     },
 }
 
-/// A linear spring-damper.
+/// A spring-damper.
 #[derive(Clone, Copy)]
 pub struct Link {
     pub ends: [usize; 2],
@@ -56,6 +63,8 @@ pub struct Link {
     pub stiffness: f32,
     pub damping: f32,
     pub rest: f32,
+    /// What the cube of the stretch adds, N/m³.
+    pub cubic: f32,
 }
 
 /// Where the watched bodies are at a time; `None` where it is not known.
@@ -114,7 +123,14 @@ impl Link {
             stiffness,
             damping,
             rest,
+            cubic: 0.0,
         }
+    }
+
+    /// With a cubic part, N/m³.
+    pub fn hardening(mut self, cubic: f32) -> Self {
+        self.cubic = cubic;
+        self
     }
 }
 

@@ -4,7 +4,8 @@
 //! force on the bodies is its gradient, so that energy is kept whichever it is.
 
 use super::body::Body;
-use super::element::{Element, Hold, Line, Motion};
+use super::element::{Element, Hold};
+use super::line::{Line, Motion};
 use bevy::math::DVec3;
 use std::f64::consts::{PI, TAU};
 

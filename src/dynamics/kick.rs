@@ -5,7 +5,8 @@
 //! −restoring·r − loss/h·rate. The element's own share of it is that less a_out.
 
 use super::body::{Body, Spin};
-use super::element::{Element, Line, Motion};
+use super::element::Element;
+use super::line::{Line, Motion};
 use super::poles::{Poles, RESOLVED_PHASE};
 
 /// The last coefficients: where no body turns they are the same for every kick of a step.

@@ -1,10 +1,10 @@
 //! The mathematics of springs and dampers: no ECS, no engine, f64 throughout, SI units.
 //!
 //! Read in the order in which a step runs. [`tolerance`] decides how finely to step, [`step`] holds what has
-//! to be solved together. [`body`] drifts, [`element`] measures the line between the ends (or
+//! to be solved together. [`body`] drifts, [`element`] has the [`line`] between its ends (or
 //! what [`guide`] gives instead), [`poles`] gives
 //! the exact coefficients; [`kick`] acts for a lone element, [`pair`] for one on bodies that do not turn,
-//! [`shock`] for one of those with a force [`law`] of its own, [`network`] for elements that share bodies, with the linear algebra in [`system`]. [`guard`] keeps strong
+//! [`shock`] for one of those with a force [`law`] of its own, [`network`] for elements that share bodies, with the linear algebra in [`system`] and [`strut`]. [`guard`] keeps strong
 //! damping honest, and [`bound`] a network, by their [`energy`]. [`delivery`] says which impulse and force
 //! make the engine arrive there.
 
@@ -17,11 +17,13 @@ pub(crate) mod guard;
 pub(crate) mod guide;
 pub(crate) mod kick;
 pub(crate) mod law;
+mod line;
 pub(crate) mod network;
 pub(crate) mod pair;
 pub(crate) mod poles;
 pub(crate) mod shock;
 pub(crate) mod step;
+mod strut;
 mod system;
 pub(crate) mod tolerance;
 

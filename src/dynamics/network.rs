@@ -12,11 +12,13 @@
 //! resolve are damped a little, as those of a lone element are.
 
 use super::body::{Body, Spin};
-use super::element::{Element, End, Line, Motion};
+use super::element::{Element, End};
 use super::kick;
 use super::law::Drag;
+use super::line::{Line, Motion};
 use super::poles::{RESOLVED_PHASE, UNRESOLVED_DECAY};
-use super::system::{Effort, NOBODY, Strut, System, Twists};
+use super::strut::{NOBODY, Strut, Twists};
+use super::system::{Effort, System};
 use bevy::math::DVec3;
 
 /// (ω h)² of the stiffest mode up to which it is placed exactly.

@@ -13,6 +13,7 @@ mod ends;
 mod energy;
 mod find;
 mod forces;
+mod ground;
 mod group;
 mod held;
 mod jointed;

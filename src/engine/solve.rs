@@ -3,7 +3,7 @@
 use super::assembly::Assembly;
 use super::body::{Engine, FARTHEST_TURN};
 use super::forces::{self, SpringLoad};
-use super::held::Ground;
+use super::ground::Ground;
 use super::lone::Handled;
 use super::scene::Scene;
 use super::step::Step;

@@ -1,7 +1,7 @@
 //! What holds for every component of a context in this step, and what they all need.
 
 use super::body::{Engine, is_movable, point_after, point_of};
-use super::held::Ground;
+use super::ground::Ground;
 use super::scene::{ElementRow, Held};
 use super::timestep::Plan;
 use crate::dynamics::delivery::Schedule;

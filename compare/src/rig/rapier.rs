@@ -69,6 +69,9 @@ pub fn fill(world: &mut World, problem: &Problem, method: Method) -> Vec<Entity>
                     .with_damping(link.damping)
                     .with_rest_length(link.rest);
                 let mut element = world.spawn(element);
+                if link.cubic > 0.0 {
+                    element.insert(SpringLaw::polynomial(link.stiffness, 0.0, link.cubic));
+                }
                 if link.anchors != [Vec3::ZERO; 2] {
                     element.insert(Anchors::new(link.anchors[0], link.anchors[1]));
                 }
@@ -186,7 +189,8 @@ fn pull(
         ];
         let along = apart.normalize_or_zero();
         let rate = (speeds[1] - speeds[0]).dot(along);
-        let tension = link.stiffness * (apart.length() - link.rest) + link.damping * rate;
+        let stretch = apart.length() - link.rest;
+        let tension = link.stiffness * stretch + link.cubic * stretch.powi(3) + link.damping * rate;
         for ((end, arm), sign) in ends.iter().zip(arms).zip([1.0, -1.0]) {
             if let Ok(mut force) = forces.get_mut(*end) {
                 force.force += sign * tension * along;

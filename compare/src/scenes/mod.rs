@@ -1,5 +1,6 @@
-//! The scenes, one a file. Nonlinear laws (Duffing) belong here too, once an element can have one.
+//! The scenes, one a file.
 
+mod duffing;
 mod dumbbell;
 mod networks;
 pub mod oscillator;
@@ -18,7 +19,7 @@ pub struct Scene {
     pub make: fn() -> Problem,
 }
 
-pub const SCENES: [Scene; 9] = [
+pub const SCENES: [Scene; 10] = [
     oscillator::SCENE,
     pendulum::SOFT,
     pendulum::DAMPED,
@@ -28,6 +29,7 @@ pub const SCENES: [Scene; 9] = [
     networks::LATTICE,
     star::SCENE,
     quarter_car::SCENE,
+    duffing::SCENE,
 ];
 
 /// Standard gravity as the references have it, m/s².

@@ -1,0 +1,124 @@
+//! What an element adds to a network's linear system, and vectors over its bodies.
+
+use bevy::math::{DMat3, DVec3};
+
+/// No body: that end is a point that moves as something else decides.
+pub(super) const NOBODY: usize = usize::MAX;
+
+/// What an element adds to the matrix.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Strut {
+    pub bodies: [usize; 2],
+    /// From the centres of mass to the ends, world frame.
+    pub arms: [DVec3; 2],
+    pub direction: DVec3,
+    /// Force that a relative acceleration along the line adds, N per m/s².
+    pub along: f64,
+    /// The same across it.
+    pub across: f64,
+    /// It turns its bodies instead of pushing them.
+    pub twist: bool,
+}
+
+/// Linear and angular part for every body; no angular ones where nothing turns.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Twists {
+    pub linear: Vec<DVec3>,
+    pub angular: Vec<DVec3>,
+}
+
+impl Strut {
+    /// Relative motion of the ends.
+    pub(super) fn relative(&self, x: &Twists) -> DVec3 {
+        let at = |end: usize| match self.bodies[end] {
+            NOBODY => DVec3::ZERO,
+            body if self.twist => x.angular[body],
+            body if self.arms[end] == DVec3::ZERO => x.linear[body],
+            body => x.linear[body] + x.angular[body].cross(self.arms[end]),
+        };
+        at(1) - at(0)
+    }
+
+    /// Force for a relative acceleration.
+    pub(super) fn force(&self, r: DVec3) -> DVec3 {
+        self.across * r + (self.along - self.across) * self.direction.dot(r) * self.direction
+    }
+
+    /// Adds a force on end B and its opposite on end A.
+    pub(super) fn add(&self, to: &mut Twists, force: DVec3) {
+        for (end, sign) in [-1.0, 1.0].into_iter().enumerate() {
+            let body = self.bodies[end];
+            if body == NOBODY {
+                continue;
+            }
+            if self.twist {
+                to.angular[body] += sign * force;
+                continue;
+            }
+            to.linear[body] += sign * force;
+            if self.arms[end] != DVec3::ZERO {
+                to.angular[body] += self.arms[end].cross(sign * force);
+            }
+        }
+    }
+
+    /// The matrix of [`Self::force`].
+    pub(super) fn matrix(&self) -> DMat3 {
+        let u = self.direction;
+        let outer = DMat3::from_cols(u * u.x, u * u.y, u * u.z);
+        DMat3::from_diagonal(DVec3::splat(self.across)) + outer * (self.along - self.across)
+    }
+}
+
+/// r ↦ a × r.
+pub(super) fn cross(a: DVec3) -> DMat3 {
+    DMat3::from_cols(
+        DVec3::new(0.0, a.z, -a.y),
+        DVec3::new(-a.z, 0.0, a.x),
+        DVec3::new(a.y, -a.x, 0.0),
+    )
+}
+
+impl Twists {
+    pub(super) fn clear(&mut self, bodies: usize, turns: bool) {
+        self.linear.clear();
+        self.linear.resize(bodies, DVec3::ZERO);
+        self.angular.clear();
+        self.angular
+            .resize(if turns { bodies } else { 0 }, DVec3::ZERO);
+    }
+
+    pub(super) fn fits(&self, bodies: usize, turns: bool) -> bool {
+        self.linear.len() == bodies && self.angular.len() == if turns { bodies } else { 0 }
+    }
+
+    pub(super) fn dot(&self, other: &Self) -> f64 {
+        let sum = |a: &[DVec3], b: &[DVec3]| a.iter().zip(b).map(|(a, b)| a.dot(*b)).sum::<f64>();
+        sum(&self.linear, &other.linear) + sum(&self.angular, &other.angular)
+    }
+
+    /// self = by·self + other·times.
+    pub(super) fn combine(&mut self, by: f64, other: &Self, times: f64) {
+        let all = |a: &mut [DVec3], b: &[DVec3]| {
+            for (a, b) in a.iter_mut().zip(b) {
+                *a = by * *a + times * *b;
+            }
+        };
+        all(&mut self.linear, &other.linear);
+        all(&mut self.angular, &other.angular);
+    }
+
+    pub(super) fn mask(&mut self, free: &Self) {
+        for (a, b) in self.linear.iter_mut().zip(&free.linear) {
+            *a *= *b;
+        }
+        for (a, b) in self.angular.iter_mut().zip(&free.angular) {
+            *a *= *b;
+        }
+    }
+
+    pub(super) fn copy(&mut self, other: &Self) {
+        self.linear.clone_from(&other.linear);
+        self.angular.clone_from(&other.angular);
+    }
+}
