@@ -20,8 +20,10 @@ const DISC: f32 = 2.0;
 const RADIUS: f32 = 0.2;
 const THICK: f32 = 0.045;
 const GRAVITY: f32 = 9.81;
+/// Of the rod that the discs are laid on, m.
+const ROD: f32 = 0.66;
 /// Underside of the beam, m.
-const BEAM: f32 = 2.2;
+const BEAM: f32 = 2.3;
 
 fn main() -> AppExit {
     stage::run(&Stage {
@@ -35,8 +37,8 @@ fn main() -> AppExit {
         },
         seconds: 14.0,
         check,
-        eye: Vec3::new(1.1, 1.9, 5.6),
-        target: Vec3::new(0.0, 1.15, 0.0),
+        eye: Vec3::new(0.6, 1.9, 5.4),
+        target: Vec3::new(0.0, 1.2, 0.0),
     })
 }
 
@@ -79,14 +81,14 @@ fn setup(mut commands: Commands) {
                 ColliderMassProperties::Mass(DISC),
                 Friction::coefficient(0.8),
                 // At rest from the start.
-                Transform::from_xyz(x, BEAM - REST - DISC * GRAVITY / STIFFNESS - 0.2, 0.0),
+                Transform::from_xyz(x, BEAM - REST - DISC * GRAVITY / STIFFNESS - ROD, 0.0),
                 Visibility::default(),
                 Weight(1),
                 children![
                     disc(0.0),
                     (
-                        Transform::from_xyz(0.0, 0.1, 0.0),
-                        Shape::Cylinder(0.02, 0.2, Paint::Ivory),
+                        Transform::from_xyz(0.0, 0.5 * ROD, 0.0),
+                        Shape::Cylinder(0.018, ROD, Paint::Ivory),
                     ),
                 ],
             ))
@@ -100,7 +102,7 @@ fn setup(mut commands: Commands) {
                 .with_rest_length(REST),
             SpringAction::Pull,
             Breakable::at_force(limit),
-            Anchors::new(Vec3::new(x, -0.06, 0.0), Vec3::Y * 0.2),
+            Anchors::new(Vec3::new(x, -0.06, 0.0), Vec3::Y * ROD),
             Coil::new(0.08, wire, 10.0),
             Place(i),
         ));
@@ -124,7 +126,7 @@ fn load(
             *mass = ColliderMassProperties::Mass(DISC * (weight.0 + 1) as f32);
             commands
                 .entity(entity)
-                .with_child(disc(-THICK * weight.0 as f32));
+                .with_child(disc(THICK * weight.0 as f32));
             weight.0 += 1;
         }
     }

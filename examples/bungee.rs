@@ -16,20 +16,20 @@ const REST: f32 = 10.0;
 const GRAVITY: f32 = 9.81;
 /// Length of rope that the jump begins with, m.
 const START: f32 = 3.0;
-/// Of the rope's hook above the water, m.
-const BRIDGE: f32 = 17.5;
+/// Of the rope's hook above the ground, m.
+const BRIDGE: f32 = 20.5;
 
 fn main() -> AppExit {
     stage::run(&Stage {
         title: "bungee",
         setup: |app| {
-            app.insert_resource(PictureAt(2.1))
+            app.insert_resource(PictureAt(2.3))
                 .add_systems(Startup, setup);
         },
         seconds: 90.0,
         check,
-        eye: Vec3::new(9.0, 11.0, 33.0),
-        target: Vec3::new(0.0, 9.2, 0.0),
+        eye: Vec3::new(4.0, 9.5, 39.0),
+        target: Vec3::new(0.0, 11.0, 0.0),
     })
 }
 
@@ -54,8 +54,8 @@ fn setup(mut commands: Commands) {
         .id();
     for x in [-9.0, 9.0] {
         commands.spawn((
-            Transform::from_xyz(x, 0.5 * BRIDGE, -2.0),
-            Shape::Cuboid(Vec3::new(1.6, BRIDGE, 2.0), Paint::Iron),
+            Transform::from_xyz(x, 0.5 * BRIDGE, -2.2),
+            Shape::Cuboid(Vec3::new(1.6, BRIDGE, 2.0), Paint::Ivory),
         ));
     }
     for i in 0..27 {
