@@ -39,15 +39,15 @@ fn main() -> AppExit {
     stage::run(&Stage {
         title: "active_suspension",
         setup: |app| {
-            app.insert_resource(PictureAt(2.9))
+            app.insert_resource(PictureAt(2.85))
                 .add_systems(Startup, (road, cars).chain())
                 .add_systems(FixedUpdate, (roll, act).before(PhysicsSet::SyncBackend))
                 .add_systems(FixedUpdate, trace.after(CoiloverSystems::Readout));
         },
         seconds: 6.0,
         check,
-        eye: Vec3::new(1.2, 2.2, 6.4),
-        target: Vec3::new(-0.45, 0.62, 0.0),
+        eye: Vec3::new(3.4, 2.0, 5.7),
+        target: Vec3::new(-0.1, 0.62, 0.0),
     })
 }
 

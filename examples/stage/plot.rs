@@ -97,15 +97,16 @@ impl Plot {
 
     /// Writes with this share of the text left of x.
     fn write(&mut self, text: &str, x: i32, y: i32, share: f32) {
-        let width = 4 * DOT * text.len() as i32;
-        let x = x - (share * width as f32) as i32;
-        for (i, letter) in text.chars().enumerate() {
-            for (row, bits) in glyph(letter).into_iter().enumerate() {
-                for column in (0..3).filter(|column| bits >> (2 - column) & 1 == 1) {
-                    let x = x + DOT * (4 * i as i32 + column);
-                    self.square(x, y + DOT * row as i32, DOT, INK);
+        let width: i32 = text.chars().map(|letter| glyph(letter).0 + 1).sum();
+        let mut x = x - (share * (DOT * width) as f32) as i32;
+        for letter in text.chars() {
+            let (width, rows) = glyph(letter);
+            for (row, bits) in rows.into_iter().enumerate() {
+                for column in (0..width).filter(|column| bits >> (width - 1 - column) & 1 == 1) {
+                    self.square(x + DOT * column, y + DOT * row as i32, DOT, INK);
                 }
             }
+            x += DOT * (width + 1);
         }
     }
 
@@ -119,25 +120,25 @@ fn number(value: f32) -> String {
     format!("{}", if rounded == 0.0 { 0.0 } else { rounded })
 }
 
-/// Letters of three by five dots; blank for those that no plot has needed.
-fn glyph(letter: char) -> [u8; 5] {
+/// Width and rows of a letter, in dots; blank for those that no plot has needed.
+fn glyph(letter: char) -> (i32, [u8; 5]) {
     match letter {
-        '0' => [7, 5, 5, 5, 7],
-        '1' => [2, 6, 2, 2, 7],
-        '2' => [7, 1, 7, 4, 7],
-        '3' => [7, 1, 7, 1, 7],
-        '4' => [5, 5, 7, 1, 1],
-        '5' => [7, 4, 7, 1, 7],
-        '6' => [7, 4, 7, 5, 7],
-        '7' => [7, 1, 1, 2, 2],
-        '8' => [7, 5, 7, 5, 7],
-        '9' => [7, 5, 7, 1, 7],
-        '-' => [0, 0, 7, 0, 0],
-        '.' => [0, 0, 0, 0, 2],
-        '/' => [1, 1, 2, 2, 4],
-        'N' => [6, 5, 5, 5, 5],
-        'm' => [0, 5, 7, 7, 5],
-        's' => [0, 3, 6, 3, 6],
-        _ => [0; 5],
+        '0' => (3, [7, 5, 5, 5, 7]),
+        '1' => (3, [2, 6, 2, 2, 7]),
+        '2' => (3, [7, 1, 7, 4, 7]),
+        '3' => (3, [7, 1, 7, 1, 7]),
+        '4' => (3, [5, 5, 7, 1, 1]),
+        '5' => (3, [7, 4, 7, 1, 7]),
+        '6' => (3, [7, 4, 7, 5, 7]),
+        '7' => (3, [7, 1, 1, 2, 2]),
+        '8' => (3, [7, 5, 7, 5, 7]),
+        '9' => (3, [7, 5, 7, 1, 7]),
+        '-' => (3, [0, 0, 7, 0, 0]),
+        '.' => (1, [0, 0, 0, 0, 1]),
+        '/' => (5, [1, 2, 4, 8, 16]),
+        'N' => (5, [17, 25, 21, 19, 17]),
+        'm' => (5, [0, 26, 21, 21, 21]),
+        's' => (3, [0, 3, 6, 1, 6]),
+        _ => (3, [0; 5]),
     }
 }
