@@ -11,9 +11,11 @@ mod film;
 mod look;
 mod means;
 mod offscreen;
+mod plot;
 
 pub use check::{Finding, Track, tracks};
 pub use look::{Paint, Shape, floor};
+pub use plot::Plot;
 
 use bevy::prelude::*;
 use bevy::time::TimeUpdateStrategy;
@@ -66,12 +68,21 @@ impl Arguments {
                 "--headless" => out.headless = true,
                 "--screenshot" => out.film = Some(Film::Still(path()?)),
                 "--frames" => out.film = Some(Film::Frames(path()?)),
+                // Read by the scenes that have something to plot.
+                "--plot" => drop(path()?),
                 "--film" => out.film = Some(Film::Animation(path()?)),
                 _ => return Err(format!("unknown argument {word}")),
             }
         }
         Ok(out)
     }
+}
+
+/// Where a plot is asked for, from a scene that has one.
+pub fn plot_path() -> Option<PathBuf> {
+    let words: Vec<_> = std::env::args().collect();
+    let at = words.iter().position(|word| word == "--plot")?;
+    words.get(at + 1).map(PathBuf::from)
 }
 
 /// Runs an example as the machine and the command line allow.

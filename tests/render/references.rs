@@ -7,16 +7,19 @@ use image::{RgbImage, imageops};
 use std::path::Path;
 use std::process::Command;
 
-const SCENES: [&str; 12] = [
+const SCENES: [&str; 15] = [
+    "linear_spring",
+    "nonlinear_spring",
     "spring_3d",
     "damper_3d",
     "damper_visible",
     "spring_damper",
     "coilover_visible",
+    "bungee",
+    "torsion_bar",
     "free_fall",
     "natural_frequency",
     "suspension",
-    "trampoline",
     "tensegrity",
     "newtons_chain",
     "showcase",

@@ -1,0 +1,175 @@
+//! Five weights on springs that break at 50 to 250 N. Every second a disc more is laid on each: one spring
+//! after another breaks, the weakest first, at its own load, and the weight falls.
+//!
+//! Opens a window where there is a display; `--screenshot FILE` and `--headless` do without.
+
+mod stage;
+
+use bevy::prelude::*;
+use bevy_coilover::prelude::*;
+use bevy_rapier3d::prelude::*;
+use stage::{Finding, Paint, PictureAt, Shape, Stage};
+
+/// What the springs bear, N, from left to right: not in order.
+const LIMITS: [f32; 5] = [150.0, 50.0, 250.0, 100.0, 200.0];
+const STIFFNESS: f32 = 900.0;
+const REST: f32 = 0.7;
+/// Of a disc, kg.
+const DISC: f32 = 2.0;
+/// Of a disc, m.
+const RADIUS: f32 = 0.2;
+const THICK: f32 = 0.045;
+const GRAVITY: f32 = 9.81;
+/// Of the rod that the discs are laid on, m.
+const ROD: f32 = 0.66;
+/// Underside of the beam, m.
+const BEAM: f32 = 2.3;
+
+fn main() -> AppExit {
+    stage::run(&Stage {
+        title: "breakable",
+        setup: |app| {
+            app.init_resource::<Breaks>()
+                .insert_resource(PictureAt(8.35))
+                .add_systems(Startup, setup)
+                .add_systems(FixedUpdate, load.before(PhysicsSet::SyncBackend))
+                .add_observer(snap);
+        },
+        seconds: 14.0,
+        check,
+        eye: Vec3::new(0.6, 1.9, 5.4),
+        target: Vec3::new(0.0, 1.2, 0.0),
+    })
+}
+
+/// Of which spring, with how many discs, at what force (N).
+#[derive(Resource, Default)]
+struct Breaks(Vec<(usize, u32, f32)>);
+
+/// A weight, with its discs.
+#[derive(Component)]
+struct Weight(u32);
+
+/// A spring: its place in the row.
+#[derive(Component)]
+struct Place(usize);
+
+fn disc(height: f32) -> impl Bundle {
+    (
+        Transform::from_xyz(0.0, height, 0.0),
+        Shape::Cylinder(RADIUS, 0.9 * THICK, Paint::Blue),
+    )
+}
+
+fn setup(mut commands: Commands) {
+    commands
+        .spawn(stage::floor())
+        .insert(Collider::cuboid(20.0, 0.05, 20.0));
+    let beam = commands
+        .spawn((
+            RigidBody::Fixed,
+            Transform::from_xyz(0.0, BEAM + 0.06, 0.0),
+            Shape::Cuboid(Vec3::new(3.4, 0.12, 0.4), Paint::Iron),
+        ))
+        .id();
+    for (i, limit) in LIMITS.into_iter().enumerate() {
+        let x = 0.65 * (i as f32 - 2.0);
+        let body = commands
+            .spawn((
+                RigidBody::Dynamic,
+                Collider::cylinder(0.5 * THICK, RADIUS),
+                ColliderMassProperties::Mass(DISC),
+                Friction::coefficient(0.8),
+                // At rest from the start.
+                Transform::from_xyz(x, BEAM - REST - DISC * GRAVITY / STIFFNESS - ROD, 0.0),
+                Visibility::default(),
+                Weight(1),
+                children![
+                    disc(0.0),
+                    (
+                        Transform::from_xyz(0.0, 0.5 * ROD, 0.0),
+                        Shape::Cylinder(0.018, ROD, Paint::Ivory),
+                    ),
+                ],
+            ))
+            .id();
+        let wire = 0.009 * (limit / LIMITS[1]).powf(0.4);
+        // Critically damped, so that a disc more does not make it swing past its new place.
+        commands.spawn((
+            SpringDamper::new(beam, body)
+                .with_stiffness(STIFFNESS)
+                .with_damping(2.0 * (STIFFNESS * 10.0 * DISC).sqrt())
+                .with_rest_length(REST),
+            SpringAction::Pull,
+            Breakable::at_force(limit),
+            Anchors::new(Vec3::new(x, -0.06, 0.0), Vec3::Y * ROD),
+            Coil::new(0.08, wire, 10.0),
+            Place(i),
+        ));
+    }
+}
+
+/// A disc more on each, every second.
+fn load(
+    mut tick: Local<u32>,
+    mut weights: Query<(Entity, &mut Weight, &mut ColliderMassProperties)>,
+    springs: Query<&SpringDamper>,
+    mut commands: Commands,
+) {
+    *tick += 1;
+    if !tick.is_multiple_of(60) {
+        return;
+    }
+    for (entity, mut weight, mut mass) in &mut weights {
+        // Not on what lies on the ground.
+        if springs.iter().any(|s| s.body_b == entity) {
+            *mass = ColliderMassProperties::Mass(DISC * (weight.0 + 1) as f32);
+            commands
+                .entity(entity)
+                .with_child(disc(THICK * weight.0 as f32));
+            weight.0 += 1;
+        }
+    }
+}
+
+fn snap(
+    broke: On<SpringBroke>,
+    springs: Query<(&Place, &SpringDamper)>,
+    weights: Query<&Weight>,
+    mut breaks: ResMut<Breaks>,
+) {
+    let Ok((place, spring)) = springs.get(broke.entity) else {
+        return;
+    };
+    let discs = weights.get(spring.body_b).map_or(0, |w| w.0);
+    println!(
+        "  the spring for {} N broke at {:.1} N, {:.3} m long, with {discs} discs",
+        LIMITS[place.0], broke.force, broke.length
+    );
+    breaks.0.push((place.0, discs, broke.force));
+}
+
+fn check(world: &mut World) -> Vec<Finding> {
+    let held = world.query::<&SpringDamper>().iter(world).count();
+    let mut out = vec![Finding::small("springs that held", held as f32, 0.5, "")];
+    let mut last = 0.0;
+    for (i, discs, force) in &world.resource::<Breaks>().0 {
+        let limit = LIMITS[*i];
+        // The first number of discs that weighs more than it bears.
+        let wanted = (limit / (DISC * GRAVITY)).ceil();
+        let name = format!("the spring for {limit} N: discs");
+        out.push(Finding::close(&name, *discs as f32, wanted, "", 1e-3));
+        // Seen once a tick, so a little above its limit.
+        let most = limit + 0.5 * DISC * GRAVITY;
+        out.push(Finding::between("  broke at", *force, limit, most, "N"));
+        out.push(Finding::between(
+            "  after the one for",
+            last,
+            0.0,
+            limit,
+            "N",
+        ));
+        last = limit;
+    }
+    out
+}

@@ -1,0 +1,131 @@
+//! The simplest spring of all: it carries a body above a plane, and acts up and down only, so the body
+//! may drift sideways as it likes.
+//!
+//! Opens a window where there is a display; `--screenshot FILE` and `--headless` do without.
+
+mod stage;
+
+use bevy::prelude::*;
+use bevy_coilover::prelude::*;
+use bevy_rapier3d::prelude::*;
+use stage::{DT, Finding, Paint, PictureAt, Shape, Stage, Track, tracks};
+
+const STIFFNESS: f32 = 20.0;
+const MASS: f32 = 1.0;
+const REST: f32 = 1.2;
+const GRAVITY: f32 = 9.81;
+/// Stretch at the start, m.
+const STRETCH: f32 = -0.1;
+/// Where it starts, on x (m), and how fast it drifts (m/s).
+const START: f32 = -1.9;
+const DRIFT: f32 = 0.65;
+/// Of the shoe's top above the plane, and of half the body, m.
+const SHOE: f32 = 0.06;
+const HALF: f32 = 0.16;
+
+fn main() -> AppExit {
+    stage::run(&Stage {
+        title: "linear_spring",
+        setup: |app| {
+            app.init_resource::<Drift>()
+                .insert_resource(PictureAt(5.1))
+                .add_systems(Startup, setup)
+                .add_systems(FixedUpdate, follow.before(PhysicsSet::SyncBackend))
+                .add_systems(FixedUpdate, trace.after(CoiloverSystems::Readout));
+        },
+        seconds: 10.0,
+        check,
+        eye: Vec3::new(0.5, 1.75, 5.9),
+        target: Vec3::new(-0.1, 0.7, 0.0),
+    })
+}
+
+/// Largest difference from steady drift, m.
+#[derive(Resource, Default)]
+struct Drift(f32);
+
+#[derive(Component)]
+struct Body;
+
+/// What the spring stands on.
+#[derive(Component)]
+struct Shoe;
+
+fn setup(mut commands: Commands) {
+    commands.spawn(stage::floor());
+    // A point of no weight that glides on the plane, so that the coil is drawn upright.
+    let shoe = commands
+        .spawn((
+            Transform::from_xyz(START, 0.5 * SHOE, 0.0),
+            Shape::Cuboid(Vec3::new(0.42, SHOE, 0.3), Paint::Iron),
+            Shoe,
+        ))
+        .id();
+    let body = commands
+        .spawn((
+            RigidBody::Dynamic,
+            AdditionalMassProperties::Mass(MASS),
+            Velocity::linear(Vec3::X * DRIFT),
+            Transform::from_xyz(START, SHOE + REST + STRETCH + HALF, 0.0),
+            Shape::Cuboid(Vec3::splat(2.0 * HALF), Paint::Blue),
+            Body,
+        ))
+        .id();
+    commands.spawn((
+        Spring::new(shoe, body)
+            .with_stiffness(STIFFNESS)
+            .with_rest_length(REST),
+        SpringAxis::World(Vec3::Y),
+        Anchors::new(Vec3::Y * 0.5 * SHOE, Vec3::NEG_Y * HALF),
+        Coil::new(0.11, 0.014, 9.0),
+        Track::default(),
+    ));
+}
+
+/// The shoe stays below the body; the spring feels nothing of it.
+fn follow(
+    mut shoes: Query<&mut Transform, With<Shoe>>,
+    bodies: Query<&Transform, (With<Body>, Without<Shoe>)>,
+) {
+    for (mut shoe, body) in shoes.iter_mut().zip(&bodies) {
+        shoe.translation.x = body.translation.x;
+    }
+}
+
+/// Leaves a mark twenty times a second, and notes how steady the drift is.
+fn trace(
+    mut tick: Local<u32>,
+    mut drift: ResMut<Drift>,
+    bodies: Query<&Transform, With<Body>>,
+    mut commands: Commands,
+) {
+    *tick += 1;
+    for body in &bodies {
+        let steady = START + DRIFT * DT * *tick as f32;
+        drift.0 = drift.0.max((body.translation.x - steady).abs());
+        if tick.is_multiple_of(3) {
+            let behind = Transform::from_translation(body.translation.with_z(-HALF - 0.05));
+            commands.spawn((behind, Shape::Ball(0.022, Paint::Ivory)));
+        }
+    }
+}
+
+fn check(world: &mut World) -> Vec<Finding> {
+    let drift = world.resource::<Drift>().0;
+    // m ÿ = −k (y − rest) − m g from rest at y = rest + stretch.
+    let (middle, omega) = (REST - MASS * GRAVITY / STIFFNESS, (STIFFNESS / MASS).sqrt());
+    let track = tracks(world)[0];
+    let swing = REST + STRETCH - middle;
+    let error = track.error(|t| middle + swing * (omega * t).cos());
+    vec![
+        Finding::small("largest error of the height", error, 2e-4, "m"),
+        Finding::small("largest error of the drift", drift, 5e-4, "m"),
+        Finding::close(
+            "frequency",
+            track.frequency(middle),
+            omega / std::f32::consts::TAU,
+            "Hz",
+            5e-4,
+        ),
+    ]
+}

@@ -1,0 +1,226 @@
+//! Two torsion springs with dampers: a disc that turns to and fro below a wire, and a wheel's arm on a bar
+//! that is twisted by what the wheel carries.
+//!
+//! Opens a window where there is a display; `--screenshot FILE` and `--headless` do without.
+
+mod stage;
+
+use bevy::prelude::*;
+use bevy_coilover::prelude::*;
+use bevy_rapier3d::prelude::*;
+use stage::{Finding, Paint, PictureAt, Shape, Stage, Track, tracks};
+use std::f32::consts::TAU;
+
+/// Of the disc about its axis, kg m².
+const INERTIA: f32 = 0.05;
+/// N m/rad, N m s/rad
+const WIRE: f32 = 0.8;
+const WIRE_DAMPING: f32 = 0.012;
+/// How far the disc is twisted at first, rad: nearly half a turn.
+const TWIST: f32 = 3.0;
+
+/// Of the arm, m, and what hangs on its end, kg.
+const ARM: f32 = 0.7;
+const LOAD: f32 = 40.0;
+/// N m/rad, N m s/rad
+const BAR: f32 = 700.0;
+const BAR_DAMPING: f32 = 60.0;
+const GRAVITY: f32 = 9.81;
+/// Angle of the arm above the level where the bar has no moment, rad.
+const SET: f32 = 0.45;
+
+fn main() -> AppExit {
+    stage::run(&Stage {
+        title: "torsion_bar",
+        setup: |app| {
+            app.insert_resource(PictureAt(0.62))
+                .add_systems(Startup, (wire, bar).chain());
+        },
+        seconds: 12.0,
+        check,
+        eye: Vec3::new(-1.3, 2.0, 4.1),
+        target: Vec3::new(-0.08, 0.78, 0.0),
+    })
+}
+
+fn wire(mut commands: Commands) {
+    commands.spawn(stage::floor());
+    let x = -0.95;
+    let beam = commands
+        .spawn((
+            RigidBody::Fixed,
+            Transform::from_xyz(x, 1.65, 0.0),
+            Shape::Cuboid(Vec3::new(0.7, 0.1, 0.3), Paint::Iron),
+            children![
+                (
+                    Transform::from_xyz(0.0, -0.6, 0.0),
+                    Shape::Cylinder(0.012, 1.1, Paint::Ivory),
+                ),
+                (
+                    Transform::from_xyz(-0.4, -0.775, 0.0),
+                    Shape::Cuboid(Vec3::new(0.1, 1.75, 0.3), Paint::Iron),
+                ),
+            ],
+        ))
+        .id();
+    let disc = commands
+        .spawn((
+            RigidBody::Dynamic,
+            AdditionalMassProperties::MassProperties(MassProperties {
+                mass: 4.0,
+                principal_inertia: Vec3::new(0.03, INERTIA, 0.03),
+                ..default()
+            }),
+            LockedAxes::TRANSLATION_LOCKED
+                | LockedAxes::ROTATION_LOCKED_X
+                | LockedAxes::ROTATION_LOCKED_Z,
+            Transform::from_xyz(x, 0.5, 0.0),
+            Shape::Cylinder(0.28, 0.06, Paint::Blue),
+            children![
+                // What shows how far it has turned.
+                (
+                    Transform::from_xyz(0.15, 0.04, 0.0),
+                    Shape::Cuboid(Vec3::new(0.24, 0.04, 0.05), Paint::Ivory),
+                ),
+                (
+                    Transform::from_xyz(0.0, 0.06, 0.0),
+                    Shape::Cylinder(0.035, 0.07, Paint::Iron),
+                ),
+            ],
+        ))
+        .id();
+    commands.spawn((
+        TorsionSpringDamper::new(beam, disc, Vec3::Y)
+            .with_stiffness(WIRE)
+            .with_damping(WIRE_DAMPING)
+            .with_rest_angle(TWIST),
+        Track::default(),
+    ));
+}
+
+fn bar(mut commands: Commands) {
+    let pivot = Vec3::new(0.15, 0.75, 0.0);
+    let along_z = Quat::from_rotation_x(TAU / 4.0);
+    let frame = commands
+        .spawn((
+            RigidBody::Fixed,
+            Transform::from_translation(pivot),
+            Visibility::default(),
+            children![
+                // The clamp at the far end, and the bearing at the arm's.
+                (
+                    Transform::from_xyz(0.0, -0.3, -1.2),
+                    Shape::Cuboid(Vec3::new(0.26, 0.9, 0.12), Paint::Iron),
+                ),
+                (
+                    Transform::from_xyz(0.0, -0.36, -0.12),
+                    Shape::Cuboid(Vec3::new(0.16, 0.78, 0.08), Paint::Iron),
+                ),
+                (
+                    Transform::from_xyz(0.0, 0.0, -0.6).with_rotation(along_z),
+                    Shape::Cylinder(0.05, 1.3, Paint::Ivory),
+                ),
+            ],
+        ))
+        .id();
+    let hinge = RevoluteJointBuilder::new(Vec3::Z).local_anchor1(Vec3::ZERO);
+    let tilt = Quat::from_rotation_z(SET);
+    let arm = commands
+        .spawn((
+            RigidBody::Dynamic,
+            AdditionalMassProperties::MassProperties(MassProperties {
+                local_center_of_mass: Vec3::X * ARM,
+                mass: LOAD,
+                principal_inertia: Vec3::splat(0.4),
+                ..default()
+            }),
+            Transform::from_translation(pivot).with_rotation(tilt),
+            Visibility::default(),
+            ImpulseJoint::new(frame, TypedJoint::RevoluteJoint(hinge.build())),
+            children![
+                (
+                    Transform::from_rotation(along_z),
+                    Shape::Cylinder(0.075, 0.12, Paint::Blue),
+                ),
+                (
+                    Transform::from_xyz(0.5 * ARM, 0.0, 0.0),
+                    Shape::Cuboid(Vec3::new(ARM, 0.09, 0.06), Paint::Blue),
+                ),
+                (
+                    Transform::from_xyz(ARM, 0.0, 0.14).with_rotation(along_z),
+                    Shape::Cylinder(0.26, 0.16, Paint::Iron),
+                ),
+                (
+                    Transform::from_xyz(ARM, 0.0, 0.14).with_rotation(along_z),
+                    Shape::Cylinder(0.14, 0.18, Paint::Ivory),
+                ),
+            ],
+        ))
+        .id();
+    // Angles count from where both bodies' frames are alike.
+    commands.spawn((
+        TorsionSpringDamper::new(frame, arm, Vec3::Z)
+            .with_stiffness(BAR)
+            .with_damping(BAR_DAMPING)
+            .with_rest_angle(SET),
+        Track::default(),
+    ));
+}
+
+/// κ (set − θ) = m g r cos θ
+fn level() -> f32 {
+    let mut angle = 0.0_f32;
+    for _ in 0..50 {
+        angle = SET - LOAD * GRAVITY * ARM * angle.cos() / BAR;
+    }
+    angle
+}
+
+fn check(world: &mut World) -> Vec<Finding> {
+    let tracks = tracks(world);
+    let decay = WIRE_DAMPING / (2.0 * INERTIA);
+    let turn = (WIRE / INERTIA - decay * decay).sqrt();
+    let error = tracks[0].error(|t| {
+        TWIST - TWIST * (-decay * t).exp() * ((turn * t).cos() + decay / turn * (turn * t).sin())
+    });
+    let period = 1.0 / tracks[0].frequency(TWIST);
+    // From one largest angle to the next.
+    let tops: Vec<f32> = tracks[0]
+        .0
+        .windows(3)
+        .map(|w| [w[0].1.length, w[1].1.length, w[2].1.length])
+        .filter(|w| w[1] > w[0] && w[1] >= w[2])
+        .map(|w| w[1] - TWIST)
+        .collect();
+    let fades = match tops[..] {
+        [first, .., last] => (last / first).powf(1.0 / (tops.len() - 1) as f32),
+        _ => f32::NAN,
+    };
+    let rest = tracks[1].last();
+    vec![
+        Finding::close("period of the disc", period, TAU / turn, "s", 2e-4),
+        Finding::close(
+            "what a period leaves",
+            fades,
+            (-decay * TAU / turn).exp(),
+            "",
+            1e-3,
+        ),
+        Finding::small("largest error of its angle", error, 1e-3, "rad"),
+        Finding::close(
+            "twist of the bar",
+            SET - rest.length,
+            SET - level(),
+            "rad",
+            1e-3,
+        ),
+        Finding::close(
+            "its moment",
+            -rest.spring_force,
+            LOAD * GRAVITY * ARM * level().cos(),
+            "N m",
+            1e-3,
+        ),
+        Finding::small("the arm still turns at", rest.rate, 1e-3, "rad/s"),
+    ]
+}
