@@ -54,19 +54,20 @@ fn frames(c: &mut Criterion) {
 fn isolated(c: &mut Criterion) {
     let mut group = c.benchmark_group("own/isolated");
     group.sample_size(10);
-    let mut bench = |name: &str, scene: Scene, count: u32, microsteps: u32| {
-        let mut lazy = Lazy::new(|| scene.app(count, Link::Ours, microsteps));
+    let mut bench = |name: &str, scene: Scene, link: Link, count: u32, microsteps: u32| {
+        let mut lazy = Lazy::new(|| scene.app(count, link, microsteps));
         group.throughput(Throughput::Elements(u64::from(count)));
         group.bench_function(BenchmarkId::new(name, count), |b| {
             b.iter_custom(|frames| lazy.own(frames));
         });
     };
     for count in [1, 10, 100, 1_000, 10_000, 100_000] {
-        bench("awake", Scene::Isolated, count, 1);
+        bench("awake", Scene::Isolated, Link::Ours, count, 1);
     }
-    bench("asleep", Scene::Asleep, 10_000, 1);
-    bench("4 microsteps", Scene::Isolated, 10_000, 4);
-    bench("16 microsteps", Scene::Isolated, 10_000, 16);
+    bench("asleep", Scene::Asleep, Link::Ours, 10_000, 1);
+    bench("with laws", Scene::Isolated, Link::Laws, 10_000, 1);
+    bench("4 microsteps", Scene::Isolated, Link::Ours, 10_000, 4);
+    bench("16 microsteps", Scene::Isolated, Link::Ours, 10_000, 16);
     group.finish();
 }
 

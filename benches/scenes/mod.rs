@@ -13,6 +13,8 @@ pub enum Link {
     /// Nothing: each flies on at a speed of its own.
     Nothing,
     Ours,
+    /// Ours with force laws beside them.
+    Laws,
     Joint,
 }
 
@@ -124,6 +126,16 @@ fn join(world: &mut World, a: Entity, b: Entity, link: Link) {
                     .with_damping(0.1)
                     .with_rest_length(1.0),
             );
+        }
+        Link::Laws => {
+            world.spawn((
+                SpringDamper::new(a, b)
+                    .with_stiffness(40.0)
+                    .with_rest_length(1.0),
+                SpringLaw::polynomial(40.0, 0.0, 20.0),
+                DampingLaw::sided(0.1, 0.3),
+                SpringTravel::new(0.5, 1.5, 4000.0),
+            ));
         }
         Link::Joint => {
             let joint = SpringJointBuilder::new(1.0, 40.0, 0.1);
