@@ -100,3 +100,38 @@ fn threads_change_nothing() {
     }
     assert_eq!(state(&lab, &bodies), run(1));
 }
+
+#[test]
+fn the_order_in_which_springs_are_spawned_changes_nothing() {
+    let run = |reversed: bool| {
+        let mut lab = Lab::new();
+        let hook = lab.point(Vec3::ZERO);
+        let bodies: Vec<Entity> = (1..=12)
+            .map(|i| {
+                let i = i as f32;
+                lab.spawn(brick(
+                    0.1 + 0.05 * i,
+                    Vec3::splat(0.01),
+                    Vec3::new(0.3 * i, 0.02 * i * i, 0.1 * (i % 3.0)),
+                ))
+            })
+            .collect();
+        let all: Vec<Entity> = [hook].into_iter().chain(bodies.iter().copied()).collect();
+        let mut pairs: Vec<(Entity, Entity)> = all.windows(2).map(|w| (w[0], w[1])).collect();
+        pairs.extend(all.windows(4).map(|w| (w[0], w[3])));
+        if reversed {
+            pairs.reverse();
+        }
+        for (a, b) in pairs {
+            lab.spawn((
+                SpringDamper::new(a, b)
+                    .with_stiffness(150.0)
+                    .with_damping(0.2),
+                Anchors::new(Vec3::ZERO, Vec3::Y * 0.05),
+            ));
+        }
+        lab.run(3.0);
+        state(&lab, &bodies)
+    };
+    assert_eq!(run(false), run(true));
+}
