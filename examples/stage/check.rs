@@ -76,7 +76,8 @@ impl Track {
     /// The largest difference of the length from a function of time (s), m.
     pub fn error(&self, theory: impl Fn(f32) -> f32) -> f32 {
         let errors = self.0.iter().map(|(t, r)| (r.length - theory(*t)).abs());
-        errors.fold(0.0, f32::max)
+        // Unlike `f32::max`, it lets no NaN pass.
+        errors.fold(0.0, |most, e| if e <= most { most } else { e })
     }
 
     /// The last read-out.

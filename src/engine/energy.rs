@@ -88,6 +88,17 @@ impl ElementRow {
         self.elastic(self.memory.length).stiffness
     }
 
+    /// Energy of an element both of whose ends are moved by something else, over a step to this length and at
+    /// this rate: all of it is their work.
+    pub(super) fn account_for_moved(&mut self, (length, rate): (f64, f64), time: f64) {
+        let heat = self.drag(length, rate) * rate * time;
+        let stored = self.elastic(length).energy - self.elastic(self.memory.length).energy;
+        if heat.is_finite() && stored.is_finite() {
+            self.ledger.dissipated += heat;
+            self.ledger.work += heat + stored;
+        }
+    }
+
     /// Takes in other numbers; what that changes in stored energy is work that was done.
     pub(super) fn change(&mut self, change: impl FnOnce(&mut Self)) {
         let acted = self.memory.places[0].is_some() && self.parameters.rest_length.is_some();

@@ -44,6 +44,7 @@ pub(crate) fn measure(
     look(scene, &sets, &contexts);
     let time = scene.time;
     let mut show = |row: &mut ElementRow, readout: &mut Mut<SpringReadout>| {
+        let acted = row.memory.places[0].is_some();
         if let Some(points) = row.see(time, &scene.bodies, &sets) {
             report(row, &mut commands);
             let tuned = std::mem::take(&mut row.tuned);
@@ -54,6 +55,9 @@ pub(crate) fn measure(
                 commands.entity(row.entity).try_remove::<SpringTuning>();
             }
             let seen = row.extent(points, time, &scene.bodies, &sets);
+            if acted && row.held.iter().all(|held| held.movable().is_none()) {
+                row.account_for_moved(seen, time);
+            }
             row.memory.length = seen.0;
             readout.set_if_neq(row.read_out(seen, time));
         }

@@ -37,6 +37,13 @@ fn the_force_velocity_loop_of_a_driven_damper_is_its_law_and_its_work_the_integr
         worst = worst.max((f64::from(seen.damper_force) - wanted).abs());
         work += f64::from(seen.dissipated_power) * lab.dt();
     }
+    // The ledger has it too, all of it the slider's work.
+    let seen = lab.readout(damper);
+    assert!(
+        (f64::from(seen.dissipated_energy) / work - 1.0).abs() < 1e-3,
+        "{seen:?}"
+    );
+    assert!((seen.work - seen.dissipated_energy).abs() < 1e-3 * seen.work);
     // ∮ c ẋ dx over a half cycle is c π A² ω/2.
     let exact =
         cycles * 0.5 * (bump + rebound) * std::f64::consts::PI * amplitude * amplitude * omega;
