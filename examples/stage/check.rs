@@ -77,7 +77,12 @@ impl Track {
     pub fn error(&self, theory: impl Fn(f32) -> f32) -> f32 {
         let errors = self.0.iter().map(|(t, r)| (r.length - theory(*t)).abs());
         // Unlike `f32::max`, it lets no NaN pass.
-        errors.fold(0.0, |most, e| if e <= most { most } else { e })
+        errors.fold(
+            0.0,
+            |most, e| {
+                if most.is_nan() || e <= most { most } else { e }
+            },
+        )
     }
 
     /// The last read-out.
