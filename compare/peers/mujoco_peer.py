@@ -8,26 +8,10 @@ import time
 
 import mujoco
 import numpy as np
+from scenes import read
 
 INTEGRATORS = ["Euler", "implicitfast", "RK4", "discrete"]
 RATES = [60, 240, 960]
-
-
-def read(path):
-    scene = dict(bodies=[], links=[], truth={})
-    for line in path.read_text().splitlines():
-        key, *words = line.split()
-        numbers = [float(w) for w in words]
-        if key == "body":
-            scene["bodies"].append(numbers)
-        elif key == "link":
-            scene["links"].append(numbers)
-        elif key == "at":
-            scene["truth"][round(numbers[0] * 240)] = np.array(numbers[1:]).reshape(-1, 3)
-        else:
-            scene[key] = numbers
-    scene["watched"] = [int(b) for b in scene["watched"]]
-    return scene
 
 
 def model(scene, integrator, rate):

@@ -21,6 +21,9 @@ pub fn write_all(folder: &Path) -> io::Result<()> {
 /// A line each: gravity; seconds; bodies (mass, 0 when fixed, place, velocity); links (ends, stiffness, damping,
 /// rest length); watched bodies; and where those are at a time, every 1/240 s.
 fn describe(problem: &Problem) -> Option<String> {
+    if problem.is_nonlinear() {
+        return None;
+    }
     let vector = |v: Vec3| format!("{} {} {}", v.x, v.y, v.z);
     let mut text = format!(
         "gravity {}\nseconds {}\nsize {}\n",

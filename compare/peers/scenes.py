@@ -1,0 +1,19 @@
+"""Reads the scenes of points that `compare --describe` writes."""
+import numpy as np
+
+
+def read(path):
+    scene = dict(bodies=[], links=[], truth={})
+    for line in path.read_text().splitlines():
+        key, *words = line.split()
+        numbers = [float(w) for w in words]
+        if key == "body":
+            scene["bodies"].append(numbers)
+        elif key == "link":
+            scene["links"].append(numbers)
+        elif key == "at":
+            scene["truth"][round(numbers[0] * 240)] = np.array(numbers[1:]).reshape(-1, 3)
+        else:
+            scene[key] = numbers
+    scene["watched"] = [int(b) for b in scene["watched"]]
+    return scene
