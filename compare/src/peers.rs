@@ -12,7 +12,7 @@ pub fn section(folder: &Path) -> String {
     };
     let mut text = String::from(
         "## Engines outside of Bevy\n\nMeasured by `compare/peers/run`, on the same scenes of points, each engine in \
-         its own language: MuJoCo's spatial tendon from Python, with a call per step, and Jolt's distance constraint \
+         its own language: MuJoCo's spatial tendon from Python, with a call per step, Exudyn's spring-damper, called once for all steps, and Jolt's distance constraint \
          in WebAssembly. **Their times are not comparable with those above**: they hold the cost of another language, \
          and no Bevy app. Their errors are.\n\n\
          | scene | peer | setting | Hz | largest error | step (not comparable) |\n|---|---|---|---|---|---|\n",
