@@ -110,7 +110,8 @@ impl Balance {
                 s.position + s.rotation * link.anchors[end].as_dvec3()
             });
             let stretch = a.distance(b) - f64::from(link.rest);
-            sum.energy += 0.5 * f64::from(link.stiffness) * stretch * stretch;
+            sum.energy += 0.5 * f64::from(link.stiffness) * stretch * stretch
+                + 0.25 * f64::from(link.cubic) * stretch.powi(4);
         }
         sum
     }
