@@ -19,6 +19,18 @@ fn every_public_component_is_in_the_type_registry() {
         "SpringReadout",
         "SpringLoad",
         "SpringFault",
+        "TorsionSpring",
+        "TorsionDamper",
+        "TorsionSpringDamper",
+        "SpringLaw",
+        "DampingLaw",
+        "SpringAction",
+        "SpringTravel",
+        "SpringAxis",
+        "Preload",
+        "MaxForce",
+        "Breakable",
+        "SpringTuning",
     ] {
         let registration = registry.get_with_short_type_path(name);
         let registration = registration.unwrap_or_else(|| panic!("{name} is registered"));
