@@ -105,9 +105,10 @@ impl Component {
         self.memory.bound = bound;
     }
 
-    /// Force (N) and torque (N m) of all elements on a body as they stand.
-    pub(crate) fn load_on(&self, body: usize) -> (DVec3, DVec3) {
-        let mut sum = (DVec3::ZERO, DVec3::ZERO);
+    /// Force (N) and torque (N m) of all elements on each body as they stand.
+    pub(crate) fn loads(&self, loads: &mut Vec<(DVec3, DVec3)>) {
+        loads.clear();
+        loads.resize(self.bodies.len(), (DVec3::ZERO, DVec3::ZERO));
         for element in &self.elements {
             let Some(line) = element.line(&self.bodies) else {
                 continue;
@@ -115,18 +116,18 @@ impl Component {
             let rate = line.motion(element, &self.bodies, 0.0).axial;
             let tension = element.tension(line.length, rate);
             for (hold, sign) in line.holds.iter().zip([1.0, -1.0]) {
-                if hold.body == Some(body) {
-                    let force = sign * tension * line.direction;
-                    if hold.twist {
-                        sum.1 += force;
-                    } else {
-                        sum.0 += force;
-                        sum.1 += hold.arm.cross(force);
-                    }
+                let Some(sum) = hold.body.map(|body| &mut loads[body]) else {
+                    continue;
+                };
+                let force = sign * tension * line.direction;
+                if hold.twist {
+                    sum.1 += force;
+                } else {
+                    sum.0 += force;
+                    sum.1 += hold.arm.cross(force);
                 }
             }
         }
-        sum
     }
 
     /// Micro-steps of one element alone.

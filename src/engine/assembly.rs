@@ -24,6 +24,8 @@ pub(crate) struct Assembly {
     component: Component,
     /// Its bodies at the start of the step, with their full mass.
     start: Vec<Body>,
+    /// Force and torque of all elements on each of them, where that is asked for.
+    loads: Vec<(DVec3, DVec3)>,
     state: State,
     outcome: Outcome,
     ledger: Ledger,
@@ -129,12 +131,16 @@ impl Assembly {
         } else {
             State::Powerless
         };
+        let free = |b: &usize| bodies[*b].support == Support::None;
+        if self.component.stepped || !members.bodies.iter().all(free) {
+            self.component.loads(&mut self.loads);
+        }
         for (slot, b) in members.bodies.iter().enumerate() {
             let row = &bodies[*b];
             if row.support == Support::None {
                 continue;
             }
-            let load = self.component.load_on(slot);
+            let load = self.loads[slot];
             let support = match (row.support, set.get(row.handle)) {
                 (Support::Unknown, Some(body)) => step.first_support(row, body, load, set),
                 (known, _) => known,
@@ -168,7 +174,7 @@ impl Assembly {
             }
             if row.link.is_none() {
                 // Later the velocity is that of then, too; before the first step it is of now.
-                let load = self.component.load_on(slot);
+                let load = self.loads[slot];
                 let body = &mut self.component.bodies[slot];
                 let inverse_inertia = body.inverse_inertia();
                 body.apply_external(-lag, inverse_inertia);
