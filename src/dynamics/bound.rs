@@ -33,32 +33,51 @@ impl Bound {
     pub(crate) fn begin(&mut self, elements: &[Element], bodies: &[Body], linked: bool) {
         // What contacts and joints hold, or links of a multibody do, is not ours to account for.
         if linked || bodies.iter().any(|body| body.mobility < 1.0) {
-            self.given = None;
-            return;
+            return self.forget();
         }
         let now = Energy::of(elements, bodies).sum();
+        self.start(now, rounding(elements, bodies), power(elements, bodies));
+    }
+
+    /// The same with the energy at hand, what of it can be rounding, and the power of moving ends.
+    pub(crate) fn start(&mut self, now: f64, rounding: f64, power: f64) {
         let change = now - self.last;
-        let gift = if (0.0..rounding(elements, bodies)).contains(&change) {
+        let gift = if (0.0..rounding).contains(&change) {
             // Noise of the engine's f32 is no gift.
             0.0
         } else {
             change
         };
         self.given = Some(self.given.map_or(now, |given| given + gift));
-        self.work = power(elements, bodies);
+        self.work = power;
+    }
+
+    /// For a network whose energy is not ours to account for.
+    pub(crate) fn forget(&mut self) {
+        self.given = None;
+    }
+
+    /// Whether a network that ends the step with so much is within its bound.
+    pub(crate) fn is_kept(&mut self, energy: &Energy, power: f64, time: f64) -> bool {
+        self.work = self.work.max(power);
+        self.surplus(energy, time) <= 0.0
+    }
+
+    fn surplus(&self, energy: &Energy, time: f64) -> f64 {
+        let sway = SWAY * (energy.motion + energy.stored);
+        self.given
+            .map_or(0.0, |given| energy.sum() - given - time * self.work - sway)
     }
 
     /// Takes a surplus out of the motion; says whether that was enough.
     pub(crate) fn hold(&mut self, elements: &[Element], bodies: &mut [Body], time: f64) -> bool {
-        let Some(given) = self.given else {
+        if self.given.is_none() {
             return true;
-        };
+        }
         self.work = self.work.max(power(elements, bodies));
-        let most =
-            |energy: &Energy| given + time * self.work + SWAY * (energy.motion + energy.stored);
         for _ in 0..ROUNDS {
             let energy = Energy::of(elements, bodies);
-            let surplus = energy.sum() - most(&energy);
+            let surplus = self.surplus(&energy, time);
             if surplus <= 0.0 {
                 return true;
             }
@@ -120,7 +139,14 @@ impl Bound {
 
     /// Notes what the step ends with.
     pub(crate) fn end(&mut self, elements: &[Element], bodies: &[Body], time: f64) {
-        self.last = Energy::of(elements, bodies).sum();
+        if self.given.is_some() {
+            self.finish(Energy::of(elements, bodies).sum(), time);
+        }
+    }
+
+    /// The same with the energy at hand.
+    pub(crate) fn finish(&mut self, energy: f64, time: f64) {
+        self.last = energy;
         if let Some(given) = &mut self.given {
             *given += time * self.work;
         }

@@ -4,7 +4,8 @@
 //! to be solved together. [`body`] drifts, [`element`] has the [`line`] between its ends (or
 //! what [`guide`] gives instead), [`poles`] gives
 //! the exact coefficients; [`kick`] acts for a lone element, [`pair`] for one on bodies that do not turn,
-//! [`shock`] for one of those with a force [`law`] of its own, [`network`] for elements that share bodies, with the linear algebra in [`system`] and [`strut`]. [`guard`] keeps strong
+//! [`shock`] for one of those with a force [`law`] of its own, [`network`] for elements that share bodies,
+//! with the linear algebra in [`system`] and [`strut`], and [`points`] for many that turn none. [`guard`] keeps strong
 //! damping honest, and [`bound`] a network, by their [`energy`]. [`delivery`] says which impulse and force
 //! make the engine arrive there.
 
@@ -20,6 +21,7 @@ pub(crate) mod law;
 mod line;
 pub(crate) mod network;
 pub(crate) mod pair;
+mod points;
 pub(crate) mod poles;
 pub(crate) mod shock;
 pub(crate) mod step;

@@ -323,7 +323,7 @@ impl Row {
 
 /// Damping time, in steps, of stiffness-proportional damping that takes the [`UNRESOLVED_DECAY`] of a lone
 /// element from a mode with z = (ω h)²; less from slower ones.
-fn settling(z: f64) -> f64 {
+pub(super) fn settling(z: f64) -> f64 {
     if z <= RESOLVED_PHASE * RESOLVED_PHASE {
         return 0.0;
     }
@@ -353,7 +353,7 @@ fn across(element: &Element, line: &Line, tension: f64) -> f64 {
 /// Share of the step at whose end a damper with x = c h/m acts: half, which is of second order, while it
 /// is resolved; beyond that the share with which a lone damper decays exactly, so that strong ones stop
 /// their ends instead of throwing them back and forth.
-fn damper_placement(x: f64) -> f64 {
+pub(super) fn damper_placement(x: f64) -> f64 {
     if x <= 1.0 {
         0.5
     } else {
@@ -362,7 +362,7 @@ fn damper_placement(x: f64) -> f64 {
 }
 
 /// θ for a stiffest mode with z = (ω h)².
-fn placement(z: f64) -> f64 {
+pub(super) fn placement(z: f64) -> f64 {
     if z <= 1e-3 {
         1.0 / 12.0
     } else if z < PLACED {

@@ -8,7 +8,9 @@ use super::guard::Guard;
 use super::guide::Guide;
 use super::kick::{self, Map, Memo};
 use super::network::{Network, RESOLVED};
+use super::points::Points;
 use super::shock::Apart;
+use super::system::DENSE;
 use super::tolerance::{Accuracy, Controller, Method, Motion, Outcome, VELOCITY_COUNTS};
 use bevy::math::DVec3;
 
@@ -35,6 +37,7 @@ pub(crate) struct Component {
 pub(super) struct Memory {
     memo: Memo,
     network: Network,
+    points: Points,
     controller: Controller,
     bound: Bound,
     saved: [Saved; 3],
@@ -64,6 +67,12 @@ impl Component {
             self.memory.controller = controller;
             return outcome;
         }
+        if self.is_of_points() {
+            let outcome =
+                self.advance_points(time, |motion| controller.drive(motion, time, accuracy));
+            self.memory.controller = controller;
+            return outcome;
+        }
         let Memory { bound, saved, .. } = &mut self.memory;
         bound.begin(&self.elements, &self.bodies, self.stepped);
         let start = &mut saved[0];
@@ -83,6 +92,54 @@ impl Component {
             Method::Direct
         };
         outcome.capped |= !converged;
+        outcome
+    }
+
+    #[cfg(test)]
+    pub(super) fn memory_for_test(&mut self, max_iterations: u32) {
+        self.memory.max_iterations = max_iterations;
+    }
+
+    /// Whether it is large, and no body turns.
+    fn is_of_points(&self) -> bool {
+        !self.stepped
+            && 3 * self.bodies.len() > DENSE
+            && Points::can_be(&self.elements, &self.bodies)
+    }
+
+    /// The step of a network of points.
+    fn advance_points(&mut self, time: f64, drive: impl FnOnce(&mut Points) -> Outcome) -> Outcome {
+        let Memory {
+            points,
+            bound,
+            max_iterations,
+            ..
+        } = &mut self.memory;
+        points.load_from(&self.elements, &self.bodies, *max_iterations);
+        if self.bodies.iter().any(|body| body.mobility < 1.0) {
+            bound.forget();
+        } else {
+            let start = points.survey();
+            bound.start(start.energy.sum(), start.rounding, start.power);
+        }
+        let mut outcome = drive(points);
+        outcome.method = Method::Iterative;
+        outcome.capped |= !points.converged();
+        let end = points.survey();
+        let kept = bound.is_kept(&end.energy, end.power, time);
+        if kept {
+            bound.finish(end.energy.sum(), time);
+        } else {
+            let start = &mut self.memory.saved[0];
+            start.bodies.clone_from(&self.bodies);
+            start.elements.clone_from(&self.elements);
+        }
+        self.memory
+            .points
+            .store_into(&mut self.elements, &mut self.bodies);
+        if !kept {
+            self.keep_bound(time);
+        }
         outcome
     }
 
@@ -246,6 +303,16 @@ impl Component {
 /// Tries at moving less far; then nothing moves at all.
 const HALVINGS: u32 = 12;
 
+/// Micro-steps that resolve a network's stiffest mode, of (ω h)² = `z`; one where that is out of reach.
+pub(super) fn finer(z: f64) -> u32 {
+    let finer = (z / RESOLVED).sqrt().ceil();
+    if finer <= f64::from(EXTRA_STEPS) {
+        finer.max(1.0) as u32
+    } else {
+        1
+    }
+}
+
 impl Motion for Component {
     fn save(&mut self, slot: usize) {
         let saved = &mut self.memory.saved[slot];
@@ -266,12 +333,7 @@ impl Motion for Component {
         }
         let network = &mut self.memory.network;
         let (z, _) = network.bounds(&self.elements, &self.bodies, time);
-        let finer = (z / RESOLVED).sqrt().ceil();
-        if finer <= f64::from(EXTRA_STEPS) {
-            finer.max(1.0) as u32
-        } else {
-            1
-        }
+        finer(z)
     }
 
     fn run(&mut self, time: f64, count: u32) {

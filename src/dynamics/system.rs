@@ -9,7 +9,7 @@ use bevy::math::{DMat3, DVec3};
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn, Matrix6, Vector6};
 
 /// Unknowns up to which a factorisation is the cheaper way.
-const DENSE: usize = 96;
+pub(super) const DENSE: usize = 96;
 
 /// Residual, relative to the right side, at which iterations end.
 const TOLERANCE: f64 = 1e-10;

@@ -1,0 +1,386 @@
+//! A large network of ends that do not turn: cloths, lattices, long chains.
+//!
+//! What it does is what [`super::network`] does, to rounding; but here an end is a point mass instead of a
+//! rigid body, so that thousands of them stay in the processor's cache. [`kick`] has the step,
+//! [`solve`] its linear system.
+
+mod kick;
+mod solve;
+
+use super::body::{Body, Spin};
+use super::element::{Element, End};
+use super::energy::Energy;
+use super::guide::Guide;
+use super::step::EXTRAPOLATION_LIMIT;
+use super::tolerance::{Motion, VELOCITY_COUNTS};
+use bevy::math::DVec3;
+use kick::Bar;
+use solve::Solver;
+
+/// A body's centre of mass, or a point that moves as something else decides.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Point {
+    position: DVec3,
+    velocity: DVec3,
+    /// By everything but elements.
+    acceleration: DVec3,
+    /// Impulse by elements in this step so far.
+    given: DVec3,
+    /// 0 of a point that elements cannot move.
+    inverse_mass: f64,
+    /// See [`Body::held_part`].
+    held: DVec3,
+    /// What contacts add to its mass: that along the square of this, times the mass.
+    heavy: DVec3,
+}
+
+/// One element.
+#[derive(Clone, Copy, Debug)]
+struct Wire {
+    ends: [u32; 2],
+    stiffness: f64,
+    damping: f64,
+    rest_length: f64,
+    /// Towards end B where the step began, of any length; zero if that is not known.
+    side: DVec3,
+    /// See [`Element::stiff_damper`].
+    stiff_damper: bool,
+    heat: f64,
+    work: f64,
+}
+
+/// Such a network, kept from step to step.
+#[derive(Clone, Default)]
+pub(super) struct Points {
+    points: Vec<Point>,
+    /// So many of them are bodies; the others come after.
+    bodies: usize,
+    wires: Vec<Wire>,
+    /// For each point, the stiffness and damping of its elements over its mass; see
+    /// [`super::network::Network`].
+    stiffness: Vec<f64>,
+    damping: Vec<f64>,
+    /// Contacts hold some point, so that the sums above depend on where the lines are.
+    any_held: bool,
+    bars: Vec<Bar>,
+    impulses: Vec<DVec3>,
+    solver: Solver,
+    budget: u32,
+    converged: bool,
+    saved: [(Vec<Point>, Vec<Wire>); 3],
+}
+
+/// What the energy bound asks of a network.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Survey {
+    pub energy: Energy,
+    /// What rounding a step's positions and velocities to f32 can add to it, J.
+    pub rounding: f64,
+    /// Power of ends that something else moves, at most, W.
+    pub power: f64,
+}
+
+/// Direction and length of a line; see [`Element::line`].
+#[derive(Clone, Copy)]
+struct Line {
+    direction: DVec3,
+    length: f64,
+}
+
+impl Point {
+    fn of(body: &Body) -> Self {
+        let heavy = body.held.map_or(DVec3::ZERO, |held| {
+            (body.mobility.recip() - 1.0).sqrt() * held
+        });
+        Self {
+            position: body.position,
+            velocity: body.velocity,
+            acceleration: body.acceleration,
+            given: body.given.0,
+            inverse_mass: body.inverse_mass.x,
+            held: body.held_part(),
+            heavy,
+        }
+    }
+
+    fn prescribed(position: DVec3, velocity: DVec3) -> Self {
+        Self {
+            position,
+            velocity,
+            acceleration: DVec3::ZERO,
+            given: DVec3::ZERO,
+            inverse_mass: 0.0,
+            held: DVec3::ZERO,
+            heavy: DVec3::ZERO,
+        }
+    }
+
+    /// Change of velocity by an impulse.
+    fn answer(&self, impulse: DVec3) -> DVec3 {
+        self.inverse_mass * (impulse - self.held.dot(impulse) * self.held)
+    }
+
+    fn inverse_mass_along(&self, direction: DVec3) -> f64 {
+        let taken = self.held.dot(direction);
+        self.inverse_mass * (1.0 - taken * taken)
+    }
+}
+
+impl Wire {
+    fn tension(&self, length: f64, rate: f64) -> f64 {
+        self.stiffness * (length - self.rest_length) + self.damping * rate
+    }
+
+    fn of<'a>(&self, points: &'a [Point]) -> [&'a Point; 2] {
+        self.ends.map(|end| &points[end as usize])
+    }
+
+    fn line(&self, [a, b]: [&Point; 2]) -> Option<Line> {
+        let d = b.position - a.position;
+        let square = d.length_squared();
+        if square > noise(a, b) {
+            let distance = square.sqrt();
+            let length = if d.dot(self.side) < 0.0 {
+                -distance
+            } else {
+                distance
+            };
+            let direction = d / length;
+            return Some(Line { direction, length });
+        }
+        let direction = if self.side != DVec3::ZERO {
+            self.side.normalize()
+        } else if self.rest_length == 0.0 {
+            let hint = (b.velocity - a.velocity) + (b.acceleration - a.acceleration);
+            hint.try_normalize().unwrap_or(DVec3::Y)
+        } else {
+            return None;
+        };
+        let length = d.dot(direction);
+        Some(Line { direction, length })
+    }
+}
+
+/// Square of a distance that may be rounding of the engine's f32.
+fn noise(a: &Point, b: &Point) -> f64 {
+    let scale = a.position.abs().max(b.position.abs()).max_element();
+    (1e-9 * scale.max(1e-3)).powi(2)
+}
+
+impl Points {
+    /// Whether a network is of this kind.
+    pub(super) fn can_be(elements: &[Element], bodies: &[Body]) -> bool {
+        bodies.iter().all(|body| {
+            let w = body.inverse_mass;
+            body.spin == Spin::Still && w.x > 0.0 && w.x == w.y && w.y == w.z
+        }) && elements
+            .iter()
+            .all(|element| element.guide == Guide::Centres && element.law.is_none())
+    }
+
+    /// Takes the network in as it stands.
+    pub(super) fn load_from(&mut self, elements: &[Element], bodies: &[Body], budget: u32) {
+        self.budget = budget;
+        self.converged = true;
+        self.points.clear();
+        self.points.extend(bodies.iter().map(Point::of));
+        self.bodies = bodies.len();
+        self.any_held = bodies.iter().any(|body| body.held.is_some());
+        self.wires.clear();
+        for element in elements {
+            let ends = element.ends.map(|end| match end {
+                End::Body { index, .. } => index as u32,
+                End::Path(path) => {
+                    let point = Point::prescribed(path.position, path.velocity);
+                    self.points.push(point);
+                    self.points.len() as u32 - 1
+                }
+            });
+            self.wires.push(Wire {
+                ends,
+                stiffness: element.stiffness,
+                damping: element.damping,
+                rest_length: element.rest_length,
+                side: element.direction.unwrap_or(DVec3::ZERO),
+                stiff_damper: element.stiff_damper,
+                heat: element.heat,
+                work: element.work,
+            });
+        }
+        if !self.any_held {
+            self.add_up();
+        }
+    }
+
+    /// Gives back what the step made of it.
+    pub(super) fn store_into(&self, elements: &mut [Element], bodies: &mut [Body]) {
+        for (body, point) in bodies.iter_mut().zip(&self.points) {
+            body.position = point.position;
+            body.velocity = point.velocity;
+            body.given.0 = point.given;
+        }
+        for (element, wire) in elements.iter_mut().zip(&self.wires) {
+            for (end, index) in element.ends.iter_mut().zip(wire.ends) {
+                if let End::Path(path) = end {
+                    path.position = self.points[index as usize].position;
+                }
+            }
+            element.direction = wire.side.try_normalize();
+            element.stiff_damper = wire.stiff_damper;
+            element.heat = wire.heat;
+            element.work = wire.work;
+        }
+    }
+
+    /// Whether all solves since it was taken in came to an end.
+    pub(super) fn converged(&self) -> bool {
+        self.converged
+    }
+
+    pub(super) fn survey(&self) -> Survey {
+        let unit = f64::from(f32::EPSILON);
+        let mut survey = Survey::default();
+        let energy = &mut survey.energy;
+        for point in &self.points[..self.bodies] {
+            let mass = point.inverse_mass.recip();
+            let motion = 0.5 * mass * point.velocity.length_squared();
+            energy.motion += motion;
+            energy.place -= mass * point.acceleration.dot(point.position);
+            survey.rounding += 2.0 * unit * motion;
+        }
+        for wire in &self.wires {
+            let ends = wire.of(&self.points);
+            let Some(line) = wire.line(ends) else {
+                // As one of no length.
+                energy.stored += 0.5 * wire.stiffness * wire.rest_length.powi(2);
+                continue;
+            };
+            let stretch = line.length.abs() - wire.rest_length;
+            energy.stored += 0.5 * wire.stiffness * stretch * stretch;
+            // Four substeps, two ends.
+            let reach = ends[0].position.abs().max(ends[1].position.abs());
+            let off = 8.0 * unit * reach.max_element();
+            let force = wire.stiffness * (line.length - wire.rest_length);
+            survey.rounding += off * (force.abs() + wire.stiffness * off);
+            for end in ends {
+                if end.inverse_mass == 0.0 && end.velocity != DVec3::ZERO {
+                    let rate = (ends[1].velocity - ends[0].velocity).dot(line.direction);
+                    survey.power += wire.tension(line.length, rate).abs() * end.velocity.length();
+                }
+            }
+        }
+        survey
+    }
+
+    /// Stiffness and damping over mass of every point.
+    fn add_up(&mut self) {
+        for sums in [&mut self.stiffness, &mut self.damping] {
+            sums.clear();
+            sums.resize(self.points.len(), 0.0);
+        }
+        for wire in &self.wires {
+            let ends = wire.of(&self.points);
+            let along = if self.any_held {
+                wire.line(ends).map_or(DVec3::ZERO, |line| line.direction)
+            } else {
+                DVec3::ZERO
+            };
+            let w = ends.map(|end| end.inverse_mass_along(along).sqrt());
+            for (end, w_end) in wire.ends.iter().zip(w) {
+                let share = w_end * (w[0] + w[1]);
+                self.stiffness[*end as usize] += wire.stiffness * share;
+                self.damping[*end as usize] += wire.damping * share;
+            }
+        }
+    }
+
+    /// Bounds on (ω h)² of the stiffest mode, and on 2γh of the most damped one.
+    fn bounds(&mut self, step: f64) -> (f64, f64) {
+        if self.any_held {
+            self.add_up();
+        }
+        let largest = |sums: &[f64]| sums.iter().copied().fold(0.0, f64::max);
+        (
+            step * step * largest(&self.stiffness),
+            step * largest(&self.damping),
+        )
+    }
+
+    /// See [`Element::aim`].
+    fn aim(&mut self, step: f64) {
+        for wire in &mut self.wires {
+            let [a, b] = wire.of(&self.points);
+            let d = b.position - a.position;
+            if d.length_squared() > noise(a, b) {
+                wire.side = d;
+            }
+            wire.stiff_damper = false;
+            if wire.damping > 0.0 && wire.rest_length == 0.0 {
+                let along = wire.side.try_normalize().unwrap_or(DVec3::Y);
+                let inverse_mass = a.inverse_mass_along(along) + b.inverse_mass_along(along);
+                let resolved = wire.stiffness * inverse_mass * step * step < 4.0;
+                wire.stiff_damper = resolved && wire.damping * inverse_mass * step > 0.5;
+            }
+        }
+    }
+
+    fn drift(&mut self, time: f64) {
+        for point in &mut self.points {
+            point.position += time * point.velocity;
+        }
+    }
+}
+
+impl Motion for Points {
+    fn save(&mut self, slot: usize) {
+        let (points, wires) = &mut self.saved[slot];
+        points.clone_from(&self.points);
+        wires.clone_from(&self.wires);
+    }
+
+    fn load(&mut self, slot: usize) {
+        let (points, wires) = &self.saved[slot];
+        self.points.clone_from(points);
+        self.wires.clone_from(wires);
+    }
+
+    fn least(&mut self, time: f64) -> u32 {
+        let (z, _) = self.bounds(time);
+        super::step::finer(z)
+    }
+
+    fn run(&mut self, time: f64, count: u32) {
+        let step = time / f64::from(count);
+        self.aim(step);
+        for _ in 0..count {
+            self.drift(step / 2.0);
+            self.kick(step);
+            self.drift(step / 2.0);
+            self.aim(step);
+        }
+    }
+
+    fn distance(&self, slot: usize) -> f64 {
+        let apart = |(a, b): (&Point, &Point)| {
+            a.position.distance(b.position) + VELOCITY_COUNTS * a.velocity.distance(b.velocity)
+        };
+        let pairs = self.points.iter().zip(&self.saved[slot].0);
+        pairs.map(apart).fold(0.0, f64::max)
+    }
+
+    fn extrapolate(&mut self, slot: usize) {
+        for (fine, coarse) in self.points.iter_mut().zip(&self.saved[slot].0) {
+            fine.position += (fine.position - coarse.position) / 3.0;
+            fine.velocity += (fine.velocity - coarse.velocity) / 3.0;
+            fine.given += (fine.given - coarse.given) / 3.0;
+        }
+    }
+
+    fn is_resolved(&mut self, step: f64) -> bool {
+        let (z, g) = self.bounds(step);
+        z < EXTRAPOLATION_LIMIT * EXTRAPOLATION_LIMIT && g < EXTRAPOLATION_LIMIT
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,226 @@
+//! The kick at the half drift; see [`crate::dynamics::network`], whose formulas these are.
+
+use super::{Point, Points};
+use crate::dynamics::network::{damper_placement, placement, settling};
+use bevy::math::DVec3;
+
+/// One element within a kick.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Bar {
+    pub ends: [u32; 2],
+    wire: u32,
+    isotropic: bool,
+    pub direction: DVec3,
+    length: f64,
+    /// Rate of the length before the kick.
+    axial: f64,
+    /// Force on its ends before the solve, without that of the line's turning.
+    load: DVec3,
+    /// What the turning adds to it along the line, N per m/s².
+    turning: f64,
+    /// The turning itself, m/s².
+    turns: f64,
+    /// Damping force before the solve, N, and what it gains per m/s².
+    drag: f64,
+    damping: f64,
+    /// Force that a relative acceleration along and across the line adds, N per m/s².
+    pub along: f64,
+    pub across: f64,
+}
+
+impl Bar {
+    /// Force before the solve.
+    fn force(&self) -> DVec3 {
+        self.load + self.turning * self.turns * self.direction
+    }
+
+    /// Force that a relative acceleration adds.
+    pub(super) fn answer(&self, r: DVec3) -> DVec3 {
+        self.across * r + (self.along - self.across) * self.direction.dot(r) * self.direction
+    }
+
+    /// |lateral|²/L, bounded where the line turns further than the step can follow.
+    fn turning_at(&self, lateral_square: f64, step: f64) -> f64 {
+        if self.isotropic || lateral_square == 0.0 {
+            return 0.0;
+        }
+        let half = 0.5 * step;
+        let reach = (self.length * self.length + half * half * lateral_square).sqrt();
+        (2.0 * lateral_square / (self.length.abs() + reach)).copysign(self.length)
+    }
+
+    fn of<'a, T>(&self, all: &'a [T]) -> [&'a T; 2] {
+        self.ends.map(|end| &all[end as usize])
+    }
+
+    /// Relative acceleration of the ends.
+    pub(super) fn relative(&self, x: &[DVec3]) -> DVec3 {
+        let [a, b] = self.of(x);
+        *b - *a
+    }
+
+    /// Adds a force on end B and its opposite on end A.
+    pub(super) fn add(&self, to: &mut [DVec3], force: DVec3) {
+        to[self.ends[0] as usize] -= force;
+        to[self.ends[1] as usize] += force;
+    }
+}
+
+impl Points {
+    /// All elements and outside forces together.
+    pub(super) fn kick(&mut self, step: f64) {
+        let (z_max, _) = self.bounds(step);
+        self.measure(step, placement(z_max));
+        self.solver.begin(&self.points[..self.bodies], &self.bars);
+        self.solve();
+        self.push(step);
+        for bar in &mut self.bars {
+            // The mean of before and after the kick keeps the step its own mirror image in time.
+            let after = |end: u32| {
+                let (point, impulse) = (&self.points[end as usize], self.impulses[end as usize]);
+                point.velocity + point.answer(impulse) + step * point.acceleration
+            };
+            let velocity = after(bar.ends[1]) - after(bar.ends[0]);
+            let lateral = velocity - velocity.dot(bar.direction) * bar.direction;
+            let turns = bar.turning_at(lateral.length_squared(), step);
+            bar.turns = 0.5 * (bar.turns + turns);
+        }
+        self.solve();
+        self.push(step);
+        for (point, impulse) in self.points[..self.bodies].iter_mut().zip(&self.impulses) {
+            point.given += *impulse;
+            point.velocity += point.answer(*impulse) + step * point.acceleration;
+        }
+        self.account(step);
+    }
+
+    /// Where the lines are, what they do, and what each adds to the system.
+    fn measure(&mut self, step: f64, theta: f64) {
+        let h2 = step * step;
+        self.bars.clear();
+        for (index, wire) in self.wires.iter().enumerate() {
+            let ends = wire.of(&self.points);
+            let Some(line) = wire.line(ends) else {
+                continue;
+            };
+            let ([a, b], u, k) = (ends, line.direction, wire.stiffness);
+            let velocity = b.velocity - a.velocity;
+            let axial = velocity.dot(u);
+            let lateral = velocity - axial * u;
+            let lateral_square = lateral.length_squared();
+            let mut bar = Bar {
+                ends: wire.ends,
+                wire: index as u32,
+                isotropic: wire.rest_length == 0.0 && !wire.stiff_damper,
+                direction: u,
+                length: line.length,
+                axial,
+                load: DVec3::ZERO,
+                turning: 0.0,
+                turns: 0.0,
+                drag: 0.0,
+                damping: 0.0,
+                along: 0.0,
+                across: 0.0,
+            };
+            bar.turns = bar.turning_at(lateral_square, step);
+            let stiffest = wire
+                .ends
+                .iter()
+                .map(|end| self.stiffness[*end as usize])
+                .fold(0.0, f64::max);
+            let settle = settling(h2 * stiffest) * step;
+            let c = wire.damping + settle * k;
+            let rate = if c > 0.0 {
+                backward_rate(&bar, lateral_square, step)
+            } else {
+                0.0
+            };
+            let elastic = k * (line.length - wire.rest_length);
+            let tension = elastic + c * rate;
+            let inverse_mass = a.inverse_mass_along(u) + b.inverse_mass_along(u);
+            bar.damping = damper_placement(c * step * inverse_mass) * step * c;
+            let across = if bar.isotropic {
+                k
+            } else if tension > 0.0 && line.length > 0.0 {
+                tension / line.length
+            } else {
+                0.0
+            };
+            let freest = a.inverse_mass + b.inverse_mass;
+            let settle_across = settling(2.0 * h2 * across * freest) * step;
+            // The half drift counted h²/8 of the turning as stretch already.
+            bar.turning = (theta - 0.125) * h2 * k + bar.damping;
+            bar.drag = tension - elastic;
+            bar.load = tension * u + settle_across * across * lateral;
+            bar.across = (theta * h2 + 0.5 * settle_across * step) * across;
+            bar.along = theta * h2 * k + bar.damping;
+            self.bars.push(bar);
+        }
+    }
+
+    /// Accelerations for the lines' present turning.
+    fn solve(&mut self) {
+        let right = &mut self.impulses;
+        right.clear();
+        right.extend(self.points.iter().map(weight));
+        for bar in &self.bars {
+            bar.add(right, -bar.force());
+        }
+        self.converged &= self.solver.solve(right, &self.bars, self.budget);
+    }
+
+    /// Impulses of the solution. They come in pairs along the lines, so both momenta are kept however
+    /// exact it is.
+    fn push(&mut self, step: f64) {
+        self.impulses.clear();
+        self.impulses.resize(self.points.len(), DVec3::ZERO);
+        for bar in &self.bars {
+            let force = bar.force() + bar.answer(bar.relative(&self.solver.solution));
+            bar.add(&mut self.impulses, -step * force);
+        }
+    }
+
+    /// Notes what dampers took and moving ends gave.
+    fn account(&mut self, step: f64) {
+        for bar in &self.bars {
+            let wire = &mut self.wires[bar.wire as usize];
+            let [a, b] = bar.of(&self.points);
+            let moved = [a, b].map(|end| end.inverse_mass == 0.0 && end.velocity != DVec3::ZERO);
+            if bar.damping == 0.0 && moved == [false; 2] {
+                continue;
+            }
+            let relative = bar.relative(&self.solver.solution);
+            let gained = relative.dot(bar.direction);
+            let rate = bar.axial + 0.5 * step * gained;
+            wire.heat += ((bar.drag + bar.damping * gained) * rate * step).max(0.0);
+            let force = bar.force() + bar.answer(relative);
+            for (end, sign) in [(a, -1.0), (b, 1.0)] {
+                if end.inverse_mass == 0.0 {
+                    wire.work += sign * step * force.dot(end.velocity);
+                }
+            }
+        }
+    }
+}
+
+/// The force of a point's outside acceleration.
+fn weight(point: &Point) -> DVec3 {
+    if point.inverse_mass == 0.0 {
+        return DVec3::ZERO;
+    }
+    let acceleration = point.acceleration;
+    (acceleration + point.heavy.dot(acceleration) * point.heavy) / point.inverse_mass
+}
+
+/// See `Line::backward_rate`.
+fn backward_rate(bar: &Bar, lateral_square: f64, step: f64) -> f64 {
+    let along = bar.length - step * bar.axial;
+    if bar.isotropic || along * bar.length <= 0.0 {
+        return bar.axial;
+    }
+    let before = (along * along + step * step * lateral_square)
+        .sqrt()
+        .copysign(along);
+    (bar.length - before) / step
+}

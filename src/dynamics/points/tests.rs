@@ -1,0 +1,144 @@
+//! Point masses against the rigid bodies that do not turn: the same step, to rounding.
+
+use super::*;
+use crate::dynamics::element::Path;
+use crate::dynamics::step::Component;
+use bevy::math::DQuat;
+
+/// Small numbers that follow no pattern.
+struct Dice(u64);
+
+impl Dice {
+    fn roll(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005) + 1;
+        (self.0 >> 33) as f64 / f64::from(1u32 << 31) - 0.5
+    }
+
+    fn vector(&mut self) -> DVec3 {
+        DVec3::new(self.roll(), self.roll(), self.roll())
+    }
+}
+
+/// A sheet of bodies that hangs from moving points and rests on something, all a little out of place.
+fn sheet(stiffness: f64, damping: f64) -> Component {
+    let mut dice = Dice(7);
+    let (columns, rows) = (7, 6);
+    let mut sheet = Component::default();
+    let mut element = |a: End, b: End, rest_length: f64| {
+        sheet.elements.push(Element {
+            ends: [a, b],
+            stiffness,
+            damping,
+            rest_length,
+            guide: Guide::Centres,
+            law: None,
+            angle: 0.0,
+            heat: 0.0,
+            work: 0.0,
+            direction: None,
+            stiff_damper: false,
+        });
+    };
+    for i in 0..columns * rows {
+        let (x, y) = (i % columns, i / columns);
+        let at = DVec3::new(x as f64, -(y as f64), 0.0) + 0.2 * dice.vector();
+        let mass = 1.0 + dice.roll();
+        let held = (i % 11 == 3).then(|| dice.vector().normalize());
+        let mut body = Body {
+            position: at,
+            velocity: dice.vector(),
+            rotation: DQuat::IDENTITY,
+            spin: Spin::Still,
+            inverse_mass: DVec3::splat(1.0 / mass),
+            inertia: DVec3::ONE,
+            principal: DQuat::IDENTITY,
+            rotation_locked: [false; 3],
+            acceleration: DVec3::new(0.0, -9.81, 0.0),
+            torque: DVec3::ZERO,
+            mobility: if held.is_some() { 0.05 } else { 1.0 },
+            held,
+            given: (DVec3::ZERO, DVec3::ZERO),
+        };
+        body.acceleration = body.left(body.acceleration);
+        let own = |index: usize| End::Body {
+            index,
+            arm: DVec3::ZERO,
+        };
+        if y == 0 {
+            let hook = Path::straight(at + DVec3::Y, dice.vector());
+            element(End::Path(hook), own(i), 0.8);
+        } else {
+            element(own(i - columns), own(i), 1.1);
+        }
+        if x > 0 {
+            // Some without any rest length.
+            element(own(i - 1), own(i), if y == 2 { 0.0 } else { 0.9 });
+        }
+        sheet.bodies.push(body);
+    }
+    sheet
+}
+
+#[test]
+fn a_sheet_of_points_moves_as_one_of_bodies() {
+    let time = 1.0 / 60.0;
+    for (stiffness, damping) in [
+        (40.0, 0.0),
+        (40.0, 0.5),
+        (1e4, 3.0),
+        (1e6, 0.0),
+        (100.0, 60.0),
+    ] {
+        let mut bodies = sheet(stiffness, damping);
+        let (mut elements, mut masses) = (bodies.elements.clone(), bodies.bodies.clone());
+        assert!(Points::can_be(&elements, &masses));
+        let mut points = Points::default();
+        points.load_from(&elements, &masses, 500);
+        bodies.memory_for_test(500);
+        assert_eq!(points.least(time), bodies.least(time));
+        for count in [1, 3] {
+            points.run(time, count);
+            bodies.run(time, count);
+        }
+        assert!(points.converged());
+        points.store_into(&mut elements, &mut masses);
+        let scale = masses
+            .iter()
+            .map(|b| b.velocity.length())
+            .fold(1.0, f64::max);
+        for (point, body) in masses.iter().zip(&bodies.bodies) {
+            let apart = point.position.distance(body.position)
+                + time * point.velocity.distance(body.velocity)
+                + time * (point.given.0 - body.given.0).length();
+            assert!(
+                apart < 1e-7 * time * scale,
+                "k {stiffness} c {damping}: {apart:e} m apart at {scale} m/s"
+            );
+        }
+        for (wire, element) in elements.iter().zip(&bodies.elements) {
+            let heat = (wire.heat - element.heat).abs() / (1e-3 + element.heat.abs());
+            let work = (wire.work - element.work).abs() / (1e-3 + element.work.abs());
+            assert!(heat < 1e-5 && work < 1e-5, "heat {heat:e} work {work:e}");
+        }
+        let survey = points.survey();
+        let energy = Energy::of(&elements, &masses);
+        for (one, other) in [
+            (survey.energy.motion, energy.motion),
+            (survey.energy.stored, energy.stored),
+        ] {
+            assert!((one - other).abs() <= 1e-9 * other.abs(), "{one} {other}");
+        }
+    }
+}
+
+#[test]
+fn ends_in_one_place_push_nowhere_until_they_part() {
+    let mut net = sheet(50.0, 0.0);
+    net.bodies[9].position = net.bodies[8].position;
+    net.elements[0].direction = None;
+    let mut points = Points::default();
+    points.load_from(&net.elements, &net.bodies, 200);
+    points.run(1.0 / 60.0, 1);
+    points.store_into(&mut net.elements, &mut net.bodies);
+    assert!(net.bodies.iter().all(Body::is_finite));
+}
