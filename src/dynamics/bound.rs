@@ -8,11 +8,16 @@
 use super::body::Body;
 use super::element::{Element, End};
 use super::energy::{Energy, take};
+use super::network::RESOLVED;
 use bevy::math::DVec3;
 
 /// Share of kinetic and stored energy by which the sum may seem to be too large: what a step of second order
 /// shows at its ends is not constant, only bounded.
 const SWAY: f64 = 0.02;
+
+/// The same where the step resolves the stiffest mode no longer: there it is the implicit midpoint rule, whose
+/// ends show hardly any.
+const UNRESOLVED_SWAY: f64 = 0.002;
 
 /// Rounds of taking.
 const ROUNDS: usize = 4;
@@ -26,6 +31,8 @@ pub(crate) struct Bound {
     last: f64,
     /// Work that moving ends can have done in this step, at most.
     work: f64,
+    /// The stiffest mode is not resolved.
+    unresolved: bool,
 }
 
 impl Bound {
@@ -52,6 +59,11 @@ impl Bound {
         self.work = power;
     }
 
+    /// Takes in (ω h)² of the stiffest mode.
+    pub(crate) fn see(&mut self, z: f64) {
+        self.unresolved = z > RESOLVED;
+    }
+
     /// For a network whose energy is not ours to account for.
     pub(crate) fn forget(&mut self) {
         self.given = None;
@@ -64,9 +76,18 @@ impl Bound {
     }
 
     fn surplus(&self, energy: &Energy, time: f64) -> f64 {
-        let sway = SWAY * (energy.motion + energy.stored);
-        self.given
-            .map_or(0.0, |given| energy.sum() - given - time * self.work - sway)
+        let most = self.most(energy.motion + energy.stored, time);
+        most.map_or(0.0, |most| energy.sum() - most)
+    }
+
+    /// Most energy that there may seem to be, with so much of it in motion and springs.
+    fn most(&self, lively: f64, time: f64) -> Option<f64> {
+        let sway = if self.unresolved {
+            UNRESOLVED_SWAY
+        } else {
+            SWAY
+        };
+        Some(self.given? + time * self.work + sway * lively)
     }
 
     /// Takes a surplus out of the motion; says whether that was enough.
@@ -94,14 +115,14 @@ impl Bound {
     /// Slows all motion, about the common centre of mass where nothing else holds the network, until the
     /// bound is kept; for where the stored energy alone keeps it.
     pub(crate) fn slow(&mut self, elements: &[Element], bodies: &mut [Body], time: f64) {
-        let Some(given) = self.given else {
+        let energy = Energy::of(elements, bodies);
+        let Some(most) = self.most(energy.stored, time) else {
             return;
         };
-        let energy = Energy::of(elements, bodies);
-        let room = given + time * self.work - energy.stored - energy.place;
+        let room = most - energy.stored - energy.place;
         if room < 0.0 {
             // Rounding has pressed it above its bound, without motion that could be taken.
-            self.given = Some(given - room);
+            self.given = self.given.map(|given| given - room);
         }
         if energy.motion <= room || energy.motion <= 0.0 {
             return;
@@ -133,8 +154,8 @@ impl Bound {
     /// Whether the stored energy alone is within the bound.
     pub(crate) fn allows(&self, elements: &[Element], bodies: &[Body], time: f64) -> bool {
         let energy = Energy::of(elements, bodies);
-        self.given
-            .is_none_or(|given| energy.stored + energy.place <= given + time * self.work)
+        self.most(energy.stored, time)
+            .is_none_or(|most| energy.stored + energy.place <= most)
     }
 
     /// Notes what the step ends with.

@@ -20,7 +20,7 @@ impl Energy {
     pub(crate) fn of(elements: &[Element], bodies: &[Body]) -> Self {
         let mut energy = Self::default();
         for body in bodies {
-            energy.motion += body.kinetic_energy();
+            energy.motion += body.motion();
             energy.place -= (body.mass() * body.acceleration).dot(body.position);
         }
         for element in elements {
@@ -64,7 +64,8 @@ impl Body {
         DVec3::select(w.cmpgt(DVec3::ZERO), w.recip(), DVec3::ZERO)
     }
 
-    fn kinetic_energy(&self) -> f64 {
+    /// Kinetic energy, J.
+    pub(crate) fn motion(&self) -> f64 {
         let turning = match self.spin {
             Spin::Still => 0.0,
             Spin::Free { momentum } => momentum.dot(self.angular_velocity()),

@@ -62,6 +62,8 @@ pub(super) struct Points {
     damping: Vec<f64>,
     /// Contacts hold some point, so that the sums above depend on where the lines are.
     any_held: bool,
+    /// (ω h)² of the stiffest mode.
+    pub(super) stiffest: f64,
     bars: Vec<Bar>,
     impulses: Vec<DVec3>,
     solver: Solver,
@@ -346,7 +348,9 @@ impl Motion for Points {
 
     fn least(&mut self, time: f64) -> u32 {
         let (z, _) = self.bounds(time);
-        super::step::finer(z)
+        let finer = super::step::finer(z);
+        self.stiffest = z / f64::from(finer * finer);
+        finer
     }
 
     fn run(&mut self, time: f64, count: u32) {

@@ -10,9 +10,10 @@ use super::kick::{self, Map, Memo};
 use super::network::{Network, RESOLVED};
 use super::points::Points;
 use super::shock::Apart;
-use super::system::DENSE;
 use super::tolerance::{Accuracy, Controller, Method, Motion, Outcome, VELOCITY_COUNTS};
 use bevy::math::DVec3;
+
+mod keep;
 
 /// Phase per coarse step up to which the fourth-order combination converges.
 pub(super) const EXTRAPOLATION_LIMIT: f64 = 1.5;
@@ -29,6 +30,8 @@ pub(crate) struct Component {
     /// Velocities are not mapped to the true ones and back: what delivers the motion can order only the
     /// stepped ones.
     pub stepped: bool,
+    /// Energy that it has won where it should not, and that this step is to take, J.
+    pub owed: f64,
     pub(super) memory: Memory,
 }
 
@@ -67,6 +70,10 @@ impl Component {
             self.memory.controller = controller;
             return outcome;
         }
+        if self.owed > 0.0 {
+            self.memory.controller = controller;
+            return self.pay(time);
+        }
         if self.is_of_points() {
             let outcome =
                 self.advance_points(time, |motion| controller.drive(motion, time, accuracy));
@@ -98,68 +105,6 @@ impl Component {
     #[cfg(test)]
     pub(super) fn memory_for_test(&mut self, max_iterations: u32) {
         self.memory.max_iterations = max_iterations;
-    }
-
-    /// Whether it is large, and no body turns.
-    fn is_of_points(&self) -> bool {
-        !self.stepped
-            && 3 * self.bodies.len() > DENSE
-            && Points::can_be(&self.elements, &self.bodies)
-    }
-
-    /// The step of a network of points.
-    fn advance_points(&mut self, time: f64, drive: impl FnOnce(&mut Points) -> Outcome) -> Outcome {
-        let Memory {
-            points,
-            bound,
-            max_iterations,
-            ..
-        } = &mut self.memory;
-        points.load_from(&self.elements, &self.bodies, *max_iterations);
-        if self.bodies.iter().any(|body| body.mobility < 1.0) {
-            bound.forget();
-        } else {
-            let start = points.survey();
-            bound.start(start.energy.sum(), start.rounding, start.power);
-        }
-        let mut outcome = drive(points);
-        outcome.method = Method::Iterative;
-        outcome.capped |= !points.converged();
-        let end = points.survey();
-        let kept = bound.is_kept(&end.energy, end.power, time);
-        if kept {
-            bound.finish(end.energy.sum(), time);
-        } else {
-            let start = &mut self.memory.saved[0];
-            start.bodies.clone_from(&self.bodies);
-            start.elements.clone_from(&self.elements);
-        }
-        self.memory
-            .points
-            .store_into(&mut self.elements, &mut self.bodies);
-        if !kept {
-            self.keep_bound(time);
-        }
-        outcome
-    }
-
-    /// Takes what was gained in energy; where that cannot be had from its motion, the step is
-    /// taken again in the way that only loses energy.
-    fn keep_bound(&mut self, time: f64) {
-        let mut bound = std::mem::take(&mut self.memory.bound);
-        if !bound.hold(&self.elements, &mut self.bodies, time) {
-            self.load(0);
-            let motion = self.memory.network.settle(
-                &self.elements,
-                &self.bodies,
-                time,
-                self.memory.max_iterations,
-            );
-            self.yield_to(&motion, time, &mut bound);
-            self.memory.network.give_back(motion);
-        }
-        bound.end(&self.elements, &self.bodies, time);
-        self.memory.bound = bound;
     }
 
     /// Force (N) and torque (N m) of all elements on each body as they stand.
@@ -277,31 +222,7 @@ impl Component {
             }
         }
     }
-
-    /// Moves with these velocities, as far as the stored energy allows.
-    fn yield_to(&mut self, motion: &[Body], time: f64, bound: &mut Bound) {
-        let mut share = 1.0;
-        for _ in 0..HALVINGS {
-            for (body, moved) in self.bodies.iter_mut().zip(motion) {
-                body.slow_to(moved, share);
-            }
-            self.drift(time);
-            self.aim(time);
-            if bound.allows(&self.elements, &self.bodies, time) {
-                break;
-            }
-            share *= 0.5;
-            self.load(0);
-        }
-        bound.slow(&self.elements, &mut self.bodies, time);
-        for (body, start) in self.bodies.iter_mut().zip(&self.memory.saved[0].bodies) {
-            body.receive(start, time);
-        }
-    }
 }
-
-/// Tries at moving less far; then nothing moves at all.
-const HALVINGS: u32 = 12;
 
 /// Micro-steps that resolve a network's stiffest mode, of (ω h)² = `z`; one where that is out of reach.
 pub(super) fn finer(z: f64) -> u32 {
@@ -333,7 +254,9 @@ impl Motion for Component {
         }
         let network = &mut self.memory.network;
         let (z, _) = network.bounds(&self.elements, &self.bodies, time);
-        finer(z)
+        let finer = finer(z);
+        self.memory.bound.see(z / f64::from(finer * finer));
+        finer
     }
 
     fn run(&mut self, time: f64, count: u32) {

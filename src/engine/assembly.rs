@@ -9,6 +9,7 @@ use super::passive::Ledger;
 use super::scene::{BodyRow, ElementRow, Held};
 use super::sleep::omega_of;
 use super::step::Step;
+use super::touch::Partners;
 use crate::dynamics::body::Body;
 use crate::dynamics::element::{Element, End, Path};
 use crate::dynamics::guide::Guide;
@@ -29,6 +30,7 @@ pub(crate) struct Assembly {
     state: State,
     outcome: Outcome,
     ledger: Ledger,
+    partners: Partners,
 }
 
 /// What there is to do.
@@ -79,6 +81,7 @@ impl Assembly {
         component.elements.clear();
         self.start.clear();
         component.stepped = false;
+        component.owed = 0.0;
         self.state = State::Resting;
         for (slot, b) in members.bodies.iter().enumerate() {
             let row = &mut bodies[*b];
@@ -86,6 +89,9 @@ impl Assembly {
             let Some(body) = step.movable(set, row.handle, stale) else {
                 return;
             };
+            if let Some(partner) = &mut row.partner {
+                partner.note(body, set);
+            }
             let mut free = read(body, step.engine.gravity, &row.user, row.turns);
             if let Some(link) = row.link {
                 free.velocity = link.linear.as_dvec3();
@@ -125,8 +131,10 @@ impl Assembly {
             self.ledger
                 .settle(&component.elements, &mut self.start, rows, time);
             component.bodies.clone_from(&self.start);
+            component.owed = self.ledger.owed();
+            self.give_way(members, bodies, set, time);
         }
-        self.state = if sound && !component.elements.is_empty() {
+        self.state = if sound && !self.component.elements.is_empty() {
             State::Ready
         } else {
             State::Powerless
@@ -155,6 +163,27 @@ impl Assembly {
         }
         if self.component.stepped {
             self.look_back(step, members, bodies, set);
+        }
+    }
+
+    /// Bodies that moving ones hold give way with them, and the more, the less the hold can be trusted.
+    fn give_way(
+        &mut self,
+        members: &Members,
+        bodies: &mut [BodyRow],
+        set: &RigidBodySet,
+        time: f64,
+    ) {
+        let rows = members.bodies.iter().map(|b| &bodies[*b]);
+        self.partners.find(rows, set);
+        let motion = self.partners.motion + self.start.iter().map(Body::motion).sum::<f64>();
+        let distrust = self.ledger.distrust(motion, time);
+        for (b, own) in members.bodies.iter().zip(&self.start) {
+            let row = &mut bodies[*b];
+            if row.partner.is_some() {
+                let least = self.partners.least_mobility(row, own).max(distrust);
+                row.mobility = row.mobility.max(least);
+            }
         }
     }
 

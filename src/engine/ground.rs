@@ -1,6 +1,7 @@
 //! What bodies stand on before the engine has ever looked.
 
-use super::held::{Support, contact};
+use super::held::Support;
+use super::touch::contact;
 use bevy::math::DVec3;
 use bevy_rapier3d::parry;
 use bevy_rapier3d::parry::bounding_volume::{Aabb, BoundingVolume};

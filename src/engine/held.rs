@@ -8,12 +8,13 @@
 
 use super::scene::BodyRow;
 use super::step::Terms;
+use super::touch::{created, support};
 use crate::dynamics::body::{Body, Spin};
 use crate::dynamics::delivery::force_for;
 use bevy::math::{DVec3, Vec3};
 use bevy_rapier3d::prelude::{ExternalForce, RapierContextJoints, RapierContextSimulation};
-use bevy_rapier3d::rapier::dynamics::{RigidBody as RapierBody, RigidBodyHandle, RigidBodySet};
-use bevy_rapier3d::rapier::geometry::{Collider, ColliderHandle, ColliderSet};
+use bevy_rapier3d::rapier::dynamics::{RigidBody as RapierBody, RigidBodySet};
+use bevy_rapier3d::rapier::geometry::ColliderSet;
 
 /// Linear and angular velocity, or change of it.
 #[derive(Clone, Copy, Debug, Default)]
@@ -28,6 +29,12 @@ impl Twist {
             linear: linear.as_vec3(),
             angular: angular.as_vec3(),
         }
+    }
+
+    /// Of impulses, J.
+    fn work(&self, given: &Self) -> f64 {
+        let dot = |a: Vec3, b: Vec3| a.as_dvec3().dot(b.as_dvec3());
+        dot(self.linear, given.linear) + dot(self.angular, given.angular)
     }
 }
 
@@ -127,6 +134,14 @@ impl Expected {
         }
     }
 
+    /// Mean velocities over the step.
+    fn mean(&self, now: Twist) -> Twist {
+        Twist {
+            linear: 0.5 * (self.start.linear + now.linear),
+            angular: 0.5 * (self.start.angular + now.angular),
+        }
+    }
+
     /// Whether the body went where it was to go: then nothing held it.
     fn was_met(&self, change: &Twist) -> bool {
         let Some(ordered) = self.ordered else {
@@ -219,12 +234,19 @@ pub(super) fn observe(row: &mut BodyRow, body: &RapierBody, context: &Context) {
     };
     row.link = expected.of_late(shown);
     let change = expected.change(&row.link.unwrap_or(shown), body);
+    let mean = expected.mean(shown);
+    row.given_work = mean.work(&expected.given);
+    row.contact_work = 0.0;
+    let known = row.partner.take();
     if expected.was_met(&change) {
         row.support = Support::None;
         row.mobility = 1.0;
         return;
     }
-    row.support = support(row.handle, body, context);
+    (row.support, row.partner) = support(row.handle, body, context);
+    let by_contact = (change.linear - expected.free_change.linear).as_dvec3();
+    let moved = [mean.linear.as_dvec3(), by_contact];
+    row.contact_work = created(row, known, body, moved, context.bodies);
     if row.support == Support::None {
         row.mobility = 1.0;
     } else if let (Support::Contact { .. }, false) = (row.support, row.turns) {
@@ -236,49 +258,6 @@ pub(super) fn observe(row: &mut BodyRow, body: &RapierBody, context: &Context) {
         row.held = None;
         row.mobility = if share > FREE { 1.0 } else { share };
     }
-}
-
-/// Joints, or contacts that pushed in the last step.
-fn support(handle: RigidBodyHandle, body: &RapierBody, context: &Context) -> Support {
-    let Context {
-        simulation,
-        joints,
-        colliders,
-        bodies,
-    } = context;
-    let mut attached = joints.impulse_joints.attached_enabled_joints(handle);
-    if joints.multibody_joints.rigid_body_link(handle).is_some() || attached.next().is_some() {
-        return Support::Joint;
-    }
-    let (mut push, mut on_fixed) = (DVec3::ZERO, true);
-    let is_fixed = |collider: ColliderHandle| {
-        let parent = colliders.get(collider).and_then(Collider::parent);
-        parent.is_none_or(|parent| bodies.get(parent).is_some_and(RapierBody::is_fixed))
-    };
-    for collider in body.colliders() {
-        for pair in simulation.narrow_phase.contact_pairs_with(*collider) {
-            // Normals point from the first collider to the second.
-            let sign = if pair.collider1 == *collider {
-                -1.0
-            } else {
-                1.0
-            };
-            let impulse = pair.total_impulse().as_dvec3();
-            push += sign * impulse;
-            let other = if pair.collider1 == *collider {
-                pair.collider2
-            } else {
-                pair.collider1
-            };
-            on_fixed &= impulse == DVec3::ZERO || is_fixed(other);
-        }
-    }
-    contact(push, on_fixed)
-}
-
-pub(super) fn contact(push: DVec3, on_fixed: bool) -> Support {
-    push.try_normalize()
-        .map_or(Support::None, |push| Support::Contact { push, on_fixed })
 }
 
 /// Mobility of a body in the coming step, given the force of its elements as it stands.

@@ -28,6 +28,7 @@ mod sleep;
 mod solve;
 mod step;
 mod timestep;
+mod touch;
 mod tune;
 mod watch;
 

@@ -2,8 +2,11 @@
 //!
 //! Where contacts begin and end, elements act for a motion that does not come: the wheel that was to fly on
 //! is stopped, the one that was to stand is let go. Their work is then off by a little, either way. Fixed
-//! ground takes energy and gives none, so what a step with such a contact has gained is an error, and is
-//! taken out of the motion along the elements (a passivity controller, after Hannaford and Ryu, 2002).
+//! ground takes energy and gives none, so what a step with such a contact has gained is an error. Where
+//! moving bodies touch, the same is said of the elements alone: what they have done to their bodies cannot
+//! be more than what is missing in them; and of each contact, which can only take. Either way the gain is
+//! taken out of the motion along the elements (a passivity controller, after Hannaford and Ryu, 2002), and
+//! what cannot be had there out of the elements' own energy: see `Component::owed`.
 
 use super::held::Support;
 use super::scene::BodyRow;
@@ -18,20 +21,49 @@ const RESOLVED: f64 = 4.0;
 /// Share of the energy in motion that is rounding.
 const ROUNDING: f64 = 1e-6;
 
+/// Debt, as a multiple of all motion there is, above which what is seen of contacts is not believed, and the
+/// time in which that is forgotten, s.
+const SERIOUS: f64 = 3.0;
+const FORGOTTEN: f64 = 0.8;
+
+/// Share of the energy in motion by which what elements gave may seem too much, for a while.
+const SWAY: f64 = 0.02;
+
 /// What a component had at the start of the last step.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Ledger {
+    /// In all, where only fixed ground touched it.
     energy: Option<f64>,
+    /// In its springs.
+    stored: Option<f64>,
     /// What was gained and could not be taken yet, for want of motion.
     debt: f64,
-    /// Whether a contact held some body then.
-    held: bool,
+    /// How free bodies are believed that moving ones hold, whatever they were seen to be.
+    distrust: f64,
+    /// Energy in motion, of late.
+    motion: f64,
+    /// What touched it then.
+    touched: Touch,
+}
+
+/// What touches a component.
+#[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]
+enum Touch {
+    #[default]
+    Nothing,
+    /// Takes energy and gives none.
+    Ground,
+    /// Can give energy too, so only what the elements themselves do is known.
+    Moving,
+    /// Joints, of which nothing is known.
+    Tied,
 }
 
 impl Ledger {
-    /// Forgets what was: something else than the elements and fixed ground has acted.
+    /// Forgets what was: something else than the elements and what touches them has acted.
     pub(super) fn clear(&mut self) {
         self.energy = None;
+        self.stored = None;
         self.debt = 0.0;
     }
 
@@ -43,46 +75,84 @@ impl Ledger {
         rows: impl Iterator<Item = &'a BodyRow>,
         time: f64,
     ) {
-        let (mut held, mut known) = (false, true);
-        for row in rows {
-            match row.support {
-                Support::None | Support::Unknown => {}
-                Support::Contact { on_fixed, .. } => {
-                    held = true;
-                    known &= on_fixed;
-                }
-                Support::Joint | Support::Tied(_) => known = false,
+        let (mut touch, mut moved, mut given) = (Touch::Nothing, false, 0.0);
+        for (row, body) in rows.zip(bodies.iter()) {
+            let by = match row.support {
+                Support::None | Support::Unknown => Touch::Nothing,
+                Support::Contact { on_fixed: true, .. } => Touch::Ground,
+                Support::Contact { .. } => Touch::Moving,
+                Support::Joint | Support::Tied(_) => Touch::Tied,
+            };
+            if by > touch {
+                touch = by;
             }
+            moved |= row.now.0 != body.position;
+            given += row.given_work + row.contact_work;
         }
-        let touched = std::mem::replace(&mut self.held, held) || held;
-        known &= elements.iter().all(|element| {
-            let line = element.line(bodies);
-            line.is_some_and(|l| {
-                element.elastic(l.length).stiffness * l.inverse_mass * time * time < RESOLVED
-            })
-        });
-        known &= bodies.iter().all(|body| body.torque == DVec3::ZERO)
-            && elements
-                .iter()
-                .flat_map(|element| element.ends)
-                .all(|end| !matches!(end, End::Path(path) if path.velocity != DVec3::ZERO || path.turning != DVec3::ZERO));
-        if !known {
+        let before = std::mem::replace(&mut self.touched, touch);
+        let touch = if before > touch { before } else { touch };
+        if touch == Touch::Tied || moved {
             return self.clear();
         }
         let state = Energy::of(elements, bodies);
-        let (energy, motion) = (state.sum(), state.motion);
-        if let Some(before) = self.energy.filter(|_| touched) {
-            self.debt = (self.debt + energy - before).max(0.0);
-        }
-        let taken = if self.debt > ROUNDING * motion {
-            take(elements, bodies, self.debt)
+        let last = self.stored.replace(state.stored);
+        let steady = elements.iter().flat_map(|element| element.ends).all(|end| {
+            !matches!(end, End::Path(path) if path.velocity != DVec3::ZERO || path.turning != DVec3::ZERO)
+        });
+        let total = state.sum();
+        let had = self.energy.take();
+        if touch == Touch::Moving {
+            // Impulse times mean velocity is the elements' work, whatever else acts on the bodies.
+            if let Some(last) = last.filter(|_| steady) {
+                let least = -SWAY * state.motion;
+                self.debt = (self.debt + given + state.stored - last).max(least);
+            }
+        } else if self.is_accountable(elements, bodies, time) && steady {
+            if let Some(had) = had.filter(|_| touch == Touch::Ground) {
+                self.debt = (self.debt + total - had).max(0.0);
+            }
+            self.energy = Some(total);
         } else {
-            0.0
-        };
+            return self.clear();
+        }
+        if self.debt > ROUNDING * state.motion {
+            let taken = take(elements, bodies, self.debt);
+            self.debt -= taken;
+            self.energy = self.energy.map(|energy| energy - taken);
+        }
         for body in bodies {
             body.given = (DVec3::ZERO, DVec3::ZERO);
         }
-        self.debt -= taken;
-        self.energy = Some(energy - taken);
+    }
+
+    /// What the motion could not pay, J.
+    pub(super) fn owed(&self) -> f64 {
+        if self.touched == Touch::Moving {
+            self.debt.max(0.0)
+        } else {
+            0.0
+        }
+    }
+
+    /// Least mobility of bodies that moving ones hold, in a step of so long, where so much energy is in
+    /// motion: a hold that comes and goes can win more than can be taken.
+    pub(super) fn distrust(&mut self, motion: f64, time: f64) -> f64 {
+        let kept = (-time / FORGOTTEN).exp();
+        self.motion = motion.max(kept * self.motion);
+        self.distrust = if self.owed() > SERIOUS * self.motion {
+            1.0
+        } else {
+            kept * self.distrust
+        };
+        self.distrust
+    }
+
+    /// Whether the energy at the ends of steps says something about the motion between.
+    fn is_accountable(&self, elements: &[Element], bodies: &[Body], time: f64) -> bool {
+        elements.iter().all(|element| {
+            element.line(bodies).is_some_and(|l| {
+                element.elastic(l.length).stiffness * l.inverse_mass * time * time < RESOLVED
+            })
+        }) && bodies.iter().all(|body| body.torque == DVec3::ZERO)
     }
 }

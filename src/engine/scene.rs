@@ -8,6 +8,7 @@ use super::forces::Share;
 use super::group::Groups;
 use super::held::{Expected, Support, Twist};
 use super::sleep::Rest;
+use super::touch::Partner;
 use crate::dynamics::kick::Memo;
 use crate::dynamics::tolerance::{Controller, Outcome};
 use bevy::ecs::entity::EntityHashMap;
@@ -128,6 +129,12 @@ pub(super) struct BodyRow {
     pub expected: Option<Expected>,
     /// Velocities of a link of a multibody, which the engine shows too late.
     pub link: Option<Twist>,
+    /// Work that elements did on it over the last step, J.
+    pub given_work: f64,
+    /// Work that a contact with a moving body seems to have created, J.
+    pub contact_work: f64,
+    /// The body that pushed it most in the last step.
+    pub partner: Option<Partner>,
     /// Centre of mass and its velocity after the last step.
     pub now: (DVec3, DVec3),
 }
@@ -151,6 +158,9 @@ impl BodyRow {
             support: Support::Unknown,
             expected: None,
             link: None,
+            given_work: 0.0,
+            contact_work: 0.0,
+            partner: None,
             now: (DVec3::ZERO, DVec3::ZERO),
         }
     }

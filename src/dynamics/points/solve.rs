@@ -85,10 +85,11 @@ impl Solver {
         let target = TOLERANCE * TOLERANCE * self.weigh(right);
         apply(&self.masses, bars, &self.solution, &mut self.residual);
         let mut rz = 0.0;
-        for i in 0..movable {
-            self.residual[i] = right[i] - self.residual[i];
-            self.preconditioned[i] = self.blocks[i] * self.residual[i];
-            rz += self.residual[i].dot(self.preconditioned[i]);
+        let vectors = self.residual.iter_mut().zip(&mut self.preconditioned);
+        for (((r, z), block), right) in vectors.zip(&self.blocks).zip(&*right) {
+            *r = *right - *r;
+            *z = *block * *r;
+            rz += r.dot(*z);
         }
         self.search.copy_from_slice(&self.preconditioned);
         let mut iterations = 0;

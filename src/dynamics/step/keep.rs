@@ -1,0 +1,123 @@
+//! Steps that win nothing: large networks of points, what is watched after every step, and what is done where
+//! too much was won.
+
+use super::{Component, Memory};
+use crate::dynamics::body::Body;
+use crate::dynamics::bound::Bound;
+use crate::dynamics::points::Points;
+use crate::dynamics::system::DENSE;
+use crate::dynamics::tolerance::{Method, Motion, Outcome};
+
+/// Tries at moving less far; then nothing moves at all.
+const HALVINGS: u32 = 12;
+
+impl Component {
+    /// Whether it is large, and no body turns.
+    pub(super) fn is_of_points(&self) -> bool {
+        !self.stepped
+            && 3 * self.bodies.len() > DENSE
+            && Points::can_be(&self.elements, &self.bodies)
+    }
+
+    /// The step of a network of points.
+    pub(super) fn advance_points(
+        &mut self,
+        time: f64,
+        drive: impl FnOnce(&mut Points) -> Outcome,
+    ) -> Outcome {
+        let Memory {
+            points,
+            bound,
+            max_iterations,
+            ..
+        } = &mut self.memory;
+        points.load_from(&self.elements, &self.bodies, *max_iterations);
+        if self.bodies.iter().any(|body| body.mobility < 1.0) {
+            bound.forget();
+        } else {
+            let start = points.survey();
+            bound.start(start.energy.sum(), start.rounding, start.power);
+        }
+        let mut outcome = drive(points);
+        outcome.method = Method::Iterative;
+        outcome.capped |= !points.converged();
+        let end = points.survey();
+        bound.see(points.stiffest);
+        let kept = bound.is_kept(&end.energy, end.power, time);
+        if kept {
+            bound.finish(end.energy.sum(), time);
+        } else {
+            let start = &mut self.memory.saved[0];
+            start.bodies.clone_from(&self.bodies);
+            start.elements.clone_from(&self.elements);
+        }
+        self.memory
+            .points
+            .store_into(&mut self.elements, &mut self.bodies);
+        if !kept {
+            self.keep_bound(time);
+        }
+        outcome
+    }
+
+    /// Takes what was gained in energy; where that cannot be had from its motion, the step is
+    /// taken again in the way that only loses energy.
+    pub(super) fn keep_bound(&mut self, time: f64) {
+        let mut bound = std::mem::take(&mut self.memory.bound);
+        if !bound.hold(&self.elements, &mut self.bodies, time) {
+            self.load(0);
+            self.settle(time, &mut bound);
+        }
+        bound.end(&self.elements, &self.bodies, time);
+        self.memory.bound = bound;
+    }
+
+    /// A step that only loses energy, and no less than is owed.
+    pub(super) fn pay(&mut self, time: f64) -> Outcome {
+        let mut bound = std::mem::take(&mut self.memory.bound);
+        bound.begin(&self.elements, &self.bodies, self.stepped);
+        self.save(0);
+        self.aim(time);
+        self.settle(time, &mut bound);
+        bound.end(&self.elements, &self.bodies, time);
+        self.memory.bound = bound;
+        Outcome {
+            method: if self.memory.network.take_effort().0 {
+                Method::Iterative
+            } else {
+                Method::Direct
+            },
+            microsteps: 1,
+            ..Outcome::default()
+        }
+    }
+
+    fn settle(&mut self, time: f64, bound: &mut Bound) {
+        let budget = self.memory.max_iterations;
+        let network = &mut self.memory.network;
+        let motion = network.settle(&self.elements, &self.bodies, time, budget);
+        self.yield_to(&motion, time, bound);
+        self.memory.network.give_back(motion);
+    }
+
+    /// Moves with these velocities, as far as the stored energy allows.
+    fn yield_to(&mut self, motion: &[Body], time: f64, bound: &mut Bound) {
+        let mut share = 1.0;
+        for _ in 0..HALVINGS {
+            for (body, moved) in self.bodies.iter_mut().zip(motion) {
+                body.slow_to(moved, share);
+            }
+            self.drift(time);
+            self.aim(time);
+            if bound.allows(&self.elements, &self.bodies, time) {
+                break;
+            }
+            share *= 0.5;
+            self.load(0);
+        }
+        bound.slow(&self.elements, &mut self.bodies, time);
+        for (body, start) in self.bodies.iter_mut().zip(&self.memory.saved[0].bodies) {
+            body.receive(start, time);
+        }
+    }
+}
