@@ -276,6 +276,7 @@ impl Assembly {
             let mut share = Share::act(share, &row.user, body);
             share.raised_iterations = raised_iterations;
             row.share = Some(share);
+            step.delivered.set(true);
         }
         let mut solved = self.component.elements.iter();
         for e in members.elements {

@@ -158,6 +158,10 @@ impl Scene {
                 .collect(),
         };
         self.index.clear();
+        self.row_of.clear();
+        self.changed.clear();
+        self.faulty.clear();
+        self.followed.clear();
         let mut found_all = Vec::new();
         for parts in elements {
             let entity = parts.entity;
@@ -194,14 +198,25 @@ impl Scene {
             row.changed |= parts.is_changed() || companions.touched.contains(&entity);
             row.fault = found.as_ref().err().copied();
             report(&mut row, commands);
+            let index = self.elements.len();
+            self.row_of.insert(entity, index);
+            if row.changed {
+                self.changed.push(index);
+            }
+            if row.fault.is_some() {
+                self.faulty.push(index);
+            }
             self.elements.push(row);
             found_all.push(found.ok());
         }
         self.enter_bodies(&found_all, &known, modified);
-        for (row, found) in self.elements.iter_mut().zip(&found_all) {
+        for (index, (row, found)) in self.elements.iter_mut().zip(&found_all).enumerate() {
             let Some(found) = found else { continue };
             for end in 0..2 {
                 row.hold(end, &found.places[end], &self.index);
+                if row.watched[end] {
+                    self.followed.push((index, end));
+                }
             }
             for body in row.held.iter().filter_map(Held::movable) {
                 let body = &mut self.bodies[body];
@@ -213,6 +228,10 @@ impl Scene {
             let before = known.bodies.get(&body.entity).map(|row| row.signature);
             body.disturbed |= before != Some(body.signature);
         }
+        self.immovable = self
+            .elements
+            .iter()
+            .any(|row| row.fault.is_none() && row.held.iter().all(|held| held.movable().is_none()));
         self.groups.find(&self.elements, &self.bodies);
         self.groups.furnish(&mut self.assemblies, &self.bodies);
     }

@@ -124,7 +124,7 @@ pub(crate) fn read_users(
 
 /// Shows on every stepped body what it was given.
 pub(super) fn show(scene: &mut Scene, loads: &mut Loads) {
-    if scene.bodies.iter().all(|row| row.share.is_none()) {
+    if !scene.delivered {
         return;
     }
     for (entity, mut load, mut component, ..) in loads {

@@ -7,6 +7,7 @@ use super::body::deliver_straight;
 use super::forces::Share;
 use super::held::{Expected, Support};
 use super::scene::{BodyRow, ElementRow, Held};
+use super::sleep::keep_awake;
 use super::step::Step;
 use crate::dynamics::guide::Guide;
 use crate::dynamics::pair::{Moving, Pair, Separation};
@@ -81,12 +82,14 @@ impl Step<'_> {
         }
         let time = self.plan.time;
         let mut sleepers = 0;
-        for b in members {
+        let mut found = [None; 2];
+        for (found, b) in found.iter_mut().zip(members) {
             let Some(body) = self.movable(set, bodies[*b].handle, stale) else {
                 row.active = false;
                 return Handled::Done;
             };
             sleepers += usize::from(body.is_sleeping());
+            *found = Some((*b, body));
         }
         if sleepers > 0 {
             let disturbed = row.changed || members.iter().any(|b| bodies[*b].disturbed);
@@ -100,13 +103,14 @@ impl Step<'_> {
         for (point_at, held) in points.iter_mut().zip(&row.held) {
             let found = match *held {
                 Held::Body {
-                    handle,
                     movable: Some(index),
                     ..
-                } => set
-                    .get(handle)
+                } => found
+                    .iter()
+                    .flatten()
+                    .find(|(b, _)| *b == index)
                     .ok_or(Handled::No)
-                    .and_then(|body| point(&bodies[index], index, body, self)),
+                    .and_then(|(_, body)| point(&bodies[index], index, body, self)),
                 _ => {
                     let (from, to) = self.path(held, set);
                     Ok(Point {
@@ -136,8 +140,11 @@ impl Step<'_> {
         }
         let inverse_mass = a.inverse_mass + b.inverse_mass;
         let omega = (row.slope() * inverse_mass).sqrt();
-        let disturbed = row.changed || self.has_moved(row, set);
-        self.is_awake(bodies, members, omega as f32, set, disturbed);
+        let mut restless = row.changed || self.has_moved(row, set);
+        for (b, body) in found.into_iter().flatten() {
+            restless |= std::mem::take(&mut bodies[b].disturbed);
+            restless |= self.is_restless(&mut bodies[b], body, omega as f32);
+        }
         row.active = true;
         row.passing = None;
         row.inverse_mass = inverse_mass;
@@ -204,9 +211,8 @@ impl Step<'_> {
             self.deliver_point(
                 &mut bodies[index],
                 point,
-                share * moved,
-                share * sped,
-                given,
+                [share * moved, share * sped, given],
+                restless,
                 set,
             );
         }
@@ -218,14 +224,17 @@ impl Step<'_> {
         &self,
         row: &mut BodyRow,
         point: &Point,
-        moved: DVec3,
-        sped: DVec3,
-        given: DVec3,
+        [moved, sped, given]: [DVec3; 3],
+        restless: bool,
         set: &mut RigidBodySet,
     ) {
         let Some(body) = set.get_mut(row.handle) else {
             return;
         };
+        if restless {
+            keep_awake(body);
+        }
+        self.delivered.set(true);
         let time = self.plan.time;
         let terms = self.terms(row.handle, body);
         let pulled = time * point.acceleration;

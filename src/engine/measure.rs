@@ -41,6 +41,10 @@ pub(crate) fn measure(
     if scene.time <= 0.0 {
         return;
     }
+    if !(scene.delivered || scene.immovable) {
+        // All asleep.
+        return;
+    }
     look(scene, &sets, &contexts);
     let time = scene.time;
     let mut show = |row: &mut ElementRow, readout: &mut Mut<SpringReadout>| {
@@ -62,8 +66,9 @@ pub(crate) fn measure(
             readout.set_if_neq(row.read_out(seen, time));
         }
     };
-    // The rows stand in the query's order; if something came or went within the tick, from there on
-    // each is looked up.
+    // The rows stand in the query's order; if something came, went or got other components since they were
+    // made, from there on each is looked up, and the rows are made anew.
+    let mut unordered = false;
     let mut rows = scene.elements.iter_mut();
     for (entity, mut readout) in &mut readouts {
         if rows
@@ -71,6 +76,7 @@ pub(crate) fn measure(
             .first()
             .is_none_or(|row| row.entity != entity)
         {
+            unordered = true;
             break;
         }
         if let Some(row) = rows.next() {
@@ -82,6 +88,10 @@ pub(crate) fn measure(
             show(row, &mut readout);
         }
     }
+    if scene.renewed {
+        scene.unordered = unordered;
+    }
+    scene.stale |= unordered && !scene.unordered;
 }
 
 /// Writes a captured rest length into the element's component, and coefficients that were worked out.

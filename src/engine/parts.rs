@@ -30,6 +30,17 @@ pub(crate) type IsElement = Or<(
     With<TorsionSpringDamper>,
 )>;
 
+/// An element some part of which changed.
+pub(crate) type ChangedParts = Or<(
+    Changed<Spring>,
+    Changed<Damper>,
+    Changed<SpringDamper>,
+    Changed<TorsionSpring>,
+    Changed<TorsionDamper>,
+    Changed<TorsionSpringDamper>,
+    Changed<Anchors>,
+)>;
+
 /// Names of a component's fields; what it has not is the empty string.
 macro_rules! names {
     ($component:literal, $stiffness:literal, $damping:literal, $rest:literal, $axis:literal) => {

@@ -5,7 +5,7 @@ use super::companions::Companions;
 use super::ends::{Ends, Place};
 use super::find::Finder;
 use super::forces::SpringLoad;
-use super::parts::{IsElement, Parts};
+use super::parts::{ChangedParts, IsElement, Parts};
 use super::scene::{ElementRow, Held, Scene};
 use super::watch::Watch;
 use crate::element::SpringFault;
@@ -17,6 +17,7 @@ use bevy_rapier3d::prelude::*;
 pub(crate) fn prepare(
     mut scene: ResMut<Scene>,
     elements: Query<Parts, IsElement>,
+    changed: Query<Entity, ChangedParts>,
     mut finder: Finder,
     mut loads: Query<
         (Option<&mut SpringLoad>, Option<&ExternalForce>),
@@ -30,13 +31,20 @@ pub(crate) fn prepare(
     let mut same = !watch.saw_change(&scene.index);
     same &= !std::mem::take(&mut scene.stale);
     companions.look();
-    same = same && refresh(scene, &elements, &companions, &finder.ends);
+    // What comes and goes is seen by the watch; this is for whatever else may take elements away.
+    same &= elements.iter().len() == scene.elements.len();
+    same = same && refresh(scene, &elements, &changed, &companions, &finder.ends);
     let modified = &watch.mass_modified;
+    let Scene {
+        elements: rows,
+        faulty,
+        ..
+    } = scene;
     same = same
-        && scene
-            .elements
-            .iter_mut()
-            .all(|row| still_faulty(row, &companions, &mut finder, modified, &mut commands));
+        && faulty.iter().all(|index| {
+            let row = &mut rows[*index];
+            still_faulty(row, &companions, &mut finder, modified, &mut commands)
+        });
     scene.renewed = !same;
     if same {
         return;
@@ -78,45 +86,55 @@ pub(crate) fn prepare(
 fn refresh(
     scene: &mut Scene,
     elements: &Query<Parts, IsElement>,
+    changed: &Query<Entity, ChangedParts>,
     companions: &Companions,
     ends: &Ends,
 ) -> bool {
-    let mut rows = scene.elements.iter_mut();
-    let untouched = companions.touched.is_empty();
-    for parts in elements {
-        let Some(row) = rows.next().filter(|row| row.entity == parts.entity) else {
+    let Scene {
+        elements: rows,
+        row_of,
+        bodies,
+        followed,
+        changed: marked,
+        ..
+    } = scene;
+    for index in marked.drain(..) {
+        rows[index].changed = false;
+    }
+    for entity in changed.iter().chain(companions.touched.iter().copied()) {
+        // Anchors and companions can stand where no element is.
+        let Ok(parts) = elements.get(entity) else {
+            continue;
+        };
+        let Some(row) = row_of.get(&entity).map(|index| {
+            marked.push(*index);
+            &mut rows[*index]
+        }) else {
             return false;
         };
-        row.changed =
-            parts.is_changed() || (!untouched && companions.touched.contains(&row.entity));
-        if row.changed {
-            let Ok(new) = parts.parameters().and_then(|new| {
-                new.check()?;
-                Ok((companions.of(row.entity, &new)?, new))
-            }) else {
-                return false;
-            };
-            let (companion, parameters) = new;
-            if !parameters.is_held_like(&row.parameters)
-                || companion.guide != row.companion.guide
-                || companions.tuning(row.entity).is_some()
-            {
-                return false;
-            }
-            row.change(|row| {
-                row.parameters = parameters;
-                row.companion = companion;
-            });
+        row.changed = true;
+        let Ok(new) = parts.parameters().and_then(|new| {
+            new.check()?;
+            Ok((companions.of(entity, &new)?, new))
+        }) else {
+            return false;
+        };
+        let (companion, parameters) = new;
+        if !parameters.is_held_like(&row.parameters)
+            || companion.guide != row.companion.guide
+            || companions.tuning(entity).is_some()
+        {
+            return false;
         }
-        if row.fault.is_none() {
-            for end in 0..2 {
-                if row.watched[end] && !follow(row, end, ends, &scene.bodies) {
-                    return false;
-                }
-            }
-        }
+        row.change(|row| {
+            row.parameters = parameters;
+            row.companion = companion;
+        });
     }
-    rows.next().is_none()
+    followed.iter().all(|(index, end)| {
+        let row = &mut rows[*index];
+        row.fault.is_some() || follow(row, *end, ends, bodies)
+    })
 }
 
 /// Looks for an end again; says whether it is still the same kind of end.

@@ -171,6 +171,14 @@ impl BodyRow {
 pub struct Scene {
     /// In the order of the query that finds them, inert ones too.
     pub(super) elements: Vec<ElementRow>,
+    /// Their indices.
+    pub(super) row_of: EntityHashMap<usize>,
+    /// Those that changed in this tick,
+    pub(super) changed: Vec<usize>,
+    /// that take no part,
+    pub(super) faulty: Vec<usize>,
+    /// and whose ends have to be looked for in every tick, with those ends.
+    pub(super) followed: Vec<(usize, usize)>,
     /// In the order of their entities.
     pub(super) bodies: Vec<BodyRow>,
     pub(super) index: EntityHashMap<usize>,
@@ -180,6 +188,12 @@ pub struct Scene {
     pub(super) time: f64,
     /// Something was found amiss after the scene was prepared: look at everything again.
     pub(super) stale: bool,
+    /// Some body was given something in this tick.
+    pub(super) delivered: bool,
+    /// Some element has no end that elements can move.
+    pub(super) immovable: bool,
+    /// The readouts stand in another order than the rows even when these have just been made.
+    pub(super) unordered: bool,
     /// The rows were made anew in this tick.
     pub(super) renewed: bool,
 }

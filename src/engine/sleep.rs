@@ -69,7 +69,7 @@ fn is_set_moving(start: &Body, end: &Body, time: f64, length_unit: f32) -> bool 
 }
 
 /// Sets the engine's sleep timer back.
-fn keep_awake(body: &mut RapierBody) {
+pub(super) fn keep_awake(body: &mut RapierBody) {
     body.activation_mut().time_since_can_sleep = 0.0;
 }
 
@@ -79,6 +79,12 @@ pub(super) fn omega_of(row: &ElementRow) -> f32 {
 }
 
 impl Step<'_> {
+    /// Whether a body that is awake moves, or has not rested long enough yet.
+    pub(super) fn is_restless(&self, row: &mut BodyRow, body: &RapierBody, omega: f32) -> bool {
+        let time = self.plan.time as f32;
+        is_restless(row, body, omega, time, self.engine.length_unit)
+    }
+
     /// A sleeping body is no wall: where the step would set it moving, it and the others wake.
     pub(super) fn wake_the_moved(
         &self,
@@ -124,13 +130,7 @@ impl Step<'_> {
             disturbed |= std::mem::take(&mut row.disturbed);
             if !body.is_sleeping() && is_movable(body) {
                 all_asleep = false;
-                restless |= is_restless(
-                    row,
-                    body,
-                    omega,
-                    self.plan.time as f32,
-                    self.engine.length_unit,
-                );
+                restless |= self.is_restless(row, body, omega);
             }
         }
         if all_asleep && !disturbed {

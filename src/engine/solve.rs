@@ -16,6 +16,7 @@ use bevy::prelude::*;
 use bevy::tasks::ComputeTaskPool;
 use bevy_rapier3d::prelude::*;
 use bevy_rapier3d::rapier::dynamics::RigidBodySet;
+use std::cell::Cell;
 
 /// What of a Rapier context the step needs.
 type ContextParts<'a> = (
@@ -61,6 +62,7 @@ pub(crate) fn solve(
         forces::release(scene, &mut loads, &mut sets, &mut commands);
     }
     scene.time = 0.0;
+    scene.delivered = false;
     for (context, simulation, colliders, joints, configuration, lag) in &contexts {
         let plan = Plan::new(*mode, time.delta_secs(), lag.diff);
         if plan.time <= 0.0 || !configuration.physics_pipeline_active {
@@ -88,8 +90,11 @@ pub(crate) fn solve(
             colliders: &colliders.colliders,
             ground: &Ground::default(),
             accuracy: settings.accuracy(),
+            links: joints.multibody_joints.multibodies().next().is_some(),
+            delivered: Cell::new(false),
         };
         scene.step(context, &step, &mut set.bodies, &mut spare);
+        scene.delivered |= step.delivered.get();
     }
     forces::show(scene, &mut loads);
 }

@@ -10,6 +10,7 @@ use bevy::math::DVec3;
 use bevy_rapier3d::prelude::*;
 use bevy_rapier3d::rapier::dynamics::{RigidBody as RapierBody, RigidBodyHandle, RigidBodySet};
 use bevy_rapier3d::rapier::geometry::ColliderSet;
+use std::cell::Cell;
 
 /// A context about to step.
 pub(super) struct Step<'a> {
@@ -19,6 +20,10 @@ pub(super) struct Step<'a> {
     pub colliders: &'a ColliderSet,
     pub ground: &'a Ground,
     pub accuracy: Accuracy,
+    /// There are multibodies at all.
+    pub links: bool,
+    /// Something was given to some body.
+    pub delivered: Cell<bool>,
 }
 
 /// How the engine will step one body.
@@ -59,8 +64,13 @@ impl Step<'_> {
 
     /// Whether an end moves, or is not where it was after the last step.
     pub(super) fn has_moved(&self, row: &ElementRow, bodies: &RigidBodySet) -> bool {
-        row.held.iter().zip(row.memory.places).any(|(held, last)| {
+        let ends = row.held.iter().zip(row.memory.places).zip(row.watched);
+        ends.into_iter().any(|((held, last), watched)| {
             let now = match *held {
+                // Held at its own centre.
+                Held::Body {
+                    movable: Some(_), ..
+                } if !watched => return false,
                 Held::Body {
                     local,
                     movable: Some(_),
@@ -86,10 +96,12 @@ impl Step<'_> {
 
     /// A link of a multibody does not keep velocities that are set.
     fn takes_impulses(&self, handle: RigidBodyHandle) -> bool {
-        self.joints
-            .multibody_joints
-            .rigid_body_link(handle)
-            .is_none()
+        !self.links
+            || self
+                .joints
+                .multibody_joints
+                .rigid_body_link(handle)
+                .is_none()
     }
 
     /// How far behind its present place, in time, a body has to be looked at. Under a force alone the
