@@ -167,7 +167,7 @@ fn a_skin_given_to_another_element_or_changed_follows_at_once() {
     assert!(rest.goes(Vec3::X, top + 2.0 * Vec3::Y), "twice as long now");
 }
 
-/// A camera at ten metres that looks along Z from behind, prepared as a renderer does it.
+/// A camera, prepared as a renderer does it.
 fn look(lab: &mut Lab, at: Transform) -> Entity {
     let projection = Projection::default();
     let computed = ComputedCameraValues {
