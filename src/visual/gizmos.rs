@@ -1,6 +1,6 @@
 //! Lines for debugging: ends, rest length, forces.
 
-use super::place::{Line, Lines};
+use super::place::{Ends, Line, Lines};
 use crate::element::{Spring, SpringDamper};
 use crate::readout::SpringReadout;
 use bevy::gizmos::AppGizmoBuilder;
@@ -89,7 +89,7 @@ fn draw(
         if !show.map_or(all, |s| s.0) {
             continue;
         }
-        let Some((_, from, to)) = lines.ends(&line) else {
+        let Some(Ends { from, to, .. }) = lines.ends(&line) else {
             continue;
         };
         if !(from.is_finite() && to.is_finite()) {

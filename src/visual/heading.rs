@@ -23,45 +23,80 @@ impl Heading {
     /// Turns to a direction of unit length by the shortest way.
     #[inline]
     pub fn turn_to(&mut self, direction: Vec3A) {
-        let side = self.side;
+        // Rounding must not add up. What it did in the last turn is mended here, where nothing waits for it.
+        let side = at_unit_length(self.side, self.side.length_squared());
         let closeness = 1.0 + self.axis.dot(direction);
-        // Straight back, every way is the shortest: the side stays.
-        let turned = if closeness > 1e-6 {
-            side - (self.axis + direction) * (side.dot(direction) / closeness)
+        // Square to the direction whatever rounding has done to the side; but the less is left of this the
+        // nearer it is to straight back.
+        let turned = side - (self.axis + direction) * (side.dot(direction) / closeness);
+        self.side = if closeness > 1e-2 {
+            turned
         } else {
-            side
+            // Straight back, every way is the shortest: the side stays.
+            let turned = if closeness > 1e-6 { turned } else { side };
+            (turned - direction * turned.dot(direction))
+                .try_normalize()
+                .unwrap_or_else(|| direction.any_orthonormal_vector())
         };
-        // Rounding must not add up.
-        let square = turned - direction * turned.dot(direction);
-        self.side = square
-            .try_normalize()
-            .unwrap_or_else(|| direction.any_orthonormal_vector());
         self.axis = direction;
     }
 
-    /// The columns of the rotation that takes X to the side and Y to the axis, in a frame.
+    /// The direction, in the frame of end A.
     #[inline]
-    pub fn in_frame(&self, frame: &Mat3A) -> Mat3A {
-        let (side, axis) = (*frame * self.side, *frame * self.axis);
-        Mat3A::from_cols(side, axis, side.cross(axis))
+    pub const fn axis(&self) -> Vec3A {
+        self.axis
+    }
+
+    /// The side, in the frame of end A.
+    #[inline]
+    pub const fn side(&self) -> Vec3A {
+        self.side
     }
 }
 
-/// The rotation in a matrix that may scale and shear.
+/// The rotation that takes Y to an axis and X to a side of it.
 #[inline]
-pub(super) fn upright(matrix: &Mat3A) -> Mat3A {
-    let x = matrix.x_axis.normalize_or(Vec3A::X);
-    let z = x
-        .cross(matrix.y_axis)
-        .try_normalize()
-        .unwrap_or_else(|| x.any_orthonormal_vector());
+pub(super) fn rotation(axis: Vec3A, side: Vec3A) -> Mat3A {
+    Mat3A::from_cols(side, axis, side.cross(axis))
+}
+
+/// The rotation in a matrix that may scale and shear, from its first two columns.
+#[inline]
+pub(super) fn upright(x: Vec3A, y: Vec3A) -> Mat3A {
+    let z = x.cross(y);
+    let (square_x, square_z) = (x.length_squared(), z.length_squared());
+    // Nearly all are rotations already, and cheap to tell.
+    let (x, z) = if is_near_one(square_x) && is_near_one(square_z) {
+        (at_unit_length(x, square_x), at_unit_length(z, square_z))
+    } else {
+        let x = x.normalize_or(Vec3A::X);
+        let z = x.cross(y).try_normalize();
+        (x, z.unwrap_or_else(|| x.any_orthonormal_vector()))
+    };
     Mat3A::from_cols(x, z.cross(x), z)
+}
+
+#[inline]
+fn is_near_one(square: f32) -> bool {
+    (square - 1.0).abs() < 2e-4
+}
+
+/// A vector at unit length, from its square that is nearly one: a step of Newton's, exact to rounding, needs
+/// neither root nor division.
+#[inline]
+fn at_unit_length(v: Vec3A, square: f32) -> Vec3A {
+    v * (1.5 - 0.5 * square)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use bevy::math::{Quat, Vec3};
+
+    /// The rotation of a heading in the world's frame.
+    fn at(heading: &Heading) -> Mat3A {
+        rotation(heading.axis, heading.side)
+    }
 
     fn is_rotation(matrix: &Mat3A) -> bool {
         (*matrix * matrix.transpose()).abs_diff_eq(Mat3A::IDENTITY, 1e-5)
@@ -71,12 +106,12 @@ mod tests {
     #[test]
     fn a_swing_right_round_neither_spins_nor_flips() {
         let mut heading = Heading::default();
-        let mut before = heading.in_frame(&Mat3A::IDENTITY);
+        let mut before = at(&heading);
         for i in 0..=720 {
             let angle = (i as f32).to_radians();
             let direction = Vec3A::new(angle.sin(), angle.cos(), 0.0);
             heading.turn_to(direction);
-            let now = heading.in_frame(&Mat3A::IDENTITY);
+            let now = at(&heading);
             assert!(is_rotation(&now));
             assert!(now.y_axis.distance(direction) < 1e-5);
             assert!(now.z_axis.distance(Vec3A::Z) < 1e-3, "spun at {i}°");
@@ -91,16 +126,16 @@ mod tests {
         for i in 0..2000 {
             let t = i as f32 * 0.1;
             let direction = Vec3A::new(t.sin(), (1.7 * t).cos(), (0.6 * t).sin()).normalize();
-            let before = heading.in_frame(&Mat3A::IDENTITY);
+            let before = at(&heading);
             let arc = Quat::from_rotation_arc(before.y_axis.into(), direction.into());
             heading.turn_to(direction);
-            let now = heading.in_frame(&Mat3A::IDENTITY);
+            let now = at(&heading);
             // Near straight back the shortest way is a matter of rounding.
             if before.y_axis.dot(direction) > -0.9 {
                 assert!(now.x_axis.distance(arc * before.x_axis) < 1e-3, "step {i}");
             }
         }
-        assert!(is_rotation(&heading.in_frame(&Mat3A::IDENTITY)));
+        assert!(is_rotation(&at(&heading)));
     }
 
     #[test]
@@ -108,7 +143,7 @@ mod tests {
         let mut heading = Heading::default();
         for direction in [Vec3A::Y, Vec3A::NEG_Y, Vec3A::Y] {
             heading.turn_to(direction);
-            assert!(is_rotation(&heading.in_frame(&Mat3A::IDENTITY)));
+            assert!(is_rotation(&at(&heading)));
         }
     }
 
@@ -122,9 +157,12 @@ mod tests {
             Vec3A::ZERO,
         ] {
             let matrix = turn * Mat3A::from_diagonal(scale.into());
-            assert!(is_rotation(&upright(&matrix)), "{scale}");
+            assert!(
+                is_rotation(&upright(matrix.x_axis, matrix.y_axis)),
+                "{scale}"
+            );
         }
         let scaled = turn * Mat3A::from_diagonal(Vec3::splat(3.0));
-        assert!(upright(&scaled).abs_diff_eq(turn, 1e-5));
+        assert!(upright(scaled.x_axis, scaled.y_axis).abs_diff_eq(turn, 1e-5));
     }
 }

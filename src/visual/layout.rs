@@ -38,10 +38,14 @@ pub(super) struct Layout {
     pub wire_radius: f32,
     pub tube_radius: f32,
     pub rod_radius: f32,
+    /// How far anything reaches from the line between the ends.
+    pub reach: f32,
     /// Outer radius of the eyes.
-    pub eye: f32,
-    /// Height of the spring seats.
-    pub seat: f32,
+    eye: f32,
+    /// From an end to where the tube or rod proper begins.
+    body: f32,
+    /// From an end to where the coil stands, above its spring seat.
+    foot: f32,
     /// From end A to the tube's mouth.
     tube: f32,
     /// From end B to the rod's tip.
@@ -60,75 +64,64 @@ impl Layout {
             out.coil_radius = coil.radius;
             out.wire_radius = coil.wire_radius;
             out.solid = coil.solid_length();
+            out.reach = out.coil_radius + 2.0 * out.wire_radius;
         }
         let Some(telescope) = telescope else {
             return out;
         };
         out.tube_radius = telescope.tube_radius;
         out.rod_radius = telescope.rod_radius;
+        out.reach = out.reach.max(2.0 * out.tube_radius);
         out.eye = if telescope.eyes {
             1.25 * telescope.tube_radius
         } else {
             0.0
         };
-        out.seat = 1.5 * out.wire_radius;
+        out.body = 0.8 * out.eye;
+        out.foot = out.body + 1.5 * out.wire_radius;
 
         let stroke = telescope.stroke.unwrap_or(STROKE * first).min(1.9 * first);
         let (shortest, longest) = (first - 0.5 * stroke, first + 0.5 * stroke);
-        let head = out.foot() + 0.5 * out.tube_radius;
+        let head = out.foot + 0.5 * out.tube_radius;
         let tube = (shortest - head).max(0.6 * shortest);
         out.tube = telescope.tube_length.unwrap_or(tube);
         let rod = longest - out.tube * (1.0 - OVERLAP);
-        let room = (shortest - out.body()).max(0.5 * shortest);
+        let room = (shortest - out.body).max(0.5 * shortest);
         out.rod = telescope.rod_length.unwrap_or(rod.min(room));
         if telescope.bump_rubber {
             // As long as leaves three quarters of the way in free.
-            out.bump = 0.25 * (first - out.tube - out.foot()).max(0.0);
+            out.bump = 0.25 * (first - out.tube - out.foot).max(0.0);
         }
         out
-    }
-
-    /// From an end to where the tube or rod proper begins.
-    fn body(&self) -> f32 {
-        0.8 * self.eye
-    }
-
-    /// From an end to where the coil stands.
-    fn foot(&self) -> f32 {
-        self.body() + self.seat
-    }
-
-    /// How far anything reaches from the line between the ends.
-    pub fn reach(&self) -> f32 {
-        (self.coil_radius + 2.0 * self.wire_radius).max(2.0 * self.tube_radius)
     }
 
     /// From end A to the tube's mouth where the ends are this far apart: the tube does not poke through
     /// what is at end B.
     pub fn mouth(&self, length: f32) -> f32 {
-        self.tube.min((length - self.foot()).max(0.5 * length))
+        self.tube.min((length - self.foot).max(0.5 * length))
     }
 
     /// From end B to the rod's tip: it neither leaves the tube nor pokes through its bottom.
     pub fn tip(&self, length: f32) -> f32 {
         let least = length - self.mouth(length) * (1.0 - LEAST_OVERLAP);
-        self.rod.max(least).min((length - self.body()).max(least))
+        self.rod.max(least).min((length - self.body).max(least))
     }
 
     /// Length of the coil.
     pub fn span(&self, length: f32) -> f32 {
-        (length - 2.0 * self.foot()).max(SHORT)
+        (length - 2.0 * self.foot).max(SHORT)
     }
 
     /// The middle of a part on the line from end A, and its scale. Meshes of solids are one metre high
     /// about their middle and of radius one; coils stand on their foot.
+    #[inline]
     pub fn lay(&self, part: Part, length: f32) -> (f32, Vec3) {
         let round = |radius: f32, low: f32, high: f32| {
             let height = (high - low).max(SHORT);
             (low + 0.5 * height, Vec3::new(radius, height, radius))
         };
-        let plate = self.coil_radius + 1.5 * self.wire_radius;
-        let (body, foot) = (self.body(), self.foot());
+        let plate = || self.coil_radius + 1.5 * self.wire_radius;
+        let (body, foot) = (self.body, self.foot);
         match part {
             Part::Coil => (foot, Vec3::new(1.0, self.span(length), 1.0)),
             Part::Tube => round(self.tube_radius, body, self.mouth(length)),
@@ -147,8 +140,8 @@ impl Layout {
                 let low = (top - self.bump).max(self.mouth(length));
                 round(0.5 * (self.tube_radius + self.rod_radius), low, top)
             }
-            Part::SeatA => round(plate, body, foot),
-            Part::SeatB => round(plate, length - foot, length - body),
+            Part::SeatA => round(plate(), body, foot),
+            Part::SeatB => round(plate(), length - foot, length - body),
             Part::EyeA => (0.0, Vec3::splat(self.eye)),
             Part::EyeB => (length, Vec3::splat(self.eye)),
             Part::Custom(own) => (foot, Vec3::new(1.0, self.span(length) / own, 1.0)),

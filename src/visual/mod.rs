@@ -1,7 +1,8 @@
 //! What one sees: coils and telescopes between the ends.
 //!
-//! [`parts`] spawns and removes the drawn children of an element, [`place`] lays them between the ends
-//! every frame as [`layout`] and [`heading`] say, as finely as [`views`] finds worth it. [`helix`] is the
+//! [`parts`] spawns and removes the drawn children of an element. Every frame [`place`] finds where the
+//! ends are, which way [`heading`] turns what is between them and how finely [`views`] finds that worth
+//! drawing, and [`lay`] lays the parts there as [`layout`] says. [`helix`] is the
 //! coil's mesh, [`round_wire`] the material that keeps its wire round when it is stretched, and [`shapes`]
 //! keeps one of each for all equal springs.
 
@@ -9,6 +10,7 @@ mod coil;
 mod gizmos;
 mod heading;
 mod helix;
+mod lay;
 mod layout;
 mod parts;
 mod place;
@@ -68,7 +70,13 @@ impl Plugin for CoiloverVisualPlugin {
             )
             .add_systems(
                 PostUpdate,
-                (parts::take_skins, parts::build, place::place)
+                (
+                    parts::take_skins,
+                    parts::build,
+                    lay::recall,
+                    place::place,
+                    lay::lay,
+                )
                     .chain()
                     .in_set(CoiloverVisualSystems),
             );

@@ -109,7 +109,8 @@ fn sound<'a, L>(
 
 /// Spawns, renews and removes the parts of elements.
 pub(super) fn build(
-    changed: Query<Entity, Or<(Changed<Coil>, Changed<Telescope>)>>,
+    changed_coils: Query<Entity, Changed<Coil>>,
+    changed_telescopes: Query<Entity, Changed<Telescope>>,
     mut no_coil: RemovedComponents<Coil>,
     mut no_telescope: RemovedComponents<Telescope>,
     mut looks: Query<(Line, Option<&Coil>, Option<&Telescope>, &mut Placement)>,
@@ -117,7 +118,13 @@ pub(super) fn build(
     mut waiting: Local<EntityHashSet>,
     mut workshop: Workshop,
 ) {
-    waiting.extend(&changed);
+    // One after the other: a search for either takes twice as long.
+    for element in &changed_coils {
+        waiting.insert(element);
+    }
+    for element in &changed_telescopes {
+        waiting.insert(element);
+    }
     waiting.extend(no_coil.read());
     waiting.extend(no_telescope.read());
     waiting.retain(|&element| {
@@ -126,7 +133,7 @@ pub(super) fn build(
             return false;
         };
         // Lengths may follow from how far apart the ends are, so they must be there.
-        let length = lines.ends(&line).map(|(_, from, to)| from.distance(to));
+        let length = lines.ends(&line).map(|ends| ends.from.distance(ends.to));
         let bare = coil.is_none() && telescope.is_none();
         let Some(length) = length.filter(|l| l.is_finite()).or(bare.then_some(0.0)) else {
             return true;
@@ -168,6 +175,8 @@ pub(super) fn take_skins(
         commands.entity(entity).insert(Part::Custom(skin.length));
         commands
             .entity(parent.parent())
-            .insert_if_new((Placement::default(), Visibility::default()));
+            .insert_if_new((Placement::default(), Visibility::default()))
+            .entry::<Placement>()
+            .and_modify(|mut placement| placement.recall());
     }
 }

@@ -1,31 +1,72 @@
-//! Lays the parts between the ends, where the ends are drawn in this frame.
+//! Where every element is in this frame, and what of it is worth drawing there.
 
 use super::heading::{Heading, upright};
 use super::layout::{Layout, Part, SHORT};
-use super::parts::Levels;
 use super::views::{Cameras, Views, level};
 use crate::element::{Anchors, Damper, Spring, SpringDamper};
 use bevy::ecs::query::QueryData;
 use bevy::ecs::system::SystemParam;
-use bevy::math::{Affine3A, Mat3A, Vec3A};
-use bevy::mesh::Mesh3d;
+use bevy::math::Vec3A;
 use bevy::prelude::*;
 
 /// An element out of everyone's sight is placed every so many frames only. It may still throw a shadow
 /// into the picture, so it is not left alone altogether.
 const SELDOM: u32 = 8;
 
-/// Where an element was drawn last.
+/// Where an element is drawn.
 #[derive(Component, Clone, Copy, Debug, Default)]
 pub struct Placement {
-    heading: Heading,
-    layout: Layout,
-    /// Length when first drawn, m.
-    first: Option<f32>,
+    pub(super) due: Due,
     /// Level of detail.
-    level: u8,
+    pub(super) level: u8,
     /// Its coil has been shorter than its turns are thick, and that was said.
     squeezed: bool,
+    /// From end to end, m.
+    pub(super) length: f32,
+    /// In the world: unit vectors along the element and across it.
+    pub(super) axis: Vec3A,
+    pub(super) side: Vec3A,
+    pub(super) ends: Ends,
+    pub(super) layout: Layout,
+    heading: Heading,
+    /// Length when first drawn, m.
+    first: Option<f32>,
+}
+
+/// Which parts of an element have to be laid anew in a frame. Those that have changed always have.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum Due {
+    /// Not even those: nobody knows where its ends are.
+    #[default]
+    Nowhere,
+    /// None: all lie where they should.
+    Laid,
+    /// Those that were seen in the last frame.
+    Visible,
+    All,
+}
+
+/// What a placement follows from.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Ends {
+    /// Two axes of end A, scaled as that is.
+    x: Vec3A,
+    y: Vec3A,
+    /// Both anchors.
+    pub from: Vec3A,
+    pub to: Vec3A,
+}
+
+impl Ends {
+    /// Whether they are the same, found out without a jump.
+    #[inline]
+    fn are(&self, other: &Self) -> bool {
+        let same = self.from.cmpeq(other.from)
+            & self.to.cmpeq(other.to)
+            & self.x.cmpeq(other.x)
+            & self.y.cmpeq(other.y);
+        same.all()
+    }
 }
 
 impl Placement {
@@ -35,6 +76,66 @@ impl Placement {
         self.layout = layout(first);
         self.level = 0;
         self.squeezed = false;
+        self.recall();
+    }
+
+    /// Lays all parts anew, whatever has been laid before.
+    pub(super) fn recall(&mut self) {
+        self.due = Due::Nowhere;
+    }
+
+    /// Follows the ends, and says what follows from that. Out of sight some frames have their turn.
+    #[inline(always)]
+    fn find(
+        &mut self,
+        ends: Ends,
+        views: &Views,
+        same_views: bool,
+        has_turn: impl Fn() -> bool,
+    ) -> Due {
+        let rests = matches!(self.due, Due::Laid | Due::All) && ends.are(&self.ends);
+        if rests && same_views {
+            return Due::Laid;
+        }
+        let between = ends.to - ends.from;
+        let length = between.length();
+        if !length.is_finite() {
+            return Due::Nowhere;
+        }
+        let middle = ends.from + 0.5 * between;
+        let sight = views.sight(middle, 0.5 * length + self.layout.reach);
+        let before = self.level;
+        if sight.seen {
+            self.level = level(2.0 * self.layout.wire_radius * sight.pixels, before);
+        }
+        if rests && self.level == before {
+            return Due::Laid;
+        }
+        self.ends = ends;
+        self.length = length;
+        let upright = upright(ends.x, ends.y);
+        if length > SHORT {
+            self.axis = between / length;
+            self.heading.turn_to(upright.transpose() * self.axis);
+        } else {
+            self.axis = upright * self.heading.axis();
+        }
+        self.side = upright * self.heading.side();
+        if sight.seen || has_turn() {
+            Due::All
+        } else {
+            Due::Visible
+        }
+    }
+
+    /// Whether the coil's turns have become shorter than they are thick since this was last asked.
+    #[inline]
+    fn has_become_squeezed(&mut self) -> bool {
+        let has_moved = matches!(self.due, Due::Visible | Due::All);
+        let is_news =
+            has_moved && !self.squeezed && self.layout.span(self.length) < 0.98 * self.layout.solid;
+        self.squeezed |= is_news;
+        is_news
     }
 }
 
@@ -54,9 +155,9 @@ pub(super) struct Lines<'w, 's> {
 }
 
 impl Lines<'_, '_> {
-    /// The frame of end A, and both anchors in the world.
-    #[inline]
-    pub fn ends(&self, line: &LineItem) -> Option<(Mat3A, Vec3A, Vec3A)> {
+    /// Where the ends of an element are.
+    #[inline(always)]
+    pub fn ends(&self, line: &LineItem) -> Option<Ends> {
         let (a, b) = if let Some(spring) = line.spring {
             (spring.body_a, spring.body_b)
         } else if let Some(pair) = line.pair {
@@ -67,93 +168,49 @@ impl Lines<'_, '_> {
         };
         let a = self.globals.get(a).ok()?.affine();
         let b = self.globals.get(b).ok()?.affine();
-        let anchors = line.anchors.copied().unwrap_or_default();
-        Some((
-            a.matrix3,
-            a.transform_point3a(anchors.a.into()),
-            b.transform_point3a(anchors.b.into()),
-        ))
+        let (from, to) = match line.anchors {
+            Some(anchors) => (
+                a.transform_point3a(anchors.a.into()),
+                b.transform_point3a(anchors.b.into()),
+            ),
+            None => (a.translation, b.translation),
+        };
+        Some(Ends {
+            x: a.matrix3.x_axis,
+            y: a.matrix3.y_axis,
+            from,
+            to,
+        })
     }
 }
 
+/// Finds out where the elements are and how they are seen.
 pub(super) fn place(
-    mut elements: Query<(Entity, Line, &mut Placement, &Children)>,
-    mut parts: Query<(
-        &Part,
-        &mut GlobalTransform,
-        Option<&ViewVisibility>,
-        Option<(&Levels, &mut Mesh3d)>,
-    )>,
+    mut elements: Query<(Entity, Line, &mut Placement)>,
     lines: Lines,
     cameras: Query<Cameras, Without<Part>>,
     mut views: Local<Views>,
     mut frame: Local<u32>,
 ) {
-    views.update(cameras.iter());
+    let same_views = !views.update(cameras.iter());
     *frame = frame.wrapping_add(1);
-    for (element, line, mut placement, children) in &mut elements {
-        let Some((matrix, from, to)) = lines.ends(&line) else {
+    for (element, line, mut placement) in &mut elements {
+        let placement = placement.bypass_change_detection();
+        let Some(ends) = lines.ends(&line) else {
+            placement.due = Due::Nowhere;
             continue;
         };
-        let between = to - from;
-        let length = between.length();
-        if !length.is_finite() {
-            continue;
-        }
-        let placement = placement.bypass_change_detection();
-        let layout = &placement.layout;
-        let sight = views.sight(from + 0.5 * between, 0.5 * length + layout.reach());
-        let turn = element
-            .index_u32()
-            .wrapping_add(*frame)
-            .is_multiple_of(SELDOM);
-        let skips = !(sight.seen || turn);
-
-        let upright = upright(&matrix);
-        if length > SHORT {
-            let direction = upright.transpose() * (between / length);
-            placement.heading.turn_to(direction);
-        }
-        let columns = placement.heading.in_frame(&upright);
-        if sight.seen {
-            placement.level = level(2.0 * layout.wire_radius * sight.pixels, placement.level);
-        }
-        if layout.span(length) < 0.98 * layout.solid && !placement.squeezed {
-            placement.squeezed = true;
+        placement.due = placement.find(ends, &views, same_views, || {
+            let turn = element.index_u32().wrapping_add(*frame);
+            turn.is_multiple_of(SELDOM)
+        });
+        if placement.has_become_squeezed() {
             log::warn!(
                 "{element}: Coil: it is {} m long, but all its turns touch at {} m already, so wire \
                  passes through wire",
-                layout.span(length),
-                layout.solid
+                placement.layout.span(placement.length),
+                placement.layout.solid
             );
-        }
-
-        for child in children {
-            let Ok((part, mut global, visibility, levels)) = parts.get_mut(*child) else {
-                continue;
-            };
-            // Whoever else has moved it, as transform propagation does after a change, is overruled.
-            if skips && !visibility.is_some_and(|v| v.get()) && !global.is_changed() {
-                continue;
-            }
-            let (at, scale) = layout.lay(*part, length);
-            let world = Affine3A {
-                matrix3: Mat3A::from_cols(
-                    columns.x_axis * scale.x,
-                    columns.y_axis * scale.y,
-                    columns.z_axis * scale.z,
-                ),
-                translation: from + columns.y_axis * at,
-            };
-            // Its `Transform` says nothing: propagation has run, and rendering reads this one. What has
-            // not moved must not look changed, or it would be sent to the graphics card again.
-            global.set_if_neq(GlobalTransform::from(world));
-            if let Some((levels, mut mesh)) = levels {
-                let wanted = &levels.0[usize::from(placement.level)];
-                if mesh.0 != *wanted {
-                    mesh.0 = wanted.clone();
-                }
-            }
         }
     }
 }

@@ -1,6 +1,6 @@
 //! From where a scene is seen: what is out of sight, and how finely the rest is worth drawing.
 
-use bevy::camera::primitives::{Frustum, Sphere};
+use bevy::camera::primitives::Frustum;
 use bevy::camera::{Camera, Projection};
 use bevy::math::Vec3A;
 use bevy::prelude::*;
@@ -11,17 +11,48 @@ const FINE_ENOUGH: [f32; 3] = [14.0, 5.0, 1.5];
 const HYSTERESIS: f32 = 1.15;
 
 /// A camera.
+#[derive(Clone, Copy, PartialEq)]
 struct View {
-    frustum: Frustum,
+    /// Components x, y, z and w of the planes that bound what it sees, four planes at a time: a ball is
+    /// beyond one where their product with its centre is less than its radius below zero.
+    planes: [[Vec4; 4]; 2],
     position: Vec3A,
     /// Pixels that a metre takes, at one metre's distance in perspective.
     focal: f32,
     perspective: bool,
 }
 
+impl View {
+    fn planes(frustum: &Frustum) -> [[Vec4; 4]; 2] {
+        let plane = |i: usize| frustum.half_spaces.get(i).map(|p| p.normal_d());
+        [0, 4].map(|first| {
+            // Nothing is beyond a plane that is not there.
+            let four = [0, 1, 2, 3].map(|i| plane(first + i).unwrap_or(Vec4::W * f32::MAX));
+            Mat4::from_cols(four[0], four[1], four[2], four[3])
+                .transpose()
+                .to_cols_array_2d()
+                .map(Vec4::from)
+        })
+    }
+
+    /// Whether any of a ball is in sight.
+    #[inline]
+    fn sees(&self, center: Vec3A, radius: f32) -> bool {
+        let (cx, cy, cz) = (center.x, center.y, center.z);
+        let heights = |[x, y, z, w]: &[Vec4; 4]| (*x * cx + *y * cy) + (*z * cz + *w);
+        let [sides, ends] = &self.planes;
+        // Without a jump between the two.
+        let lowest = heights(sides).min(heights(ends));
+        !lowest.cmple(Vec4::splat(-radius)).any()
+    }
+}
+
 /// All active cameras; none where nothing is rendered.
 #[derive(Default)]
-pub(super) struct Views(Vec<View>);
+pub(super) struct Views {
+    now: Vec<View>,
+    before: Vec<View>,
+}
 
 /// What is looked up of a camera.
 pub(super) type Cameras<'a> = (&'a Camera, &'a Projection, &'a Frustum, &'a GlobalTransform);
@@ -36,9 +67,10 @@ pub(super) struct Sight {
 }
 
 impl Views {
-    /// Looks at the cameras of this frame.
-    pub fn update<'a>(&mut self, cameras: impl Iterator<Item = Cameras<'a>>) {
-        self.0.clear();
+    /// Looks at the cameras of this frame; whether anything has changed since the last.
+    pub fn update<'a>(&mut self, cameras: impl Iterator<Item = Cameras<'a>>) -> bool {
+        std::mem::swap(&mut self.now, &mut self.before);
+        self.now.clear();
         for (camera, projection, frustum, at) in cameras {
             let Some(size) = camera.physical_viewport_size() else {
                 continue;
@@ -46,25 +78,25 @@ impl Views {
             if !camera.is_active {
                 continue;
             }
-            self.0.push(View {
-                frustum: *frustum,
+            self.now.push(View {
+                planes: View::planes(frustum),
                 position: at.translation_vec3a(),
                 focal: 0.5 * size.y as f32 * camera.clip_from_view().y_axis.y,
                 perspective: !matches!(projection, Projection::Orthographic(_)),
             });
         }
+        self.now != self.before
     }
 
     /// How a ball is seen. Without cameras everything is, and closely.
     #[inline]
     pub fn sight(&self, center: Vec3A, radius: f32) -> Sight {
         let mut out = Sight {
-            seen: self.0.is_empty(),
-            pixels: if self.0.is_empty() { f32::MAX } else { 0.0 },
+            seen: self.now.is_empty(),
+            pixels: if self.now.is_empty() { f32::MAX } else { 0.0 },
         };
-        let ball = Sphere { center, radius };
-        for view in &self.0 {
-            if !view.frustum.intersects_sphere(&ball, true) {
+        for view in &self.now {
+            if !view.sees(center, radius) {
                 continue;
             }
             out.seen = true;
@@ -83,25 +115,40 @@ impl Views {
 /// The level of detail for a thickness in pixels, coming from some level; 0 is the finest.
 #[inline]
 pub(super) fn level(pixels: f32, before: u8) -> u8 {
-    let mut level = 0;
-    for (i, least) in FINE_ENOUGH.into_iter().enumerate() {
-        let stay = usize::from(before) <= i;
-        let least = if stay {
-            least / HYSTERESIS
-        } else {
-            least * HYSTERESIS
-        };
-        if pixels >= least {
-            break;
-        }
-        level += 1;
+    let stays = STAYS.get(usize::from(before));
+    if stays.is_some_and(|(least, most)| (*least..*most).contains(&pixels)) {
+        return before;
     }
-    level
+    let bounds = FINE_ENOUGH.into_iter().enumerate();
+    bounds
+        .filter(|(i, least)| {
+            let comes_from_it = usize::from(before) <= *i;
+            pixels < beyond(*least, !comes_from_it)
+        })
+        .count() as u8
 }
+
+/// A bound as it is for those that are below it, or for those that are above.
+const fn beyond(bound: f32, rising: bool) -> f32 {
+    if rising {
+        bound * HYSTERESIS
+    } else {
+        bound / HYSTERESIS
+    }
+}
+
+/// Thicknesses from and up to which each level is kept.
+const STAYS: [(f32, f32); FINE_ENOUGH.len() + 1] = [
+    (beyond(FINE_ENOUGH[0], false), f32::INFINITY),
+    (beyond(FINE_ENOUGH[1], false), beyond(FINE_ENOUGH[0], true)),
+    (beyond(FINE_ENOUGH[2], false), beyond(FINE_ENOUGH[1], true)),
+    (f32::NEG_INFINITY, beyond(FINE_ENOUGH[2], true)),
+];
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use bevy::camera::primitives::Sphere;
 
     #[test]
     fn nearer_is_finer_and_no_level_flickers() {
@@ -115,6 +162,41 @@ mod tests {
                 assert_eq!(level(pixels, fine), fine);
                 assert_eq!(level(pixels, coarse), coarse);
             }
+        }
+    }
+
+    #[test]
+    fn a_camera_sees_what_bevys_frustum_does() {
+        let at = Transform::from_xyz(1.0, 2.0, 3.0).looking_at(Vec3::new(-4.0, 0.0, 1.0), Vec3::Y);
+        let perspective = Projection::from(PerspectiveProjection {
+            far: 20.0,
+            ..default()
+        });
+        let flat = Projection::from(OrthographicProjection {
+            scale: 0.01,
+            far: 20.0,
+            ..OrthographicProjection::default_3d()
+        });
+        for projection in [perspective, flat] {
+            let frustum = projection.compute_frustum(&at.into());
+            let view = View {
+                planes: View::planes(&frustum),
+                position: Vec3A::ZERO,
+                focal: 1.0,
+                perspective: true,
+            };
+            let mut seen = 0;
+            for i in 0..4000 {
+                let t = i as f32;
+                let ball = Sphere {
+                    center: Vec3A::new((1.3 * t).sin(), (0.7 * t).cos(), (2.1 * t).sin()) * 25.0,
+                    radius: 2.0 + (3.3 * t).sin(),
+                };
+                let wanted = frustum.intersects_sphere(&ball, true);
+                assert_eq!(view.sees(ball.center, ball.radius), wanted, "{ball:?}");
+                seen += u32::from(wanted);
+            }
+            assert!((20..3980).contains(&seen), "{seen}");
         }
     }
 

@@ -31,3 +31,5 @@ mod tolerance;
 mod user_force;
 #[cfg(feature = "visual")]
 mod visual_data;
+#[cfg(feature = "visual")]
+mod visual_rest;

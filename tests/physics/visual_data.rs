@@ -8,7 +8,7 @@ use bevy_coilover::prelude::*;
 use std::collections::HashSet;
 
 /// A lab with what the visual plugin needs of Bevy, and no renderer.
-fn lab() -> Lab {
+pub fn lab() -> Lab {
     let mut lab = Lab::without_plugin(Engine::default());
     lab.app
         .add_plugins((AssetPlugin::default(), CoiloverPlugins));
@@ -19,7 +19,7 @@ fn lab() -> Lab {
     lab
 }
 
-fn parts(lab: &Lab, element: Entity) -> Vec<GlobalTransform> {
+pub fn parts(lab: &Lab, element: Entity) -> Vec<GlobalTransform> {
     let children = lab.app.world().get::<Children>(element);
     children
         .into_iter()
@@ -207,6 +207,56 @@ fn looks_that_cannot_be_drawn_are_told_once_by_entity_and_field() {
     *lab.get_mut::<Coil>(coil) = Coil::default();
     lab.tick();
     assert_eq!(parts(&lab, coil).len(), 1);
+}
+
+#[test]
+fn a_coil_pressed_until_wire_passes_through_wire_is_told_once_with_both_lengths() {
+    let log = Log::capture();
+    let mut lab = lab();
+    let coil = Coil::default();
+    let solid = coil.solid_length();
+    let (a, b) = (lab.point(Vec3::ZERO), lab.point(Vec3::Y));
+    let element = lab.spawn((Spring::new(a, b), coil));
+    let told_at = |lab: &mut Lab, length: f32| {
+        lab.get_mut::<Transform>(b).translation = length * Vec3::Y;
+        lab.run(0.1);
+        log.take()
+    };
+    assert!(told_at(&mut lab, 1.0).is_empty());
+    // Turns that touch are no fault.
+    assert!(told_at(&mut lab, 0.99 * solid).is_empty());
+    let length = 0.9 * solid;
+    let told = told_at(&mut lab, length);
+    assert_eq!(told.len(), 1, "{told:?}");
+    let wanted = format!(
+        "{element}: Coil: it is {length} m long, but all its turns touch at {solid} m already, so wire \
+         passes through wire"
+    );
+    assert_eq!(told[0], wanted);
+    assert!(told_at(&mut lab, 1.0).is_empty());
+    assert!(told_at(&mut lab, length).is_empty(), "told twice");
+    // Other looks are another matter.
+    lab.get_mut::<Coil>(element).color = Color::BLACK;
+    assert_eq!(told_at(&mut lab, length).len(), 1);
+}
+
+#[test]
+fn a_coil_pressed_between_its_seats_is_told_though_its_ends_are_farther_apart() {
+    let log = Log::capture();
+    let mut lab = lab();
+    let coil = Coil::default();
+    let (a, b) = (lab.point(Vec3::ZERO), lab.point(Vec3::Y));
+    let damper = Damper::new(a, b);
+    lab.spawn((damper, coil, Telescope::default()));
+    lab.spawn((damper, Telescope::default()));
+    lab.run(0.1);
+    assert!(log.take().is_empty());
+    // Between them are two seats, each one and a half times the wire's radius high.
+    lab.get_mut::<Transform>(b).translation = Vec3::Y * (coil.solid_length() + coil.wire_radius);
+    lab.run(0.1);
+    let told = log.take();
+    assert_eq!(told.len(), 1, "{told:?}");
+    assert!(told[0].contains("wire passes through wire"));
 }
 
 #[test]

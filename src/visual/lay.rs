@@ -1,0 +1,91 @@
+//! Lays the parts of the elements where [`place`](super::place) has found these to be.
+
+use super::heading::rotation;
+use super::layout::Part;
+use super::parts::Levels;
+use super::place::{Due, Placement};
+use bevy::ecs::entity_disabling::Disabled;
+use bevy::math::{Affine3A, Mat3A};
+use bevy::mesh::Mesh3d;
+use bevy::prelude::*;
+use std::sync::Arc;
+
+/// Has elements laid anew that nobody has looked after because they or a part of theirs were disabled.
+pub(super) fn recall(
+    mut enabled: RemovedComponents<Disabled>,
+    parts: Query<&ChildOf, With<Part>>,
+    mut elements: Query<&mut Placement>,
+) {
+    for entity in enabled.read() {
+        let element = parts.get(entity).map_or(entity, ChildOf::parent);
+        if let Ok(mut placement) = elements.get_mut(element) {
+            placement.recall();
+        }
+    }
+}
+
+/// Lays the parts.
+pub(super) fn lay(
+    mut parts: Query<(
+        &Part,
+        Ref<ChildOf>,
+        &mut GlobalTransform,
+        Option<&ViewVisibility>,
+        Option<(&Levels, &mut Mesh3d)>,
+    )>,
+    elements: Query<&Placement>,
+) {
+    for (part, parent, mut global, visibility, mut levels) in &mut parts {
+        let Ok(placement) = elements.get(parent.parent()) else {
+            continue;
+        };
+        // Whoever else has changed it, as transform propagation does, is overruled.
+        let has_changed = || {
+            global.is_changed()
+                || parent.is_changed()
+                || levels.as_ref().is_some_and(|(_, mesh)| mesh.is_changed())
+        };
+        let is_due = match placement.due {
+            Due::Nowhere => false,
+            Due::Laid => has_changed(),
+            Due::Visible => visibility.is_some_and(|v| v.get()) || has_changed(),
+            Due::All => true,
+        };
+        if !is_due {
+            continue;
+        }
+        // Its `Transform` says nothing: propagation has run, and rendering reads this one. What has
+        // not moved must not look changed, or it would be sent to the graphics card again.
+        global.set_if_neq(world(placement, *part));
+        if let Some((levels, mesh)) = &mut levels {
+            let wanted = &levels.0[usize::from(placement.level)];
+            if !is_same(&mesh.0, wanted) {
+                mesh.0 = wanted.clone();
+            }
+        }
+    }
+}
+
+/// Whether both are of one mesh; soon told where one is a clone of the other.
+#[inline]
+fn is_same(one: &Handle<Mesh>, other: &Handle<Mesh>) -> bool {
+    match (one, other) {
+        (Handle::Strong(one), Handle::Strong(other)) if Arc::ptr_eq(one, other) => true,
+        _ => one == other,
+    }
+}
+
+/// Where a part belongs.
+#[inline]
+fn world(placement: &Placement, part: Part) -> GlobalTransform {
+    let columns = rotation(placement.axis, placement.side);
+    let (at, scale) = placement.layout.lay(part, placement.length);
+    GlobalTransform::from(Affine3A {
+        matrix3: Mat3A::from_cols(
+            columns.x_axis * scale.x,
+            columns.y_axis * scale.y,
+            columns.z_axis * scale.z,
+        ),
+        translation: placement.ends.from + columns.y_axis * at,
+    })
+}

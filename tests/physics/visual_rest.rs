@@ -1,0 +1,239 @@
+//! Is a resting element, which is left alone, still drawn right after anything but its ends has changed?
+
+use crate::harness::*;
+use crate::visual_data::{lab, parts};
+use bevy::camera::{Camera, ComputedCameraValues, Projection, RenderTargetInfo};
+use bevy::ecs::entity_disabling::Disabled;
+use bevy::prelude::*;
+use bevy_coilover::prelude::*;
+use std::collections::HashSet;
+
+/// A coil from the origin to a metre above, that has rested for a while.
+struct Rest {
+    lab: Lab,
+    a: Entity,
+    b: Entity,
+    element: Entity,
+    coil: Entity,
+}
+
+impl Rest {
+    fn new() -> Self {
+        let mut lab = lab();
+        let (a, b) = (lab.point(Vec3::ZERO), lab.point(Vec3::Y));
+        let element = lab.spawn((Spring::new(a, b), Coil::default()));
+        lab.run(0.2);
+        let coil = lab.get::<Children>(element)[0];
+        Self {
+            lab,
+            a,
+            b,
+            element,
+            coil,
+        }
+    }
+
+    /// Whether the coil is drawn from one point to another.
+    fn goes(&self, from: Vec3, to: Vec3) -> bool {
+        let at = self.lab.get::<GlobalTransform>(self.coil);
+        at.transform_point(Vec3::ZERO).distance(from) < 1e-5
+            && at.transform_point(Vec3::Y).distance(to) < 1e-5
+    }
+
+    fn insert(&mut self, entity: Entity, bundle: impl Bundle) {
+        self.lab.app.world_mut().entity_mut(entity).insert(bundle);
+    }
+
+    fn remove<B: Bundle>(&mut self, entity: Entity) {
+        self.lab.app.world_mut().entity_mut(entity).remove::<B>();
+    }
+}
+
+#[derive(Resource, Default)]
+struct Sent(usize);
+
+#[test]
+fn what_rests_is_not_sent_to_the_graphics_card_again() {
+    let mut rest = Rest::new();
+    let count = |sent: Query<(), (With<Mesh3d>, Changed<GlobalTransform>)>,
+                 mut count: ResMut<Sent>| count.0 += sent.iter().count();
+    rest.lab
+        .app
+        .init_resource::<Sent>()
+        .add_systems(Last, count);
+    rest.lab.tick();
+    let before = rest.lab.app.world().resource::<Sent>().0;
+    rest.lab.run(0.5);
+    assert_eq!(rest.lab.app.world().resource::<Sent>().0, before);
+    rest.lab.get_mut::<Transform>(rest.b).translation.y = 1.1;
+    rest.lab.tick();
+    assert_eq!(rest.lab.app.world().resource::<Sent>().0, before + 1);
+}
+
+#[test]
+fn a_part_that_somebody_moves_is_put_back() {
+    let mut rest = Rest::new();
+    *rest.lab.get_mut::<GlobalTransform>(rest.coil) = GlobalTransform::from_xyz(3.0, 4.0, 5.0);
+    rest.lab.tick();
+    assert!(rest.goes(Vec3::ZERO, Vec3::Y));
+    rest.lab.get_mut::<Transform>(rest.coil).translation.x = 2.0;
+    rest.lab.tick();
+    assert!(rest.goes(Vec3::ZERO, Vec3::Y));
+    rest.lab.get_mut::<Transform>(rest.element).translation.x = 2.0;
+    rest.lab.tick();
+    assert!(rest.goes(Vec3::ZERO, Vec3::Y));
+    let wrong = Mesh3d::default();
+    let right = rest.lab.get::<Mesh3d>(rest.coil).clone();
+    rest.insert(rest.coil, wrong);
+    rest.lab.tick();
+    assert_eq!(*rest.lab.get::<Mesh3d>(rest.coil), right);
+}
+
+#[test]
+fn other_anchors_other_ends_and_other_elements_are_followed() {
+    let mut rest = Rest::new();
+    rest.insert(rest.element, Anchors::new(Vec3::X, Vec3::X));
+    rest.lab.tick();
+    assert!(rest.goes(Vec3::X, Vec3::new(1.0, 1.0, 0.0)));
+    rest.remove::<Anchors>(rest.element);
+    rest.lab.tick();
+    assert!(rest.goes(Vec3::ZERO, Vec3::Y));
+    let other = rest.lab.point(Vec3::Z);
+    rest.lab.run(0.1);
+    rest.lab.get_mut::<Spring>(rest.element).body_b = other;
+    rest.lab.tick();
+    assert!(rest.goes(Vec3::ZERO, Vec3::Z));
+    rest.remove::<Spring>(rest.element);
+    rest.insert(rest.element, Damper::new(rest.b, rest.a));
+    rest.lab.tick();
+    assert!(rest.goes(Vec3::Y, Vec3::ZERO));
+}
+
+#[test]
+fn without_an_end_a_coil_stays_and_with_it_back_is_right_again() {
+    let mut rest = Rest::new();
+    rest.remove::<GlobalTransform>(rest.b);
+    rest.lab.run(0.1);
+    assert!(rest.goes(Vec3::ZERO, Vec3::Y));
+    rest.insert(rest.b, Transform::from_xyz(0.0, 2.0, 0.0));
+    rest.insert(rest.b, GlobalTransform::from_xyz(0.0, 2.0, 0.0));
+    rest.lab.tick();
+    assert!(rest.goes(Vec3::ZERO, 2.0 * Vec3::Y));
+}
+
+#[test]
+fn what_was_disabled_for_a_while_is_right_when_it_is_enabled() {
+    for of_part in [false, true] {
+        let mut rest = Rest::new();
+        let whose = if of_part { rest.coil } else { rest.element };
+        rest.insert(whose, Disabled);
+        rest.lab.tick();
+        if !of_part {
+            *rest.lab.get_mut::<GlobalTransform>(rest.coil) = GlobalTransform::IDENTITY;
+        }
+        rest.lab.get_mut::<Transform>(rest.b).translation.y = 1.5;
+        rest.lab.run(0.2);
+        if !of_part {
+            rest.lab.get_mut::<Transform>(rest.b).translation.y = 1.0;
+            rest.lab.tick();
+        }
+        rest.remove::<Disabled>(whose);
+        rest.lab.tick();
+        let top = if of_part { 1.5 } else { 1.0 };
+        assert!(rest.goes(Vec3::ZERO, top * Vec3::Y), "of part: {of_part}");
+    }
+}
+
+#[test]
+fn a_skin_given_to_another_element_or_changed_follows_at_once() {
+    let mut rest = Rest::new();
+    let mesh = rest.lab.get::<Mesh3d>(rest.coil).clone();
+    let skin = (SpringSkin { length: 1.0 }, mesh, ChildOf(rest.element));
+    rest.coil = rest.lab.spawn(skin);
+    let (a, b) = (
+        rest.lab.point(Vec3::X),
+        rest.lab.point(Vec3::new(1.0, 2.0, 0.0)),
+    );
+    let other = rest.lab.spawn((Spring::new(a, b), Coil::default()));
+    rest.lab.run(0.1);
+    assert!(rest.goes(Vec3::ZERO, Vec3::Y));
+    rest.insert(rest.coil, ChildOf(other));
+    rest.lab.tick();
+    let top = Vec3::new(1.0, 2.0, 0.0);
+    assert!(rest.goes(Vec3::X, top));
+    rest.lab.run(0.1);
+    rest.lab.get_mut::<SpringSkin>(rest.coil).length = 0.5;
+    rest.lab.tick();
+    assert!(rest.goes(Vec3::X, top + 2.0 * Vec3::Y), "twice as long now");
+}
+
+/// A camera, prepared as a renderer does it.
+fn look(lab: &mut Lab, at: Transform) -> Entity {
+    let projection = Projection::default();
+    let computed = ComputedCameraValues {
+        clip_from_view: projection.get_clip_from_view(),
+        target_info: Some(RenderTargetInfo {
+            physical_size: UVec2::new(1920, 1080),
+            scale_factor: 1.0,
+        }),
+        ..default()
+    };
+    let frustum = projection.compute_frustum(&GlobalTransform::from(at));
+    let camera = Camera {
+        computed,
+        ..default()
+    };
+    lab.spawn((camera, projection, frustum, at))
+}
+
+fn turn(lab: &mut Lab, camera: Entity, at: Transform) {
+    let frustum = lab
+        .get::<Projection>(camera)
+        .compute_frustum(&GlobalTransform::from(at));
+    lab.app.world_mut().entity_mut(camera).insert((at, frustum));
+}
+
+#[test]
+fn out_of_sight_it_is_laid_seldom_and_is_right_soon_after_it_stops() {
+    let mut rest = Rest::new();
+    let ahead = Transform::from_xyz(0.0, 0.5, 10.0);
+    let away = ahead.looking_to(Vec3::Z, Vec3::Y);
+    let camera = look(&mut rest.lab, away);
+    rest.lab.run(0.2);
+    let mut places = HashSet::new();
+    for i in 0..16 {
+        rest.lab.get_mut::<Transform>(rest.a).translation.y = -0.01 * i as f32;
+        rest.lab.tick();
+        let at = parts(&rest.lab, rest.element)[0];
+        places.insert(at.translation().y.to_bits());
+    }
+    assert!((2..=3).contains(&places.len()), "{} times", places.len());
+    // Long after its last move.
+    rest.lab.run(0.2);
+    assert!(rest.goes(-0.15 * Vec3::Y, Vec3::Y));
+
+    // A camera that turns to it finds it right at once.
+    rest.lab.get_mut::<Transform>(rest.a).translation.y = -0.5;
+    rest.lab.tick();
+    turn(&mut rest.lab, camera, ahead);
+    rest.lab.tick();
+    assert!(rest.goes(-0.5 * Vec3::Y, Vec3::Y));
+}
+
+#[test]
+fn a_resting_coil_gets_coarser_as_the_camera_goes_away_and_finer_as_it_comes_back() {
+    let mut rest = Rest::new();
+    let camera = look(&mut rest.lab, Transform::from_xyz(0.0, 0.5, 3.0));
+    let mut vertices = |distance: f32| {
+        let at = Transform::from_xyz(0.0, 0.5, distance);
+        turn(&mut rest.lab, camera, at);
+        rest.lab.tick();
+        let mesh = rest.lab.get::<Mesh3d>(rest.coil);
+        let meshes = rest.lab.app.world().resource::<Assets<Mesh>>();
+        meshes.get(mesh).expect("loaded").count_vertices()
+    };
+    let away = [2.0, 6.0, 20.0, 60.0].map(&mut vertices);
+    assert!(away.windows(2).all(|w| w[1] < w[0]), "{away:?}");
+    let back = [60.0, 20.0, 6.0, 2.0].map(&mut vertices);
+    assert_eq!(back, [away[3], away[2], away[1], away[0]]);
+}
