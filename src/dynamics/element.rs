@@ -201,6 +201,33 @@ impl Element {
         (d, d.length() > 1e-9 * scale.max(1e-3))
     }
 
+    /// Inverse effective mass along the line, if no body that it holds turns or is freer one way than
+    /// another, and its ends are apart: then it does not depend on the line.
+    pub(crate) fn plain_inverse_mass(&self, bodies: &[Body]) -> Option<f64> {
+        if self.guide != Guide::Centres {
+            return None;
+        }
+        let mut places = [DVec3::ZERO; 2];
+        let mut sum = 0.0;
+        for (place, end) in places.iter_mut().zip(&self.ends) {
+            *place = match end {
+                End::Path(path) => path.position,
+                End::Body { index, .. } => {
+                    let body = &bodies[*index];
+                    let w = body.inverse_mass;
+                    if body.spin != Spin::Still || body.held.is_some() || w.x != w.y || w.y != w.z {
+                        return None;
+                    }
+                    sum += w.x;
+                    body.position
+                }
+            };
+        }
+        let scale = places[0].abs().max(places[1].abs()).max_element();
+        let apart = places[0].distance_squared(places[1]) > (1e-9 * scale.max(1e-3)).powi(2);
+        apart.then_some(sum)
+    }
+
     /// Notes on which side of end A end B is before a drift. A stiff spring that is far from rest
     /// drifts through the centre and is kicked back within one step; its force must not turn round on
     /// the way.

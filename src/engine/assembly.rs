@@ -356,6 +356,13 @@ fn element(row: &mut ElementRow, ends: [End; 2], bodies: &[Body]) -> Option<Elem
         direction: row.memory.direction,
         stiff_damper: false,
     };
+    if p.rest_length.is_some()
+        && element.law.is_none()
+        && let Some(inverse_mass) = element.plain_inverse_mass(bodies)
+    {
+        row.inverse_mass = inverse_mass;
+        return Some(element);
+    }
     let guided = element.guide != Guide::Centres;
     let mut line = element.line(bodies);
     if p.rest_length.is_none() {

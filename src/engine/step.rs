@@ -64,13 +64,12 @@ impl Step<'_> {
 
     /// Whether an end moves, or is not where it was after the last step.
     pub(super) fn has_moved(&self, row: &ElementRow, bodies: &RigidBodySet) -> bool {
-        let ends = row.held.iter().zip(row.memory.places).zip(row.watched);
-        ends.into_iter().any(|((held, last), watched)| {
+        if row.watched == [false; 2] && row.held.iter().all(|held| held.movable().is_some()) {
+            // Held by what elements move, and where it says.
+            return false;
+        }
+        row.held.iter().zip(row.memory.places).any(|(held, last)| {
             let now = match *held {
-                // Held at its own centre.
-                Held::Body {
-                    movable: Some(_), ..
-                } if !watched => return false,
                 Held::Body {
                     local,
                     movable: Some(_),
