@@ -47,22 +47,11 @@ impl Held {
     }
 }
 
-/// One element.
+/// One element. What every step needs stands first: thousands of rows do not fit into the processor's
+/// cache, and what is not read need not come.
 #[derive(Clone, Debug)]
+#[repr(C)]
 pub(super) struct ElementRow {
-    pub entity: Entity,
-    pub parameters: Parameters,
-    /// What stands beside it makes of it.
-    pub companion: Companion,
-    pub held: [Held; 2],
-    /// Which ends have to be looked for in every tick: what is not a body itself can be moved by the game.
-    pub watched: [bool; 2],
-    /// Why it takes no part at all, found before the step.
-    pub fault: Option<Fault>,
-    /// Why it does not act in this step, found within it.
-    pub passing: Option<Fault>,
-    /// What was said of it last, so that each message comes once.
-    pub said: Option<Fault>,
     /// A parameter or an end changed since the last tick.
     pub changed: bool,
     /// The rest length was found in this tick and has to be written back.
@@ -71,72 +60,87 @@ pub(super) struct ElementRow {
     pub tuned: bool,
     /// Whether some body of it was stepped, or none can be: then there is something to read out.
     pub active: bool,
-    pub memory: Memory,
+    /// Which ends have to be looked for in every tick: what is not a body itself can be moved by the game.
+    pub watched: [bool; 2],
+    pub entity: Entity,
+    /// What stands beside it makes of it.
+    pub companion: Companion,
+    pub held: [Held; 2],
+    /// Why it does not act in this step, found within it.
+    pub passing: Option<Fault>,
+    pub parameters: Parameters,
     /// Inverse of the effective mass of its ends along the line in the last step, 1/kg.
     pub inverse_mass: f64,
     /// How it was solved.
     pub outcome: Outcome,
     pub ledger: EnergyLedger,
+    pub memory: Memory,
+    /// Why it takes no part at all, found before the step.
+    pub fault: Option<Fault>,
+    /// What was said of it last, so that each message comes once.
+    pub said: Option<Fault>,
 }
 
 /// What an element remembers from step to step.
 #[derive(Clone, Copy, Debug, Default)]
+#[repr(C)]
 pub(super) struct Memory {
     /// Last well-defined direction from end A to end B.
     pub direction: Option<DVec3>,
+    /// Last length or twist.
+    pub length: f64,
     /// Where its ends were after the last step: a body's own point if elements can move it, else a point
     /// of the world.
     pub places: [Option<DVec3>; 2],
-    /// The bodies' scales, held against the rounding noise of their transforms.
-    pub scales: [Option<DVec3>; 2],
-    /// Last twist, full turns counted.
-    pub angle: f64,
-    /// Last length or twist.
-    pub length: f64,
     /// The last coefficients, and how exact they were.
     pub memo: Memo,
     pub controller: Controller,
+    /// Last twist, full turns counted.
+    pub angle: f64,
+    /// The bodies' scales, held against the rounding noise of their transforms.
+    pub scales: [Option<DVec3>; 2],
 }
 
-/// One movable body that elements act on.
+/// One movable body that elements act on; what every step needs stands first.
 #[derive(Clone, Copy, Debug)]
+#[repr(C)]
 pub(super) struct BodyRow {
     pub entity: Entity,
     pub handle: RigidBodyHandle,
-    pub context: Entity,
     /// Some element holds it off its centre of mass.
     pub turns: bool,
-    /// How many elements act on it.
-    pub elements: u32,
-    /// Which ones, as a hash; a change wakes it.
-    pub signature: u64,
     /// Its mass, its elements or the user's share changed since the last step.
     pub disturbed: bool,
-    /// Index within its component.
-    pub slot: usize,
-    pub user: ExternalForce,
-    /// What we give it over the coming step; `None` where it is not stepped by us.
-    pub share: Option<Share>,
-    /// Since when and where it has been at rest.
-    pub rest: Option<Rest>,
-    /// How much of a free body's motion contacts and joints leave it; see [`super::held`].
-    pub mobility: f64,
-    /// The direction in which contacts hold it, for a body that does not turn.
-    pub held: Option<DVec3>,
     /// What keeps it from moving freely.
     pub support: Support,
+    pub user: ExternalForce,
+    /// Since when and where it has been at rest.
+    pub rest: Option<Rest>,
+    /// What we give it over the coming step; `None` where it is not stepped by us.
+    pub share: Option<Share>,
     /// What the coming step is to do.
     pub expected: Option<Expected>,
+    /// Centre of mass and its velocity after the last step.
+    pub now: (DVec3, DVec3),
+    pub context: Entity,
+    /// How much of a free body's motion contacts and joints leave it; see [`super::held`].
+    pub mobility: f64,
     /// Velocities of a link of a multibody, which the engine shows too late.
     pub link: Option<Twist>,
+    /// The body that pushed it most in the last step.
+    pub partner: Option<Partner>,
     /// Work that elements did on it over the last step, J.
     pub given_work: f64,
     /// Work that a contact with a moving body seems to have created, J.
     pub contact_work: f64,
-    /// The body that pushed it most in the last step.
-    pub partner: Option<Partner>,
-    /// Centre of mass and its velocity after the last step.
-    pub now: (DVec3, DVec3),
+    /// Index within its component.
+    pub slot: usize,
+    /// The direction in which contacts hold it, for a body that does not turn.
+    pub held: Option<DVec3>,
+    /// How many elements act on it.
+    pub elements: u32,
+    /// Which ones, as a hash; a change wakes it.
+    pub signature: u64,
 }
 
 impl BodyRow {
