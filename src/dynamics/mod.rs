@@ -5,7 +5,7 @@
 //! what [`guide`] gives instead), [`poles`] gives
 //! the exact coefficients; [`kick`] acts for a lone element, [`pair`] for one on bodies that do not turn,
 //! [`shock`] for one of those with a force [`law`] of its own, [`network`] for elements that share bodies,
-//! with the linear algebra in [`system`] and [`strut`], and [`points`] for many that turn none. [`guard`] keeps strong
+//! with the linear algebra in [`system`] and [`strut`], and [`points`] for those that turn none. [`guard`] keeps strong
 //! damping honest, and [`bound`] a network, by their [`energy`]. [`delivery`] says which impulse and force
 //! make the engine arrive there.
 

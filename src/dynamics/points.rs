@@ -1,4 +1,4 @@
-//! A large network of ends that do not turn: cloths, lattices, long chains.
+//! A network of ends that do not turn: cloths, lattices, chains.
 //!
 //! What it does is what [`super::network`] does, to rounding; but here an end is a point mass instead of a
 //! rigid body, so that thousands of them stay in the processor's cache. [`kick`] has the step,
@@ -297,7 +297,7 @@ impl Points {
     }
 
     /// Bounds on (ω h)² of the stiffest mode, and on 2γh of the most damped one.
-    fn bounds(&mut self, step: f64) -> (f64, f64) {
+    pub(super) fn bounds(&mut self, step: f64) -> (f64, f64) {
         if self.any_held {
             self.add_up();
         }

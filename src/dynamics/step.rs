@@ -74,7 +74,7 @@ impl Component {
             self.memory.controller = controller;
             return self.pay(time);
         }
-        if self.is_of_points() {
+        if self.is_of_points(time) {
             let outcome =
                 self.advance_points(time, |motion| controller.drive(motion, time, accuracy));
             self.memory.controller = controller;

@@ -1,4 +1,4 @@
-//! Steps that win nothing: large networks of points, what is watched after every step, and what is done where
+//! Steps that win nothing: networks of points, what is watched after every step, and what is done where
 //! too much was won.
 
 use super::{Component, Memory};
@@ -11,12 +11,26 @@ use crate::dynamics::tolerance::{Method, Motion, Outcome};
 /// Tries at moving less far; then nothing moves at all.
 const HALVINGS: u32 = 12;
 
+/// (ω h)² of the stiffest mode up to which the matrix is so well conditioned that a few iterations solve it.
+const SOFT: f64 = 9.0;
+
 impl Component {
-    /// Whether it is large, and no body turns.
-    pub(super) fn is_of_points(&self) -> bool {
-        !self.stepped
-            && 3 * self.bodies.len() > DENSE
-            && Points::can_be(&self.elements, &self.bodies)
+    /// Whether no body turns, and iterations are the cheaper way: it is large, or so soft that they end soon.
+    /// Then it has been taken in.
+    pub(super) fn is_of_points(&mut self, time: f64) -> bool {
+        let plain = !self.stepped
+            && self.elements.len() > 1
+            && Points::can_be(&self.elements, &self.bodies);
+        if !plain {
+            return false;
+        }
+        let Memory {
+            points,
+            max_iterations,
+            ..
+        } = &mut self.memory;
+        points.load_from(&self.elements, &self.bodies, *max_iterations);
+        3 * self.bodies.len() > DENSE || points.bounds(time).0 < SOFT
     }
 
     /// The step of a network of points.
@@ -25,13 +39,7 @@ impl Component {
         time: f64,
         drive: impl FnOnce(&mut Points) -> Outcome,
     ) -> Outcome {
-        let Memory {
-            points,
-            bound,
-            max_iterations,
-            ..
-        } = &mut self.memory;
-        points.load_from(&self.elements, &self.bodies, *max_iterations);
+        let Memory { points, bound, .. } = &mut self.memory;
         if self.bodies.iter().any(|body| body.mobility < 1.0) {
             bound.forget();
         } else {
