@@ -28,6 +28,8 @@ pub(crate) struct Assembly {
     /// Force and torque of all elements on each of them, where that is asked for.
     loads: Vec<(DVec3, DVec3)>,
     state: State,
+    /// It was found asleep.
+    asleep: bool,
     outcome: Outcome,
     ledger: Ledger,
     partners: Partners,
@@ -64,6 +66,7 @@ impl Assembly {
     /// Readies it for another component.
     pub(super) fn forget(&mut self) {
         self.ledger.clear();
+        self.asleep = false;
     }
 
     /// Reads bodies and elements, and decides whether there is anything to do.
@@ -76,13 +79,17 @@ impl Assembly {
         set: &mut RigidBodySet,
         stale: &mut bool,
     ) {
+        self.state = State::Resting;
+        if step.quiet && self.asleep && step.is_left_alone(members, elements, bodies, set) {
+            return;
+        }
+        self.asleep = false;
         let component = &mut self.component;
         component.bodies.clear();
         component.elements.clear();
         self.start.clear();
         component.stepped = false;
         component.owed = 0.0;
-        self.state = State::Resting;
         for (slot, b) in members.bodies.iter().enumerate() {
             let row = &mut bodies[*b];
             row.slot = slot;
@@ -118,6 +125,7 @@ impl Assembly {
             elements[*e].active = awake;
         }
         if !awake {
+            self.asleep = true;
             return;
         }
         if disturbed {

@@ -112,9 +112,11 @@ pub(crate) fn read_users(
         (Changed<ExternalForce>, Allow<Disabled>),
     >,
 ) {
+    scene.loaded = false;
     for (entity, mut load, component) in &mut loads {
         let load = load.bypass_change_detection();
         let new = load.read_user(component);
+        scene.loaded |= new;
         if let Some(row) = scene.body(load.slot, entity) {
             row.disturbed |= new;
             row.user = load.user;

@@ -3,6 +3,7 @@
 use super::assembly::{Assembly, Members};
 use super::scene::{BodyRow, ElementRow, Held};
 use bevy::prelude::Entity;
+use bevy_rapier3d::rapier::dynamics::RigidBodyHandle;
 use std::ops::Range;
 
 /// One component: elements that share bodies, and those bodies.
@@ -14,6 +15,8 @@ pub(super) struct Group {
     pub context: Entity,
     /// Index of what it is assembled in; none for a lone element on bodies that it does not turn.
     pub assembly: Option<usize>,
+    /// Its bodies, where it has been found asleep and nothing but them can wake it.
+    pub dozing: Option<[RigidBodyHandle; 2]>,
 }
 
 /// All components, as runs of two flat arrays.
@@ -87,6 +90,7 @@ impl Groups {
             bodies: body_starts[g]..body_starts[g + 1],
             context: bodies[self.bodies[body_starts[g]]].context,
             assembly: None,
+            dozing: None,
         }));
     }
 
@@ -114,6 +118,10 @@ impl Groups {
 
     pub(super) fn list(&self) -> &[Group] {
         &self.list
+    }
+
+    pub(super) fn at(&mut self, group: usize) -> &mut Group {
+        &mut self.list[group]
     }
 
     /// Indices of a group's elements and bodies.

@@ -15,7 +15,9 @@ use crate::dynamics::shock::Shock;
 use crate::dynamics::tolerance::{Method, Outcome};
 use bevy::math::DVec3;
 use bevy_rapier3d::prelude::ExternalForce;
-use bevy_rapier3d::rapier::dynamics::{LockedAxes, RigidBody as RapierBody, RigidBodySet};
+use bevy_rapier3d::rapier::dynamics::{
+    LockedAxes, RigidBody as RapierBody, RigidBodyHandle, RigidBodySet,
+};
 
 /// One end.
 #[derive(Clone, Copy, Default)]
@@ -32,6 +34,8 @@ struct Point {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Handled {
     Done,
+    /// Asleep, and only these, its bodies, can wake it.
+    Asleep([RigidBodyHandle; 2]),
     /// Out of the ordinary in this step.
     No,
     /// Out of the ordinary for as long as can be seen.
@@ -97,7 +101,12 @@ impl Step<'_> {
                 return Handled::No;
             }
             row.active = false;
-            return Handled::Done;
+            return match found {
+                [Some((a, _)), Some((b, _))] if row.watched == [false; 2] => {
+                    Handled::Asleep([bodies[a].handle, bodies[b].handle])
+                }
+                _ => Handled::Done,
+            };
         }
         let mut points = [Point::default(); 2];
         for (point_at, held) in points.iter_mut().zip(&row.held) {

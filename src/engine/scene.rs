@@ -192,6 +192,8 @@ pub struct Scene {
     pub(super) time: f64,
     /// Something was found amiss after the scene was prepared: look at everything again.
     pub(super) stale: bool,
+    /// A user's force on some body changed in this tick.
+    pub(super) loaded: bool,
     /// Some body was given something in this tick.
     pub(super) delivered: bool,
     /// Some element has no end that elements can move.

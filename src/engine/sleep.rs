@@ -5,6 +5,7 @@
 //! each has been at rest, and at the same place, for longer than a turning point lasts; and one that is
 //! disturbed is woken as a whole.
 
+use super::assembly::Members;
 use super::body::is_movable;
 use super::scene::{BodyRow, ElementRow};
 use super::step::Step;
@@ -79,6 +80,25 @@ pub(super) fn omega_of(row: &ElementRow) -> f32 {
 }
 
 impl Step<'_> {
+    /// Whether all of a component that was asleep is so still, and nothing that holds it has moved.
+    pub(super) fn is_left_alone(
+        &self,
+        members: &Members,
+        elements: &[ElementRow],
+        bodies: &[BodyRow],
+        set: &RigidBodySet,
+    ) -> bool {
+        let sleeps = |b: &usize| {
+            let body = set.get(bodies[*b].handle);
+            body.is_some_and(RapierBody::is_sleeping)
+        };
+        members.bodies.iter().all(sleeps)
+            && !members
+                .elements
+                .iter()
+                .any(|e| self.has_moved(&elements[*e], set))
+    }
+
     /// Whether a body that is awake moves, or has not rested long enough yet.
     pub(super) fn is_restless(&self, row: &mut BodyRow, body: &RapierBody, omega: f32) -> bool {
         let time = self.plan.time as f32;

@@ -15,7 +15,7 @@ use bevy::ecs::query::Allow;
 use bevy::prelude::*;
 use bevy::tasks::ComputeTaskPool;
 use bevy_rapier3d::prelude::*;
-use bevy_rapier3d::rapier::dynamics::RigidBodySet;
+use bevy_rapier3d::rapier::dynamics::{RigidBody as RapierBody, RigidBodySet};
 use std::cell::Cell;
 
 /// What of a Rapier context the step needs.
@@ -91,6 +91,7 @@ pub(crate) fn solve(
             ground: &Ground::default(),
             accuracy: settings.accuracy(),
             links: joints.multibody_joints.multibodies().next().is_some(),
+            quiet: scene.changed.is_empty() && !scene.loaded && !scene.renewed,
             delivered: Cell::new(false),
         };
         scene.step(context, &step, &mut set.bodies, &mut spare);
@@ -111,8 +112,16 @@ impl Scene {
             ..
         } = self;
         let mut special = Vec::new();
-        for (g, group) in groups.list().iter().enumerate() {
+        for g in 0..groups.list().len() {
+            let group = &groups.list()[g];
             if group.context != context {
+                continue;
+            }
+            if let (true, Some(handles)) = (step.quiet, &group.dozing)
+                && handles
+                    .iter()
+                    .all(|handle| set.get(*handle).is_some_and(RapierBody::is_sleeping))
+            {
                 continue;
             }
             let members = groups.members(group);
@@ -124,7 +133,11 @@ impl Scene {
                 continue;
             };
             let handled = step.lone(&mut elements[*element], bodies, members.bodies, set, stale);
-            if handled != Handled::Done {
+            let dozing = match handled {
+                Handled::Asleep(handles) => Some(handles),
+                _ => None,
+            };
+            if matches!(handled, Handled::No | Handled::Never) {
                 spare.gather(step, &members, elements, bodies, set, stale);
                 spare.advance(step.plan.time, step.accuracy);
                 spare.deliver(step, &members, elements, bodies, set);
@@ -133,6 +146,7 @@ impl Scene {
             if handled == Handled::Never {
                 special.push(g);
             }
+            groups.at(g).dozing = dozing;
         }
         advance(assemblies, step.plan.time, step.accuracy);
         for group in groups.list().iter().filter(|g| g.context == context) {

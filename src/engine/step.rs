@@ -22,6 +22,8 @@ pub(super) struct Step<'a> {
     pub accuracy: Accuracy,
     /// There are multibodies at all.
     pub links: bool,
+    /// Nothing but their own bodies and moved ends can have woken what sleeps.
+    pub quiet: bool,
     /// Something was given to some body.
     pub delivered: Cell<bool>,
 }
