@@ -1,7 +1,7 @@
 //! After the engine's step: what each element shows.
 
 use super::body::{is_movable, point_of, turning_of};
-use super::held::{Context, observe};
+use super::held::{Context, center_of, observe};
 use super::parts::IsElement;
 use super::prepare::report;
 use super::scene::{BodyRow, ElementRow, Held, Scene};
@@ -154,12 +154,7 @@ fn look(scene: &mut Scene, sets: &Query<&RapierRigidBodySet>, contexts: &Query<C
         match context.bodies.get(row.handle) {
             Some(body) => {
                 observe(row, body, context);
-                let mut center = body.position().translation.as_dvec3();
-                let local = body.local_center_of_mass();
-                if local != Vec3::ZERO {
-                    center += body.position().rotation.as_dquat().normalize() * local.as_dvec3();
-                }
-                row.now = (center, body.linvel().as_dvec3());
+                row.now = (center_of(body), body.linvel().as_dvec3());
                 // The engine takes bodies out that it cannot step.
                 scene.stale |= !is_movable(body);
             }

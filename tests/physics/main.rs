@@ -20,6 +20,7 @@ mod laws;
 mod messages;
 mod natural_frequency;
 mod networks;
+mod passenger;
 mod quarter_car;
 mod recommend;
 mod repeatability;
