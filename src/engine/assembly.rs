@@ -104,6 +104,13 @@ impl Assembly {
                 free.velocity = link.linear.as_dvec3();
                 free.set_angular_velocity(link.angular.as_dvec3());
             }
+            row.displaced = row.now.0 != free.position;
+            row.lag = step.lag_of_held(row, body);
+            if row.lag > 0.0 {
+                free.drift(-row.lag);
+                // A network maps no velocities anyway.
+                component.stepped |= members.elements.len() == 1;
+            }
             component.stepped |= step.lag(row.handle, body) > 0.0;
             component.bodies.push(free);
             self.start.push(free);

@@ -215,6 +215,19 @@ pub(super) enum Support {
     Contact { push: DVec3, on_fixed: bool },
 }
 
+impl Support {
+    /// Contacts, some of them with a body that can move.
+    pub(super) fn is_moving(&self) -> bool {
+        matches!(
+            self,
+            Self::Contact {
+                on_fixed: false,
+                ..
+            }
+        )
+    }
+}
+
 /// What is known of a Rapier context after its step.
 pub(super) struct Context<'a> {
     pub simulation: &'a RapierContextSimulation,
@@ -246,8 +259,9 @@ pub(super) fn observe(row: &mut BodyRow, body: &RapierBody, context: &Context) {
     row.link = expected.of_late(shown);
     let change = expected.change(&row.link.unwrap_or(shown), body);
     let mean = expected.mean(shown);
-    // The engine's substeps do not move it by its mean velocity.
-    let moved = (center_of(body) - row.now.0).as_vec3() / expected.time;
+    // The engine's substeps do not move it by its mean velocity. Seen behind, it has moved by so much less.
+    let behind = row.lag as f32 * (shown.linear - expected.start.linear);
+    let moved = ((center_of(body) - row.now.0).as_vec3() - behind) / expected.time;
     row.given_work = expected.given.work(&Twist {
         linear: moved,
         ..mean
@@ -336,15 +350,13 @@ pub(super) fn deliver(
         _ => (force_for(free.acceleration, free.inverse_mass), free.torque),
     };
     let mut force = (given.0 / time, given.1 / time);
-    // Against a partner that moves, the force has to act evenly: each jerk would reach it.
-    let evenly = matches!(
-        support,
-        Support::Contact {
-            on_fixed: false,
-            ..
+    if support.is_moving() && terms.takes_impulses {
+        // Against a partner that moves, the force has to act evenly: each jerk would reach it.
+        body.set_linvel(free.velocity.as_vec3(), false);
+        if free.spin != Spin::Still {
+            body.set_angvel(free.angular_velocity().as_vec3(), false);
         }
-    );
-    if terms.takes_impulses && terms.schedule.substeps > 1 && !evenly {
+    } else if terms.takes_impulses && terms.schedule.substeps > 1 {
         let back = 1.0 / (n - 1.0);
         let total = (force.0 + outside.0, force.1 + outside.1);
         let linvel = free.velocity - back * time * (free.inverse_mass * total.0);

@@ -76,7 +76,7 @@ impl Ledger {
         time: f64,
     ) {
         let (mut touch, mut moved, mut given) = (Touch::Nothing, false, 0.0);
-        for (row, body) in rows.zip(bodies.iter()) {
+        for row in rows {
             let by = match row.support {
                 Support::None | Support::Unknown => Touch::Nothing,
                 Support::Contact { on_fixed: true, .. } => Touch::Ground,
@@ -86,7 +86,7 @@ impl Ledger {
             if by > touch {
                 touch = by;
             }
-            moved |= row.now.0 != body.position;
+            moved |= row.displaced;
             given += row.given_work + row.contact_work;
         }
         let before = std::mem::replace(&mut self.touched, touch);

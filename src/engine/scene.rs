@@ -135,6 +135,10 @@ pub(super) struct BodyRow {
     pub contact_work: f64,
     /// Index within its component.
     pub slot: usize,
+    /// How far behind its present place it is seen, s: see [`super::step::Step::lag`].
+    pub lag: f64,
+    /// Something else than the engine's step has moved it.
+    pub displaced: bool,
     /// The direction in which contacts hold it, for a body that does not turn.
     pub held: Option<DVec3>,
     /// How many elements act on it.
@@ -154,6 +158,8 @@ impl BodyRow {
             signature: 0,
             disturbed: true,
             slot: 0,
+            lag: 0.0,
+            displaced: false,
             user: ExternalForce::default(),
             share: None,
             rest: None,
