@@ -129,6 +129,7 @@ fn balls_that_fall_on_a_cloth_win_no_energy() {
     for (stiffness, damping, friction) in [
         (100.0, 0.0, 0.0),
         (100.0, 0.0, 0.5),
+        (300.0, 0.3, 0.0),
         (300.0, 0.3, 0.5),
         (300.0, 2.0, 0.5),
     ] {
@@ -144,12 +145,11 @@ fn balls_that_fall_on_a_cloth_win_no_energy() {
     }
 }
 
-/// Stiffness beyond what a step resolves (ω·dt of a point 3.7 to 15), under smooth balls that weigh sixty times
+/// Stiffness beyond what a step resolves (ω·dt of a point 6.7 and 15), under balls that weigh sixty times
 /// as much as what they fall on. Pressed together so hard, Rapier's contacts give energy too; it is taken back.
 #[test]
 fn a_cloth_too_stiff_for_its_step_calms_down_under_balls() {
     for (stiffness, damping, friction) in [
-        (300.0, 0.3, 0.0),
         (1000.0, 0.0, 0.5),
         (1000.0, 1.0, 0.0),
         (5000.0, 0.0, 0.0),
