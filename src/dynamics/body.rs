@@ -161,6 +161,12 @@ impl Body {
         self.rotation = (frame * self.principal.inverse()).normalize();
     }
 
+    /// Whether its inverse mass is the same along all axes.
+    pub(crate) fn moves_alike(&self) -> bool {
+        let w = self.inverse_mass;
+        w.x == w.y && w.y == w.z
+    }
+
     /// Change of velocity by an impulse.
     pub(crate) fn answer(&self, impulse: DVec3) -> DVec3 {
         self.inverse_mass * self.left(impulse)

@@ -192,13 +192,17 @@ impl Hold {
     }
 }
 
+/// Distance of two points below which it may be rounding of the engine's f32.
+pub(crate) fn rounding(a: DVec3, b: DVec3) -> f64 {
+    1e-9 * a.abs().max(b.abs()).max_element().max(1e-3)
+}
+
 impl Element {
     /// The separation from end A to end B, and how much of it is more than rounding of the engine's f32.
     fn separation(&self, holds: &[Hold; 2]) -> (DVec3, bool) {
         let d = holds[1].position - holds[0].position;
-        let scale = holds.map(|h| h.position.abs().max_element());
-        let scale = scale[0].max(scale[1]);
-        (d, d.length() > 1e-9 * scale.max(1e-3))
+        let [a, b] = holds.map(|h| h.position);
+        (d, d.length() > rounding(a, b))
     }
 
     /// Inverse effective mass along the line, if no body that it holds turns or is freer one way than
@@ -214,18 +218,16 @@ impl Element {
                 End::Path(path) => path.position,
                 End::Body { index, .. } => {
                     let body = &bodies[*index];
-                    let w = body.inverse_mass;
-                    if body.spin != Spin::Still || body.held.is_some() || w.x != w.y || w.y != w.z {
+                    if body.spin != Spin::Still || body.held.is_some() || !body.moves_alike() {
                         return None;
                     }
-                    sum += w.x;
+                    sum += body.inverse_mass.x;
                     body.position
                 }
             };
         }
-        let scale = places[0].abs().max(places[1].abs()).max_element();
-        let apart = places[0].distance_squared(places[1]) > (1e-9 * scale.max(1e-3)).powi(2);
-        apart.then_some(sum)
+        let [a, b] = places;
+        (a.distance(b) > rounding(a, b)).then_some(sum)
     }
 
     /// Notes on which side of end A end B is before a drift. A stiff spring that is far from rest

@@ -95,9 +95,7 @@ impl Line {
         if self.isotropic || self.guided || lateral_square == 0.0 {
             return 0.0;
         }
-        let half = 0.5 * step;
-        let reach = (self.length * self.length + half * half * lateral_square).sqrt();
-        (2.0 * lateral_square / (self.length.abs() + reach)).copysign(self.length)
+        turning(self.length, lateral_square, step)
     }
 
     /// Whether pushing along the line leaves the motion across it alone: no body turns, or is freer along
@@ -128,15 +126,12 @@ impl Line {
 
     /// Length change over the step that led here, divided by the step: with it damping is second order.
     pub(crate) fn backward_rate(&self, motion: &Motion, step: f64) -> f64 {
-        let along = self.length - step * motion.axial;
-        if self.isotropic || self.guided || along * self.length <= 0.0 {
-            // Through the centre: the line flips, its rate does not.
-            return motion.axial - 0.5 * step * motion.arms;
-        }
-        let before = (along * along + step * step * motion.lateral_square)
-            .sqrt()
-            .copysign(along);
-        (self.length - before) / step - 0.5 * step * motion.arms
+        let rate = if self.isotropic || self.guided {
+            motion.axial
+        } else {
+            backward_rate(self.length, motion.axial, motion.lateral_square, step)
+        };
+        rate - 0.5 * step * motion.arms
     }
 
     /// An impulse pair along the line, positive pushing the ends apart.
@@ -171,4 +166,24 @@ impl Line {
             }
         }
     }
+}
+
+/// |lateral|²/L, bounded where the line turns further than the step can follow.
+pub(super) fn turning(length: f64, lateral_square: f64, step: f64) -> f64 {
+    let half = 0.5 * step;
+    let reach = (length * length + half * half * lateral_square).sqrt();
+    (2.0 * lateral_square / (length.abs() + reach)).copysign(length)
+}
+
+/// Change of a length over the step that led there, divided by the step, for ends that moved straight.
+pub(super) fn backward_rate(length: f64, axial: f64, lateral_square: f64, step: f64) -> f64 {
+    let along = length - step * axial;
+    if along * length <= 0.0 {
+        // Through the centre: the line flips, its rate does not.
+        return axial;
+    }
+    let before = (along * along + step * step * lateral_square)
+        .sqrt()
+        .copysign(along);
+    (length - before) / step
 }

@@ -6,6 +6,7 @@
 
 use super::kick::Memo;
 use super::law::Law;
+use super::line;
 use super::poles::{Poles, RESOLVED_PHASE};
 use super::shock::Shock;
 use super::step::EXTRAPOLATION_LIMIT;
@@ -349,22 +350,15 @@ impl Line {
         if self.isotropic || lateral_square == 0.0 {
             return 0.0;
         }
-        let half = 0.5 * step;
-        let reach = (self.length * self.length + half * half * lateral_square).sqrt();
-        (2.0 * lateral_square / (self.length.abs() + reach)).copysign(self.length)
+        line::turning(self.length, lateral_square, step)
     }
 
     /// Length change over the step that led here, divided by the step: with it damping is second order.
     pub(super) fn backward_rate(&self, step: f64) -> f64 {
-        let along = self.length - step * self.axial;
-        if self.isotropic || along * self.length <= 0.0 {
-            // Through the centre: the line flips, its rate does not.
+        if self.isotropic {
             return self.axial;
         }
-        let before = (along * along + step * step * self.lateral_square)
-            .sqrt()
-            .copysign(along);
-        (self.length - before) / step
+        line::backward_rate(self.length, self.axial, self.lateral_square, step)
     }
 }
 

@@ -8,7 +8,7 @@ mod kick;
 mod solve;
 
 use super::body::{Body, Spin};
-use super::element::{Element, End};
+use super::element::{Element, End, rounding};
 use super::energy::Energy;
 use super::guide::Guide;
 use super::step::EXTRAPOLATION_LIMIT;
@@ -165,19 +165,18 @@ impl Wire {
 
 /// Square of a distance that may be rounding of the engine's f32.
 fn noise(a: &Point, b: &Point) -> f64 {
-    let scale = a.position.abs().max(b.position.abs()).max_element();
-    (1e-9 * scale.max(1e-3)).powi(2)
+    rounding(a.position, b.position).powi(2)
 }
 
 impl Points {
     /// Whether a network is of this kind.
     pub(super) fn can_be(elements: &[Element], bodies: &[Body]) -> bool {
-        bodies.iter().all(|body| {
-            let w = body.inverse_mass;
-            body.spin == Spin::Still && w.x > 0.0 && w.x == w.y && w.y == w.z
-        }) && elements
+        bodies
             .iter()
-            .all(|element| element.guide == Guide::Centres && element.law.is_none())
+            .all(|body| body.spin == Spin::Still && body.inverse_mass.x > 0.0 && body.moves_alike())
+            && elements
+                .iter()
+                .all(|element| element.guide == Guide::Centres && element.law.is_none())
     }
 
     /// Takes the network in as it stands.

@@ -30,7 +30,8 @@ pub(crate) struct Component {
     /// Velocities are not mapped to the true ones and back: what delivers the motion can order only the
     /// stepped ones.
     pub stepped: bool,
-    /// Energy that it has won where it should not, and that this step is to take, J.
+    /// Energy that it has won where it should not and that its motion could not pay, J: then the step is one that
+    /// only loses energy.
     pub owed: f64,
     pub(super) memory: Memory,
 }

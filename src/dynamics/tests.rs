@@ -11,7 +11,7 @@ use bevy::prelude::default;
 
 const DT: f64 = 1.0 / 60.0;
 
-fn point(mass: f64, position: DVec3, gravity: DVec3) -> Body {
+pub(super) fn point(mass: f64, position: DVec3, gravity: DVec3) -> Body {
     Body {
         position,
         velocity: DVec3::ZERO,
@@ -38,7 +38,7 @@ fn turning(mut body: Body, inertia: DVec3, velocity: DVec3) -> Body {
     body
 }
 
-fn element(a: End, b: End, stiffness: f64, damping: f64, rest_length: f64) -> Element {
+pub(super) fn element(a: End, b: End, stiffness: f64, damping: f64, rest_length: f64) -> Element {
     Element {
         ends: [a, b],
         stiffness,

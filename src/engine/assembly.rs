@@ -4,7 +4,6 @@ use super::body::{deliver, read, turning_of};
 use super::check::Fault;
 use super::forces::Share;
 use super::held::{self, Expected, Support};
-use super::jointed;
 use super::passive::Ledger;
 use super::scene::{BodyRow, ElementRow, Held};
 use super::sleep::omega_of;
@@ -17,7 +16,7 @@ use crate::dynamics::step::Component;
 use crate::dynamics::tolerance::{Accuracy, Outcome};
 use bevy::math::DVec3;
 use bevy_rapier3d::prelude::*;
-use bevy_rapier3d::rapier::dynamics::{RigidBody as RapierBody, RigidBodySet};
+use bevy_rapier3d::rapier::dynamics::RigidBodySet;
 
 /// A component with its bodies and elements, kept from tick to tick.
 #[derive(Default)]
@@ -313,21 +312,6 @@ impl Assembly {
 }
 
 impl Step<'_> {
-    /// What is known of a body that the engine has not stepped yet.
-    fn first_support(
-        &self,
-        row: &BodyRow,
-        body: &RapierBody,
-        load: (DVec3, DVec3),
-        set: &RigidBodySet,
-    ) -> Support {
-        let free = read(body, self.engine.gravity, &row.user, true);
-        match jointed::share(row.handle, &free, load, set, self.joints) {
-            Some(share) => Support::Tied(share),
-            None => self.ground.under(body, set, self.colliders),
-        }
-    }
-
     fn end(&self, held: Held, guide: Guide, bodies: &[BodyRow], set: &RigidBodySet) -> End {
         if let Held::Body {
             handle,

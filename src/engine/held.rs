@@ -314,8 +314,7 @@ pub(super) fn mobility(row: &BodyRow, support: Support, free: &Body, force: DVec
 /// is all that contacts hold.
 pub(super) fn held(free: &Body, mobility: f64, direction: Option<DVec3>) -> Body {
     let mut body = *free;
-    let w = free.inverse_mass;
-    let alike = w.x == w.y && w.y == w.z && free.spin == Spin::Still;
+    let alike = free.moves_alike() && free.spin == Spin::Still;
     if let Some(direction) = direction.filter(|_| alike && mobility < 1.0) {
         body.mobility = mobility.max(STIFF);
         body.held = Some(direction);

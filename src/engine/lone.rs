@@ -9,6 +9,7 @@ use super::held::{Expected, Support};
 use super::scene::{BodyRow, ElementRow, Held};
 use super::sleep::keep_awake;
 use super::step::Step;
+use crate::dynamics::element::rounding;
 use crate::dynamics::guide::Guide;
 use crate::dynamics::pair::{Moving, Pair, Separation};
 use crate::dynamics::shock::Shock;
@@ -136,8 +137,7 @@ impl Step<'_> {
         }
         let [a, b] = points;
         let d = b.position - a.position;
-        let scale = a.position.abs().max(b.position.abs()).max_element();
-        let rounding = 1e-9 * scale.max(1e-3);
+        let rounding = rounding(a.position, b.position);
         let rest_length = row.parameters.rest_length.map(f64::from);
         let coincide = d.length_squared() <= rounding * rounding;
         if coincide && row.memory.direction.is_none() && rest_length != Some(0.0) {

@@ -47,7 +47,7 @@ pub(super) struct Ledger {
 }
 
 /// What touches a component.
-#[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 enum Touch {
     #[default]
     Nothing,
@@ -77,20 +77,16 @@ impl Ledger {
     ) {
         let (mut touch, mut moved, mut given) = (Touch::Nothing, false, 0.0);
         for row in rows {
-            let by = match row.support {
+            touch = touch.max(match row.support {
                 Support::None | Support::Unknown => Touch::Nothing,
                 Support::Contact { on_fixed: true, .. } => Touch::Ground,
                 Support::Contact { .. } => Touch::Moving,
                 Support::Joint | Support::Tied(_) => Touch::Tied,
-            };
-            if by > touch {
-                touch = by;
-            }
+            });
             moved |= row.displaced;
             given += row.given_work + row.contact_work;
         }
-        let before = std::mem::replace(&mut self.touched, touch);
-        let touch = if before > touch { before } else { touch };
+        let touch = touch.max(std::mem::replace(&mut self.touched, touch));
         if touch == Touch::Tied || moved {
             return self.clear();
         }

@@ -1,7 +1,10 @@
 //! What touches a body: which contacts push it, and which moving body pushes most.
 
+use super::body::read;
 use super::held::{Context, Support};
+use super::jointed;
 use super::scene::BodyRow;
+use super::step::Step;
 use crate::dynamics::body::Body;
 use bevy::math::DVec3;
 use bevy_rapier3d::rapier::dynamics::{RigidBody as RapierBody, RigidBodyHandle, RigidBodySet};
@@ -67,6 +70,23 @@ pub(super) fn support(
         }
     }
     (contact(push, on_fixed), partner)
+}
+
+impl Step<'_> {
+    /// What is known of a body that the engine has not stepped yet.
+    pub(super) fn first_support(
+        &self,
+        row: &BodyRow,
+        body: &RapierBody,
+        load: (DVec3, DVec3),
+        set: &RigidBodySet,
+    ) -> Support {
+        let free = read(body, self.engine.gravity, &row.user, true);
+        match jointed::share(row.handle, &free, load, set, self.joints) {
+            Some(share) => Support::Tied(share),
+            None => self.ground.under(body, set, self.colliders),
+        }
+    }
 }
 
 pub(super) fn contact(push: DVec3, on_fixed: bool) -> Support {

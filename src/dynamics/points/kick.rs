@@ -1,6 +1,7 @@
 //! The kick at the half drift; see [`crate::dynamics::network`], whose formulas these are.
 
-use super::{Point, Points};
+use super::{Line, Point, Points};
+use crate::dynamics::line;
 use crate::dynamics::network::{damper_placement, placement, settling};
 use bevy::math::DVec3;
 
@@ -44,9 +45,7 @@ impl Bar {
         if self.isotropic || lateral_square == 0.0 {
             return 0.0;
         }
-        let half = 0.5 * step;
-        let reach = (self.length * self.length + half * half * lateral_square).sqrt();
-        (2.0 * lateral_square / (self.length.abs() + reach)).copysign(self.length)
+        line::turning(self.length, lateral_square, step)
     }
 
     fn of<'a, T>(&self, all: &'a [T]) -> [&'a T; 2] {
@@ -100,10 +99,10 @@ impl Points {
         self.bars.clear();
         for (index, wire) in self.wires.iter().enumerate() {
             let ends = wire.of(&self.points);
-            let Some(line) = wire.line(ends) else {
+            let Some(Line { direction, length }) = wire.line(ends) else {
                 continue;
             };
-            let ([a, b], u, k) = (ends, line.direction, wire.stiffness);
+            let ([a, b], u, k) = (ends, direction, wire.stiffness);
             let velocity = b.velocity - a.velocity;
             let axial = velocity.dot(u);
             let lateral = velocity - axial * u;
@@ -113,7 +112,7 @@ impl Points {
                 wire: index as u32,
                 isotropic: wire.rest_length == 0.0 && !wire.stiff_damper,
                 direction: u,
-                length: line.length,
+                length,
                 axial,
                 load: DVec3::ZERO,
                 turning: 0.0,
@@ -131,19 +130,21 @@ impl Points {
                 .fold(0.0, f64::max);
             let settle = settling(h2 * stiffest) * step;
             let c = wire.damping + settle * k;
-            let rate = if c > 0.0 {
-                backward_rate(&bar, lateral_square, step)
-            } else {
+            let rate = if c == 0.0 {
                 0.0
+            } else if bar.isotropic {
+                axial
+            } else {
+                line::backward_rate(length, axial, lateral_square, step)
             };
-            let elastic = k * (line.length - wire.rest_length);
+            let elastic = k * (length - wire.rest_length);
             let tension = elastic + c * rate;
             let inverse_mass = a.inverse_mass_along(u) + b.inverse_mass_along(u);
             bar.damping = damper_placement(c * step * inverse_mass) * step * c;
             let across = if bar.isotropic {
                 k
-            } else if tension > 0.0 && line.length > 0.0 {
-                tension / line.length
+            } else if tension > 0.0 && length > 0.0 {
+                tension / length
             } else {
                 0.0
             };
@@ -211,16 +212,4 @@ fn weight(point: &Point) -> DVec3 {
     }
     let acceleration = point.acceleration;
     (acceleration + point.heavy.dot(acceleration) * point.heavy) / point.inverse_mass
-}
-
-/// See `Line::backward_rate`.
-fn backward_rate(bar: &Bar, lateral_square: f64, step: f64) -> f64 {
-    let along = bar.length - step * bar.axial;
-    if bar.isotropic || along * bar.length <= 0.0 {
-        return bar.axial;
-    }
-    let before = (along * along + step * step * lateral_square)
-        .sqrt()
-        .copysign(along);
-    (bar.length - before) / step
 }

@@ -3,7 +3,7 @@
 use super::*;
 use crate::dynamics::element::Path;
 use crate::dynamics::step::Component;
-use bevy::math::DQuat;
+use crate::dynamics::tests;
 
 /// Small numbers that follow no pattern.
 struct Dice(u64);
@@ -25,39 +25,20 @@ fn sheet(stiffness: f64, damping: f64) -> Component {
     let (columns, rows) = (7, 6);
     let mut sheet = Component::default();
     let mut element = |a: End, b: End, rest_length: f64| {
-        sheet.elements.push(Element {
-            ends: [a, b],
-            stiffness,
-            damping,
-            rest_length,
-            guide: Guide::Centres,
-            law: None,
-            angle: 0.0,
-            heat: 0.0,
-            work: 0.0,
-            direction: None,
-            stiff_damper: false,
-        });
+        let new = tests::element(a, b, stiffness, damping, rest_length);
+        sheet.elements.push(new);
     };
     for i in 0..columns * rows {
         let (x, y) = (i % columns, i / columns);
         let at = DVec3::new(x as f64, -(y as f64), 0.0) + 0.2 * dice.vector();
         let mass = 1.0 + dice.roll();
         let held = (i % 11 == 3).then(|| dice.vector().normalize());
+        let gravity = DVec3::new(0.0, -9.81, 0.0);
         let mut body = Body {
-            position: at,
             velocity: dice.vector(),
-            rotation: DQuat::IDENTITY,
-            spin: Spin::Still,
-            inverse_mass: DVec3::splat(1.0 / mass),
-            inertia: DVec3::ONE,
-            principal: DQuat::IDENTITY,
-            rotation_locked: [false; 3],
-            acceleration: DVec3::new(0.0, -9.81, 0.0),
-            torque: DVec3::ZERO,
             mobility: if held.is_some() { 0.05 } else { 1.0 },
             held,
-            given: (DVec3::ZERO, DVec3::ZERO),
+            ..tests::point(mass, at, gravity)
         };
         body.acceleration = body.left(body.acceleration);
         let own = |index: usize| End::Body {

@@ -80,7 +80,7 @@ impl Component {
         self.memory.bound = bound;
     }
 
-    /// A step that only loses energy, and no less than is owed.
+    /// A step that only loses energy, where some is owed.
     pub(super) fn pay(&mut self, time: f64) -> Outcome {
         let mut bound = std::mem::take(&mut self.memory.bound);
         bound.begin(&self.elements, &self.bodies, self.stepped);
