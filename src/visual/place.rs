@@ -12,6 +12,9 @@ use bevy::prelude::*;
 /// An element out of everyone's sight is placed every so many frames only. It may still throw a shadow
 /// into the picture, so it is not left alone altogether.
 const SELDOM: u32 = 8;
+/// How one in sight is seen is found out every so many frames only: it may be drawn a little too finely
+/// or too coarsely for that long, or once it is out of sight be laid for nothing.
+const NOW_AND_THEN: u32 = 4;
 
 /// Where an element is drawn.
 #[derive(Component, Clone, Copy, Debug, Default)]
@@ -21,6 +24,10 @@ pub struct Placement {
     pub(super) level: u8,
     /// Its coil has been shorter than its turns are thick, and that was said.
     squeezed: bool,
+    /// It was in sight when that was last found out.
+    seen: bool,
+    /// The state of the views for which sight and level are right.
+    looked: Option<u32>,
     /// From end to end, m.
     pub(super) length: f32,
     /// In the world: unit vectors along the element and across it.
@@ -76,6 +83,7 @@ impl Placement {
         self.layout = layout(first);
         self.level = 0;
         self.squeezed = false;
+        self.seen = false;
         self.recall();
     }
 
@@ -84,17 +92,11 @@ impl Placement {
         self.due = Due::Nowhere;
     }
 
-    /// Follows the ends, and says what follows from that. Out of sight some frames have their turn.
+    /// Follows the ends, and says what follows from that. Some frames have their turn.
     #[inline(always)]
-    fn find(
-        &mut self,
-        ends: Ends,
-        views: &Views,
-        same_views: bool,
-        has_turn: impl Fn() -> bool,
-    ) -> Due {
+    fn find(&mut self, ends: Ends, views: &Views, turn: u32) -> Due {
         let rests = matches!(self.due, Due::Laid | Due::All) && ends.are(&self.ends);
-        if rests && same_views {
+        if rests && self.looked == Some(views.state()) {
             return Due::Laid;
         }
         let between = ends.to - ends.from;
@@ -102,11 +104,18 @@ impl Placement {
         if !length.is_finite() {
             return Due::Nowhere;
         }
-        let middle = ends.from + 0.5 * between;
-        let sight = views.sight(middle, 0.5 * length + self.layout.reach);
         let before = self.level;
-        if sight.seen {
-            self.level = level(2.0 * self.layout.wire_radius * sight.pixels, before);
+        // What comes into sight is seen at once.
+        if !self.seen || turn.is_multiple_of(NOW_AND_THEN) {
+            let middle = ends.from + 0.5 * between;
+            let sight = views.sight(middle, 0.5 * length + self.layout.reach);
+            self.seen = sight.seen;
+            if sight.seen {
+                self.level = level(2.0 * self.layout.wire_radius * sight.pixels, before);
+            }
+            self.looked = Some(views.state());
+        } else if !rests {
+            self.looked = None;
         }
         if rests && self.level == before {
             return Due::Laid;
@@ -121,7 +130,7 @@ impl Placement {
             self.axis = upright * self.heading.axis();
         }
         self.side = upright * self.heading.side();
-        if sight.seen || has_turn() {
+        if self.seen || turn.is_multiple_of(SELDOM) {
             Due::All
         } else {
             Due::Visible
@@ -192,7 +201,7 @@ pub(super) fn place(
     mut views: Local<Views>,
     mut frame: Local<u32>,
 ) {
-    let same_views = !views.update(cameras.iter());
+    views.update(cameras.iter());
     *frame = frame.wrapping_add(1);
     for (element, line, mut placement) in &mut elements {
         let placement = placement.bypass_change_detection();
@@ -200,10 +209,8 @@ pub(super) fn place(
             placement.due = Due::Nowhere;
             continue;
         };
-        placement.due = placement.find(ends, &views, same_views, || {
-            let turn = element.index_u32().wrapping_add(*frame);
-            turn.is_multiple_of(SELDOM)
-        });
+        let turn = element.index_u32().wrapping_add(*frame);
+        placement.due = placement.find(ends, &views, turn);
         if placement.has_become_squeezed() {
             log::warn!(
                 "{element}: Coil: it is {} m long, but all its turns touch at {} m already, so wire \

@@ -52,6 +52,7 @@ impl View {
 pub(super) struct Views {
     now: Vec<View>,
     before: Vec<View>,
+    changes: u32,
 }
 
 /// What is looked up of a camera.
@@ -67,8 +68,8 @@ pub(super) struct Sight {
 }
 
 impl Views {
-    /// Looks at the cameras of this frame; whether anything has changed since the last.
-    pub fn update<'a>(&mut self, cameras: impl Iterator<Item = Cameras<'a>>) -> bool {
+    /// Looks at the cameras of this frame.
+    pub fn update<'a>(&mut self, cameras: impl Iterator<Item = Cameras<'a>>) {
         std::mem::swap(&mut self.now, &mut self.before);
         self.now.clear();
         for (camera, projection, frustum, at) in cameras {
@@ -85,7 +86,13 @@ impl Views {
                 perspective: !matches!(projection, Projection::Orthographic(_)),
             });
         }
-        self.now != self.before
+        self.changes = self.changes.wrapping_add(u32::from(self.now != self.before));
+    }
+
+    /// A number that is another one whenever the cameras have changed.
+    #[inline]
+    pub const fn state(&self) -> u32 {
+        self.changes
     }
 
     /// How a ball is seen. Without cameras everything is, and closely.

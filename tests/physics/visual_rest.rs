@@ -227,7 +227,8 @@ fn a_resting_coil_gets_coarser_as_the_camera_goes_away_and_finer_as_it_comes_bac
     let mut vertices = |distance: f32| {
         let at = Transform::from_xyz(0.0, 0.5, distance);
         turn(&mut rest.lab, camera, at);
-        rest.lab.tick();
+        // How an element is seen is looked at in every fourth frame.
+        rest.lab.run(4.0 / 60.0);
         let mesh = rest.lab.get::<Mesh3d>(rest.coil);
         let meshes = rest.lab.app.world().resource::<Assets<Mesh>>();
         meshes.get(mesh).expect("loaded").count_vertices()
