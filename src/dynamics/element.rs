@@ -118,6 +118,18 @@ impl End {
         }
     }
 
+    /// Whether it is not off the centre of mass of a body.
+    pub(super) fn is_central(&self) -> bool {
+        match self {
+            End::Body { arm, .. } => *arm == DVec3::ZERO,
+            End::Path(_) => true,
+        }
+    }
+
+    pub(crate) fn is_path(&self) -> bool {
+        matches!(self, End::Path(_))
+    }
+
     /// Moves a prescribed point along its path.
     pub(crate) fn drift(&mut self, time: f64) {
         if let End::Path(path) = self {

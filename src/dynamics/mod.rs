@@ -21,7 +21,7 @@ pub(crate) mod law;
 mod line;
 pub(crate) mod network;
 pub(crate) mod pair;
-mod points;
+pub(crate) mod points;
 pub(crate) mod poles;
 pub(crate) mod shock;
 pub(crate) mod step;

@@ -2,8 +2,9 @@
 //!
 //! What it does is what [`super::network`] does, to rounding; but here an end is a point mass instead of a
 //! rigid body, so that thousands of them stay in the processor's cache. [`kick`] has the step,
-//! [`solve`] its linear system.
+//! [`solve`] its linear system, [`carry`] what a network needs that goes from one step into the next.
 
+mod carry;
 mod kick;
 mod solve;
 
@@ -14,6 +15,7 @@ use super::guide::Guide;
 use super::step::EXTRAPOLATION_LIMIT;
 use super::tolerance::{Motion, VELOCITY_COUNTS};
 use bevy::math::DVec3;
+pub(crate) use carry::Flight;
 use kick::Bar;
 use solve::Solver;
 
@@ -51,8 +53,10 @@ struct Wire {
 
 /// Such a network, kept from step to step.
 #[derive(Clone, Default)]
-pub(super) struct Points {
+pub(crate) struct Points {
     points: Vec<Point>,
+    /// As they were at the start of the step.
+    start: Vec<Point>,
     /// So many of them are bodies; the others come after.
     bodies: usize,
     wires: Vec<Wire>,
@@ -64,6 +68,8 @@ pub(super) struct Points {
     any_held: bool,
     /// (ω h)² of the stiffest mode.
     pub(super) stiffest: f64,
+    /// ω² of the stiffest element on its own ends.
+    stiffest_alone: f64,
     bars: Vec<Bar>,
     impulses: Vec<DVec3>,
     solver: Solver,
@@ -174,15 +180,15 @@ impl Points {
         bodies
             .iter()
             .all(|body| body.spin == Spin::Still && body.inverse_mass.x > 0.0 && body.moves_alike())
-            && elements
-                .iter()
-                .all(|element| element.guide == Guide::Centres && element.law.is_none())
+            && elements.iter().all(|element| {
+                element.guide == Guide::Centres
+                    && element.law.is_none()
+                    && element.ends.iter().all(End::is_central)
+            })
     }
 
     /// Takes the network in as it stands.
     pub(super) fn load_from(&mut self, elements: &[Element], bodies: &[Body], budget: u32) {
-        self.budget = budget;
-        self.converged = true;
         self.points.clear();
         self.points.extend(bodies.iter().map(Point::of));
         self.bodies = bodies.len();
@@ -211,16 +217,17 @@ impl Points {
         if !self.any_held {
             self.add_up();
         }
+        self.begin(budget);
     }
 
     /// Gives back what the step made of it.
-    pub(super) fn store_into(&self, elements: &mut [Element], bodies: &mut [Body]) {
+    pub(super) fn store_into(&mut self, elements: &mut [Element], bodies: &mut [Body]) {
         for (body, point) in bodies.iter_mut().zip(&self.points) {
             body.position = point.position;
             body.velocity = point.velocity;
             body.given.0 = point.given;
         }
-        for (element, wire) in elements.iter_mut().zip(&self.wires) {
+        for (element, wire) in elements.iter_mut().zip(&mut self.wires) {
             for (end, index) in element.ends.iter_mut().zip(wire.ends) {
                 if let End::Path(path) = end {
                     path.position = self.points[index as usize].position;
@@ -228,8 +235,8 @@ impl Points {
             }
             element.direction = wire.side.try_normalize();
             element.stiff_damper = wire.stiff_damper;
-            element.heat = wire.heat;
-            element.work = wire.work;
+            element.heat = std::mem::take(&mut wire.heat);
+            element.work = std::mem::take(&mut wire.work);
         }
     }
 
@@ -279,6 +286,7 @@ impl Points {
             sums.clear();
             sums.resize(self.points.len(), 0.0);
         }
+        self.stiffest_alone = 0.0;
         for wire in &self.wires {
             let ends = wire.of(&self.points);
             let along = if self.any_held {
@@ -287,6 +295,8 @@ impl Points {
                 DVec3::ZERO
             };
             let w = ends.map(|end| end.inverse_mass_along(along).sqrt());
+            let alone = wire.stiffness * (w[0] * w[0] + w[1] * w[1]);
+            self.stiffest_alone = self.stiffest_alone.max(alone);
             for (end, w_end) in wire.ends.iter().zip(w) {
                 let share = w_end * (w[0] + w[1]);
                 self.stiffness[*end as usize] += wire.stiffness * share;

@@ -13,6 +13,7 @@ use super::shock::Apart;
 use super::tolerance::{Accuracy, Controller, Method, Motion, Outcome, VELOCITY_COUNTS};
 use bevy::math::DVec3;
 
+mod carry;
 mod keep;
 
 /// Phase per coarse step up to which the fourth-order combination converges.
@@ -33,6 +34,8 @@ pub(crate) struct Component {
     /// Energy that it has won where it should not and that its motion could not pay, J: then the step is one that
     /// only loses energy.
     pub owed: f64,
+    /// It is a network of points that goes on from the last step: bodies and elements are out of date.
+    pub carried: bool,
     pub(super) memory: Memory,
 }
 
@@ -42,6 +45,10 @@ pub(super) struct Memory {
     memo: Memo,
     network: Network,
     points: Points,
+    /// Length of the last step, if the points can go on from it.
+    carriable: Option<f64>,
+    /// What they had at the start of the step.
+    had: Energy,
     controller: Controller,
     bound: Bound,
     saved: [Saved; 3],
@@ -59,6 +66,7 @@ impl Component {
     /// Advances by one engine step of `time` seconds.
     pub(crate) fn advance(&mut self, time: f64, accuracy: Accuracy) -> Outcome {
         self.memory.max_iterations = accuracy.max_iterations.max(1);
+        self.memory.carriable = None;
         let alone = self.is_alone();
         let mut controller = std::mem::take(&mut self.memory.controller);
         if let [element] = self.elements.as_mut_slice()
@@ -75,7 +83,10 @@ impl Component {
             self.memory.controller = controller;
             return self.pay(time);
         }
-        if self.is_of_points(time) {
+        if self.carried {
+            self.memory.points.begin(self.memory.max_iterations);
+        }
+        if self.carried || self.is_of_points(time) {
             let outcome =
                 self.advance_points(time, |motion| controller.drive(motion, time, accuracy));
             self.memory.controller = controller;
@@ -101,6 +112,15 @@ impl Component {
         };
         outcome.capped |= !converged;
         outcome
+    }
+
+    /// Whether all is well after a step.
+    pub(crate) fn is_finite(&self) -> bool {
+        if self.carried {
+            self.memory.points.are_finite()
+        } else {
+            self.bodies.iter().all(Body::is_finite)
+        }
     }
 
     #[cfg(test)]

@@ -1,6 +1,7 @@
 //! One component through one step: gather, wake, integrate, deliver.
 
 use super::body::{deliver, read, turning_of};
+use super::carry::Carry;
 use super::check::Fault;
 use super::forces::Share;
 use super::held::{self, Expected, Support};
@@ -21,22 +22,23 @@ use bevy_rapier3d::rapier::dynamics::RigidBodySet;
 /// A component with its bodies and elements, kept from tick to tick.
 #[derive(Default)]
 pub(crate) struct Assembly {
-    component: Component,
+    pub(super) component: Component,
     /// Its bodies at the start of the step, with their full mass.
     start: Vec<Body>,
     /// Force and torque of all elements on each of them, where that is asked for.
     loads: Vec<(DVec3, DVec3)>,
-    state: State,
+    pub(super) state: State,
     /// It was found asleep.
     asleep: bool,
-    outcome: Outcome,
-    ledger: Ledger,
+    pub(super) outcome: Outcome,
+    pub(super) ledger: Ledger,
+    pub(super) carry: Carry,
     partners: Partners,
 }
 
 /// What there is to do.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-enum State {
+pub(super) enum State {
     /// Nothing: asleep, or not to be stepped.
     #[default]
     Resting,
@@ -83,7 +85,11 @@ impl Assembly {
             return;
         }
         self.asleep = false;
+        if self.carry_on(step, members, elements, bodies, set) {
+            return;
+        }
         let component = &mut self.component;
+        component.forget_points();
         component.bodies.clear();
         component.elements.clear();
         self.start.clear();
@@ -116,16 +122,21 @@ impl Assembly {
         }
         let sound = component.bodies.iter().all(Body::is_finite);
         let (mut disturbed, mut omega) = (false, 0.0_f32);
-        for e in members.elements {
+        self.carry.ends.clear();
+        for (index, e) in members.elements.iter().enumerate() {
             let row = &mut elements[*e];
             disturbed |= row.changed || step.has_moved(row, set);
             let guide = row.companion.guide;
             let ends = row.held.map(|held| step.end(held, guide, bodies, set));
             if let Some(element) = element(row, ends, &component.bodies) {
                 omega = omega.max(omega_of(row));
+                for (end, _) in ends.iter().enumerate().filter(|(_, end)| end.is_path()) {
+                    self.carry.ends.push((index, end));
+                }
                 component.elements.push(element);
             }
         }
+        self.carry.omega = omega;
         let awake = step.is_awake(bodies, members.bodies, omega, set, disturbed);
         for e in members.elements {
             elements[*e].active = awake;
@@ -235,9 +246,13 @@ impl Assembly {
     /// Integrates over the step.
     pub(super) fn advance(&mut self, time: f64, accuracy: Accuracy) {
         if self.state == State::Ready {
+            let carried = self.component.carried;
             self.outcome = self.component.advance(time, accuracy);
-            if !self.component.bodies.iter().all(Body::is_finite) {
+            if !self.component.is_finite() {
                 self.state = State::Powerless;
+            }
+            if carried && !self.component.carried {
+                self.start.clone_from_slice(self.component.put_down_at());
             }
         }
     }
@@ -255,6 +270,9 @@ impl Assembly {
             return;
         }
         let ready = self.state == State::Ready;
+        if ready && self.component.carried {
+            return self.deliver_carried(step, members, elements, bodies, set);
+        }
         if ready {
             step.wake_the_moved(
                 bodies,

@@ -3,33 +3,15 @@
 //! Most elements of most scenes are of this kind. Whatever is out of the ordinary about one (contacts,
 //! joints, locked axes, ends that coincide, a sleeping end) is left to [`super::assembly`].
 
-use super::body::deliver_straight;
-use super::forces::Share;
-use super::held::{Expected, Support};
+use super::point::{Flight, Point};
 use super::scene::{BodyRow, ElementRow, Held};
-use super::sleep::keep_awake;
 use super::step::Step;
 use crate::dynamics::element::rounding;
 use crate::dynamics::guide::Guide;
 use crate::dynamics::pair::{Moving, Pair, Separation};
 use crate::dynamics::shock::Shock;
 use crate::dynamics::tolerance::{Method, Outcome};
-use bevy::math::DVec3;
-use bevy_rapier3d::prelude::ExternalForce;
-use bevy_rapier3d::rapier::dynamics::{
-    LockedAxes, RigidBody as RapierBody, RigidBodyHandle, RigidBodySet,
-};
-
-/// One end.
-#[derive(Clone, Copy, Default)]
-struct Point {
-    /// Row of the body that elements can move.
-    body: Option<usize>,
-    position: DVec3,
-    velocity: DVec3,
-    acceleration: DVec3,
-    inverse_mass: f64,
-}
+use bevy_rapier3d::rapier::dynamics::{RigidBodyHandle, RigidBodySet};
 
 /// What became of a lone element.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,35 +23,6 @@ pub(super) enum Handled {
     No,
     /// Out of the ordinary for as long as can be seen.
     Never,
-}
-
-const LOCKED: LockedAxes = LockedAxes::TRANSLATION_LOCKED;
-
-/// The centre of mass of an ordinary movable body.
-fn point(row: &BodyRow, index: usize, body: &RapierBody, step: &Step) -> Result<Point, Handled> {
-    let properties = &body.mass_properties().local_mprops;
-    if step.lag(row.handle, body) > 0.0 || body.locked_axes().intersects(LOCKED) {
-        return Err(Handled::Never);
-    }
-    match row.support {
-        Support::None => {}
-        Support::Unknown => return Err(Handled::No),
-        Support::Joint | Support::Tied(_) | Support::Contact { .. } => return Err(Handled::Never),
-    }
-    let mut position = body.position().translation.as_dvec3();
-    if properties.local_com != bevy::math::Vec3::ZERO {
-        let rotation = body.position().rotation.as_dquat().normalize();
-        position += rotation * properties.local_com.as_dvec3();
-    }
-    let inverse_mass = f64::from(properties.inv_mass);
-    Ok(Point {
-        body: Some(index),
-        position,
-        velocity: body.linvel().as_dvec3(),
-        acceleration: step.engine.gravity.as_dvec3() * f64::from(body.gravity_scale())
-            + inverse_mass * row.user.force.as_dvec3(),
-        inverse_mass,
-    })
 }
 
 impl Step<'_> {
@@ -110,7 +63,8 @@ impl Step<'_> {
             };
         }
         let mut points = [Point::default(); 2];
-        for (point_at, held) in points.iter_mut().zip(&row.held) {
+        let mut movable = [None; 2];
+        for (end, (point_at, held)) in points.iter_mut().zip(&row.held).enumerate() {
             let found = match *held {
                 Held::Body {
                     movable: Some(index),
@@ -120,7 +74,10 @@ impl Step<'_> {
                     .flatten()
                     .find(|(b, _)| *b == index)
                     .ok_or(Handled::No)
-                    .and_then(|(_, body)| point(&bodies[index], index, body, self)),
+                    .and_then(|(_, body)| {
+                        movable[end] = Some(index);
+                        Point::of(&bodies[index], body, self)
+                    }),
                 _ => {
                     let (from, to) = self.path(held, set);
                     Ok(Point {
@@ -209,67 +166,21 @@ impl Step<'_> {
         if damped {
             row.ledger.dissipated += before - row.energy_of(&pair, &end);
         }
-        for (point, sign) in points.iter().zip([-1.0, 1.0]) {
-            let Some(index) = point.body else {
+        for ((point, movable), sign) in points.iter().zip(movable).zip([-1.0, 1.0]) {
+            let Some(index) = movable else {
                 // What holds this end moves it against what the other end is given.
                 row.ledger.work -= sign / inverse_mass * sped.dot(point.velocity);
                 continue;
             };
             let share = sign * point.inverse_mass / inverse_mass;
-            let given = sign / inverse_mass * sped;
-            self.deliver_point(
-                &mut bodies[index],
-                point,
-                [share * moved, share * sped, given],
-                restless,
-                set,
-            );
+            let pulled = time * point.acceleration;
+            let flight = Flight {
+                moved: time * (point.velocity + 0.5 * pulled) + share * moved,
+                velocity: point.velocity + pulled + share * sped,
+                given: sign / inverse_mass * sped,
+            };
+            self.deliver_point(&mut bodies[index], point, &flight, restless, set);
         }
         Handled::Done
-    }
-
-    /// Gives the engine what takes a body where the element does.
-    fn deliver_point(
-        &self,
-        row: &mut BodyRow,
-        point: &Point,
-        [moved, sped, given]: [DVec3; 3],
-        restless: bool,
-        set: &mut RigidBodySet,
-    ) {
-        let Some(body) = set.get_mut(row.handle) else {
-            return;
-        };
-        if restless {
-            keep_awake(body);
-        }
-        self.delivered.set(true);
-        let time = self.plan.time;
-        let terms = self.terms(row.handle, body);
-        let pulled = time * point.acceleration;
-        let to = point.velocity + pulled + sped;
-        row.expected = Some(Expected::straight(
-            [point.velocity, to],
-            point.inverse_mass * given,
-            pulled,
-            given,
-            time,
-        ));
-        let rate = deliver_straight(
-            body,
-            point.velocity,
-            time * (point.velocity + 0.5 * pulled) + moved,
-            to,
-            &terms,
-            &self.engine,
-        );
-        let force = ((rate - point.acceleration) / point.inverse_mass).as_vec3();
-        let share = ExternalForce {
-            force,
-            ..ExternalForce::default()
-        };
-        let mut share = Share::act(share, &row.user, body);
-        share.raised_iterations = terms.raised_iterations;
-        row.share = Some(share);
     }
 }

@@ -2,11 +2,13 @@
 //!
 //! One step runs [`prepare::prepare`] → [`forces::read_users`] → [`solve::solve`] → (Rapier steps) → [`measure::measure`].
 //! [`scene`] holds what is kept between; [`find`] fills it where [`watch`] or an element says that it
-//! changed. A lone element goes through [`lone`], everything else through [`assembly`].
+//! changed. A lone element goes through [`lone`], everything else through [`assembly`], where [`carry`] takes
+//! networks of points past most of the work.
 
 mod assembly;
 mod body;
 mod breaking;
+mod carry;
 mod check;
 mod companions;
 mod ends;
@@ -21,6 +23,7 @@ mod lone;
 mod measure;
 mod parts;
 mod passive;
+mod point;
 mod prepare;
 mod scene;
 mod setup;

@@ -13,6 +13,7 @@ use super::scene::BodyRow;
 use crate::dynamics::body::Body;
 use crate::dynamics::element::{Element, End};
 use crate::dynamics::energy::{Energy, take};
+use crate::dynamics::step::Component;
 use bevy::math::DVec3;
 
 /// (ω h)² up to which an element's energy at the ends of steps says something about the motion between.
@@ -116,9 +117,29 @@ impl Ledger {
             self.debt -= taken;
             self.energy = self.energy.map(|energy| energy - taken);
         }
+        if touch == Touch::Nothing && self.debt <= ROUNDING * state.motion {
+            self.debt = self.debt.min(0.0);
+        }
         for body in bodies {
             body.given = (DVec3::ZERO, DVec3::ZERO);
         }
+    }
+
+    /// Whether nothing touches the component and nothing is to be taken from it.
+    pub(super) fn is_idle(&self) -> bool {
+        self.touched == Touch::Nothing && self.debt <= 0.0
+    }
+
+    /// Takes note of a step of one that was idle. `displaced` if something else than the engine has moved it.
+    pub(super) fn go_on(&mut self, component: &Component, displaced: bool, time: f64) {
+        let (energy, accountable) = component.carried_energy(time, RESOLVED);
+        if displaced || !accountable {
+            self.clear();
+        } else {
+            self.stored = Some(energy.stored);
+            self.energy = Some(energy.sum());
+        }
+        self.distrust(energy.motion, time);
     }
 
     /// What the motion could not pay, J.

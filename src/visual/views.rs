@@ -86,7 +86,9 @@ impl Views {
                 perspective: !matches!(projection, Projection::Orthographic(_)),
             });
         }
-        self.changes = self.changes.wrapping_add(u32::from(self.now != self.before));
+        self.changes = self
+            .changes
+            .wrapping_add(u32::from(self.now != self.before));
     }
 
     /// A number that is another one whenever the cameras have changed.

@@ -8,6 +8,7 @@ mod against_rapier;
 mod as_data;
 mod bad_input;
 mod car;
+mod carried;
 mod cloth;
 mod decay;
 mod elastic_pendulum;

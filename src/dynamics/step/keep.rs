@@ -39,12 +39,16 @@ impl Component {
         time: f64,
         drive: impl FnOnce(&mut Points) -> Outcome,
     ) -> Outcome {
-        let Memory { points, bound, .. } = &mut self.memory;
-        if self.bodies.iter().any(|body| body.mobility < 1.0) {
-            bound.forget();
-        } else {
-            let start = points.survey();
+        let is_free = self.carried || self.bodies.iter().all(|body| body.mobility == 1.0);
+        let Memory {
+            points, bound, had, ..
+        } = &mut self.memory;
+        let start = points.survey();
+        *had = start.energy;
+        if is_free {
             bound.start(start.energy.sum(), start.rounding, start.power);
+        } else {
+            bound.forget();
         }
         let mut outcome = drive(points);
         outcome.method = Method::Iterative;
@@ -54,7 +58,12 @@ impl Component {
         let kept = bound.is_kept(&end.energy, end.power, time);
         if kept {
             bound.finish(end.energy.sum(), time);
+            self.memory.carriable = is_free.then_some(time);
+            if self.carried {
+                return outcome;
+            }
         } else {
+            self.put_down();
             let start = &mut self.memory.saved[0];
             start.bodies.clone_from(&self.bodies);
             start.elements.clone_from(&self.elements);

@@ -1,0 +1,112 @@
+//! From one step into the next without being taken apart: where only the engine has moved a network since,
+//! nothing but its points' places has to be read again.
+
+use super::{Point, Points, Wire};
+use crate::dynamics::body::Body;
+use crate::dynamics::element::{Element, End};
+use bevy::math::DVec3;
+
+/// What a step made of a body.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Flight {
+    /// How far it went, m.
+    pub moved: DVec3,
+    /// At the end, m/s.
+    pub velocity: DVec3,
+    /// Impulse of the elements, N s.
+    pub given: DVec3,
+}
+
+impl Points {
+    /// Readies what has been taken in for its step.
+    pub(in crate::dynamics) fn begin(&mut self, budget: u32) {
+        self.budget = budget;
+        self.converged = true;
+        self.start.clone_from(&self.points);
+    }
+
+    /// Moves a body to where the engine has taken it. Says whether it is the same mass still, and there are
+    /// no contacts to reckon with.
+    pub(crate) fn place(
+        &mut self,
+        body: usize,
+        [position, velocity, acceleration]: [DVec3; 3],
+        inverse_mass: f64,
+    ) -> bool {
+        let point = &mut self.points[body];
+        let is_same = point.inverse_mass == inverse_mass && !self.any_held;
+        *point = Point {
+            position,
+            velocity,
+            acceleration,
+            inverse_mass,
+            ..Point::prescribed(position, velocity)
+        };
+        is_same && (position + velocity + acceleration).is_finite()
+    }
+
+    /// The same of an end that elements cannot move, counted in the order of the elements.
+    pub(crate) fn place_end(&mut self, end: usize, position: DVec3, velocity: DVec3) {
+        let index = self.bodies + end;
+        self.points[index] = Point::prescribed(position, velocity);
+    }
+
+    /// What the step made of a body.
+    pub(crate) fn flight(&self, body: usize) -> Flight {
+        let (start, end) = (&self.start[body], &self.points[body]);
+        Flight {
+            moved: end.position - start.position,
+            velocity: end.velocity,
+            given: end.given,
+        }
+    }
+
+    /// Of each element in turn its direction, and the heat and the work of the step, which are forgotten with
+    /// this.
+    pub(crate) fn take_results(&mut self) -> impl Iterator<Item = (Option<DVec3>, f64, f64)> {
+        self.wires.iter_mut().map(|wire| {
+            let (heat, work) = (
+                std::mem::take(&mut wire.heat),
+                std::mem::take(&mut wire.work),
+            );
+            (wire.side.try_normalize(), heat, work)
+        })
+    }
+
+    /// Whether the energy at the ends of steps says something about the motion between: all elements are
+    /// resolved up to this (ω h)², and nothing else moves any end.
+    pub(in crate::dynamics) fn is_accountable(&self, time: f64, resolved: f64) -> bool {
+        let rests = |point: &Point| point.velocity == DVec3::ZERO;
+        self.stiffest_alone * time * time < resolved && self.start[self.bodies..].iter().all(rests)
+    }
+
+    pub(in crate::dynamics) fn are_finite(&self) -> bool {
+        self.points[..self.bodies]
+            .iter()
+            .all(|point| (point.position + point.velocity).is_finite())
+    }
+
+    /// Has bodies and elements that took no part since stand as at the start of the step.
+    pub(in crate::dynamics) fn restore(&self, elements: &mut [Element], bodies: &mut [Body]) {
+        for (body, point) in bodies.iter_mut().zip(&self.start) {
+            body.position = point.position;
+            body.velocity = point.velocity;
+            body.acceleration = point.acceleration;
+            body.given = (DVec3::ZERO, DVec3::ZERO);
+        }
+        for (element, wire) in elements.iter_mut().zip(&self.wires) {
+            self.restore_element(element, wire);
+        }
+    }
+
+    fn restore_element(&self, element: &mut Element, wire: &Wire) {
+        for (end, index) in element.ends.iter_mut().zip(wire.ends) {
+            if let End::Path(path) = end {
+                let start = &self.start[index as usize];
+                (path.position, path.velocity) = (start.position, start.velocity);
+            }
+        }
+        element.direction = wire.side.try_normalize();
+        (element.heat, element.work) = (0.0, 0.0);
+    }
+}

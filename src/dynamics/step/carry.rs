@@ -1,0 +1,44 @@
+//! A network of points from step to step, its bodies and elements left aside.
+
+use super::Component;
+use crate::dynamics::body::Body;
+use crate::dynamics::energy::Energy;
+use crate::dynamics::points::Points;
+
+impl Component {
+    /// The points, if the last step was as long and they can go on from it.
+    pub(crate) fn points_to_carry(&mut self, time: f64) -> Option<&mut Points> {
+        let can_go_on = self.memory.carriable == Some(time);
+        can_go_on.then_some(&mut self.memory.points)
+    }
+
+    /// Has it taken in anew for the next step.
+    pub(crate) fn forget_points(&mut self) {
+        self.memory.carriable = None;
+    }
+
+    /// After a step that was [`carried`](Self::carried) to its end: what came of it.
+    pub(crate) fn carried_points(&mut self) -> &mut Points {
+        &mut self.memory.points
+    }
+
+    /// What the carried network had at the start of the step; and whether that says something about the motion
+    /// over it, for elements that are resolved up to this (ω h)².
+    pub(crate) fn carried_energy(&self, time: f64, resolved: f64) -> (Energy, bool) {
+        let memory = &self.memory;
+        (memory.had, memory.points.is_accountable(time, resolved))
+    }
+
+    /// Bodies as they were at the start of a step that could not be carried to its end.
+    pub(crate) fn put_down_at(&self) -> &[Body] {
+        &self.memory.saved[0].bodies
+    }
+
+    /// Bodies and elements take part again, as they were at the start of the step.
+    pub(super) fn put_down(&mut self) {
+        if std::mem::take(&mut self.carried) {
+            let points = &self.memory.points;
+            points.restore(&mut self.elements, &mut self.bodies);
+        }
+    }
+}

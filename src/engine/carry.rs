@@ -1,0 +1,123 @@
+//! A network of points that only the engine has moved since its last step goes on as it is: no more is read
+//! than where its bodies are, and no more written than what they are given.
+
+use super::assembly::{Assembly, Members, State};
+use super::body::is_movable;
+use super::point::Point;
+use super::scene::{BodyRow, ElementRow};
+use super::step::Step;
+use bevy_rapier3d::rapier::dynamics::RigidBodySet;
+
+/// What is known of such a network.
+#[derive(Default)]
+pub(super) struct Carry {
+    /// Ends that elements cannot move: which element's within the component, and which of its two.
+    pub ends: Vec<(usize, usize)>,
+    /// Natural frequency of the stiffest element.
+    pub omega: f32,
+    points: Vec<Point>,
+    /// Some body has not rested for long.
+    restless: bool,
+    /// Some body is not where the last step left it.
+    displaced: bool,
+}
+
+impl Assembly {
+    /// Takes the network in, if it can go on as it is.
+    pub(super) fn carry_on(
+        &mut self,
+        step: &Step,
+        members: &Members,
+        elements: &[ElementRow],
+        bodies: &mut [BodyRow],
+        set: &RigidBodySet,
+    ) -> bool {
+        self.component.carried = false;
+        let all_act = self.component.elements.len() == members.elements.len();
+        if !(step.unchanged && all_act && self.ledger.is_idle()) {
+            return false;
+        }
+        let mut disturbed = false;
+        let goes_on = self.place(step, members, elements, bodies, set, &mut disturbed);
+        if goes_on.is_none() {
+            // What has been taken note of is not lost.
+            if let Some(first) = members.bodies.first() {
+                bodies[*first].disturbed |= disturbed;
+            }
+            return false;
+        }
+        if disturbed {
+            self.ledger.clear();
+        }
+        self.carry.restless |= disturbed;
+        self.component.carried = true;
+        self.state = State::Ready;
+        true
+    }
+
+    /// Places bodies and ends; none if some body is out of the ordinary.
+    fn place(
+        &mut self,
+        step: &Step,
+        members: &Members,
+        elements: &[ElementRow],
+        bodies: &mut [BodyRow],
+        set: &RigidBodySet,
+        disturbed: &mut bool,
+    ) -> Option<()> {
+        let carry = &mut self.carry;
+        let time = step.plan.time;
+        let points = self.component.points_to_carry(time)?;
+        (carry.restless, carry.displaced) = (false, false);
+        carry.points.clear();
+        for (slot, b) in members.bodies.iter().enumerate() {
+            let row = &mut bodies[*b];
+            let body = set.get(row.handle)?;
+            if !is_movable(body) || body.is_sleeping() {
+                return None;
+            }
+            let point = Point::of(row, body, step).ok()?;
+            *disturbed |= std::mem::take(&mut row.disturbed);
+            carry.restless |= step.is_restless(row, body, carry.omega);
+            carry.displaced |= row.now.0 != point.position;
+            let state = [point.position, point.velocity, point.acceleration];
+            if !points.place(slot, state, point.inverse_mass) {
+                return None;
+            }
+            carry.points.push(point);
+        }
+        for (index, (element, end)) in carry.ends.iter().enumerate() {
+            let row = &elements[members.elements[*element]];
+            *disturbed |= step.has_moved(row, set);
+            let (from, to) = step.path(&row.held[*end], set);
+            points.place_end(index, from, (to - from) / time);
+        }
+        Some(())
+    }
+
+    /// Gives the engine what takes the bodies on.
+    pub(super) fn deliver_carried(
+        &mut self,
+        step: &Step,
+        members: &Members,
+        elements: &mut [ElementRow],
+        bodies: &mut [BodyRow],
+        set: &mut RigidBodySet,
+    ) {
+        let time = step.plan.time;
+        self.ledger
+            .go_on(&self.component, self.carry.displaced, time);
+        let points = self.component.carried_points();
+        for (slot, (b, point)) in members.bodies.iter().zip(&self.carry.points).enumerate() {
+            let flight = points.flight(slot);
+            step.deliver_point(&mut bodies[*b], point, &flight, self.carry.restless, set);
+        }
+        for (e, (direction, heat, work)) in members.elements.iter().zip(points.take_results()) {
+            let row = &mut elements[*e];
+            row.outcome = self.outcome;
+            row.ledger.dissipated += heat;
+            row.ledger.work += work;
+            row.memory.direction = direction;
+        }
+    }
+}

@@ -1,0 +1,102 @@
+//! A body that elements move but do not turn: read as the point that its centre of mass is, and given what
+//! takes it on.
+
+use super::body::deliver_straight;
+use super::forces::Share;
+use super::held::{Expected, Support};
+use super::lone::Handled;
+use super::scene::BodyRow;
+use super::sleep::keep_awake;
+use super::step::Step;
+pub(super) use crate::dynamics::points::Flight;
+use bevy::math::{DVec3, Vec3};
+use bevy_rapier3d::prelude::ExternalForce;
+use bevy_rapier3d::rapier::dynamics::{LockedAxes, RigidBody as RapierBody, RigidBodySet};
+
+/// A centre of mass, or an end that nothing here moves.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Point {
+    pub position: DVec3,
+    pub velocity: DVec3,
+    /// By everything but elements.
+    pub acceleration: DVec3,
+    /// 0 of one that elements cannot move.
+    pub inverse_mass: f64,
+}
+
+const LOCKED: LockedAxes = LockedAxes::TRANSLATION_LOCKED;
+
+impl Point {
+    /// The centre of mass of an ordinary movable body.
+    pub(super) fn of(row: &BodyRow, body: &RapierBody, step: &Step) -> Result<Self, Handled> {
+        let properties = &body.mass_properties().local_mprops;
+        if step.lag(row.handle, body) > 0.0 || body.locked_axes().intersects(LOCKED) {
+            return Err(Handled::Never);
+        }
+        match row.support {
+            Support::None => {}
+            Support::Unknown => return Err(Handled::No),
+            Support::Joint | Support::Tied(_) | Support::Contact { .. } => {
+                return Err(Handled::Never);
+            }
+        }
+        let mut position = body.position().translation.as_dvec3();
+        if properties.local_com != Vec3::ZERO {
+            let rotation = body.position().rotation.as_dquat().normalize();
+            position += rotation * properties.local_com.as_dvec3();
+        }
+        let inverse_mass = f64::from(properties.inv_mass);
+        Ok(Self {
+            position,
+            velocity: body.linvel().as_dvec3(),
+            acceleration: step.engine.gravity.as_dvec3() * f64::from(body.gravity_scale())
+                + inverse_mass * row.user.force.as_dvec3(),
+            inverse_mass,
+        })
+    }
+}
+
+impl Step<'_> {
+    /// Gives the engine what takes a body where its elements do.
+    pub(super) fn deliver_point(
+        &self,
+        row: &mut BodyRow,
+        point: &Point,
+        flight: &Flight,
+        restless: bool,
+        set: &mut RigidBodySet,
+    ) {
+        let Some(body) = set.get_mut(row.handle) else {
+            return;
+        };
+        if restless {
+            keep_awake(body);
+        }
+        self.delivered.set(true);
+        let time = self.plan.time;
+        let terms = self.terms(row.handle, body);
+        row.expected = Some(Expected::straight(
+            [point.velocity, flight.velocity],
+            point.inverse_mass * flight.given,
+            time * point.acceleration,
+            flight.given,
+            time,
+        ));
+        let rate = deliver_straight(
+            body,
+            point.velocity,
+            flight.moved,
+            flight.velocity,
+            &terms,
+            &self.engine,
+        );
+        let force = ((rate - point.acceleration) / point.inverse_mass).as_vec3();
+        let share = ExternalForce {
+            force,
+            ..ExternalForce::default()
+        };
+        let mut share = Share::act(share, &row.user, body);
+        share.raised_iterations = terms.raised_iterations;
+        row.share = Some(share);
+    }
+}

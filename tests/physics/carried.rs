@@ -1,0 +1,113 @@
+//! Does a network that is left alone, and so not read anew in every step, move as one that is?
+
+use crate::harness::*;
+use bevy::prelude::*;
+use bevy_coilover::prelude::*;
+use bevy_rapier3d::prelude::*;
+
+/// A net of balls that hangs from hooks, one of them a thing that the game moves.
+struct Net {
+    lab: Lab,
+    hook: Entity,
+    balls: Vec<Entity>,
+    springs: Vec<Entity>,
+}
+
+impl Net {
+    fn new(stiffness: f32, damping: f32) -> Self {
+        let mut lab = Lab::new();
+        let hook = lab.point(Vec3::new(0.0, 1.0, 0.0));
+        let fixed = lab.spawn((RigidBody::Fixed, Transform::from_xyz(4.0, 1.0, 0.0)));
+        let at = |i: usize| Vec3::new((i % 5) as f32, -((i / 5) as f32), 0.1 * (i % 3) as f32);
+        let balls: Vec<_> = (0..20)
+            .map(|i| {
+                let ball = lab.body(0.5 + 0.1 * i as f32, at(i));
+                let mut ball_at = lab.app.world_mut().entity_mut(ball);
+                let nothing = CollisionGroups::new(Group::GROUP_1, Group::NONE);
+                ball_at.insert((Collider::ball(0.1), nothing));
+                ball
+            })
+            .collect();
+        let mut springs = Vec::new();
+        let mut join = |a: Entity, b: Entity| {
+            let spring = SpringDamper::new(a, b)
+                .with_stiffness(stiffness)
+                .with_damping(damping);
+            springs.push(lab.spawn(spring));
+        };
+        join(hook, balls[0]);
+        join(fixed, balls[4]);
+        for i in 0..20 {
+            if i % 5 > 0 {
+                join(balls[i - 1], balls[i]);
+            }
+            if i >= 5 {
+                join(balls[i - 5], balls[i]);
+            }
+        }
+        Self {
+            lab,
+            hook,
+            balls,
+            springs,
+        }
+    }
+
+    /// Everything that can be seen of it.
+    fn state(&self) -> Vec<u32> {
+        let mut state = Vec::new();
+        for ball in &self.balls {
+            state.extend(self.lab.position(*ball).to_array());
+            state.extend(self.lab.velocity(*ball).to_array());
+        }
+        for spring in &self.springs {
+            let r = self.lab.readout(*spring);
+            state.extend([r.length, r.rate, r.spring_force, r.damper_force]);
+            state.extend([r.dissipated_energy, r.work, r.omega_dt, r.effective_mass]);
+        }
+        state.into_iter().map(f32::to_bits).collect()
+    }
+
+    /// What game and player do to it in a tick.
+    fn disturb(&mut self, tick: usize) {
+        if (40..60).contains(&tick) {
+            let t = (tick - 40) as f32 / 20.0;
+            self.lab.get_mut::<Transform>(self.hook).translation.x = t * t;
+        }
+        if tick == 70 {
+            self.lab.get_mut::<AdditionalMassProperties>(self.balls[7]);
+            let heavy = AdditionalMassProperties::Mass(3.0);
+            let world = self.lab.app.world_mut();
+            world.entity_mut(self.balls[7]).insert(heavy);
+        }
+        if tick == 80 {
+            self.lab.spawn_force(self.balls[12], Vec3::Z);
+        }
+        if tick == 90 {
+            self.lab.get_mut::<Velocity>(self.balls[18]).linear.z += 2.0;
+        }
+        if tick == 100 {
+            self.lab.get_mut::<Transform>(self.balls[19]).translation.y -= 0.1;
+        }
+        self.lab.tick();
+    }
+}
+
+#[test]
+fn a_network_left_alone_moves_as_one_that_is_read_anew_bit_for_bit() {
+    for (stiffness, damping) in [(60.0, 0.0), (60.0, 0.4), (2e4, 5.0)] {
+        let mut alone = Net::new(stiffness, damping);
+        let mut touched = Net::new(stiffness, damping);
+        for tick in 0..180 {
+            alone.disturb(tick);
+            // The same number once more, but it might have been another one.
+            let spring = touched.springs[tick % 20];
+            touched.lab.get_mut::<SpringDamper>(spring).stiffness = stiffness;
+            touched.disturb(tick);
+            assert!(
+                alone.state() == touched.state(),
+                "{stiffness} N/m, {damping} N s/m: tick {tick}"
+            );
+        }
+    }
+}
