@@ -1,18 +1,16 @@
 //! One component through one step: gather, wake, integrate, deliver.
 
-use super::body::{deliver, read, turning_of};
+use super::body::{deliver, read};
 use super::carry::Carry;
-use super::check::Fault;
+use super::element::element;
 use super::forces::Share;
 use super::held::{self, Expected, Support};
 use super::passive::Ledger;
-use super::scene::{BodyRow, ElementRow, Held};
+use super::scene::{BodyRow, ElementRow};
 use super::sleep::omega_of;
 use super::step::Step;
 use super::touch::Partners;
 use crate::dynamics::body::Body;
-use crate::dynamics::element::{Element, End, Path};
-use crate::dynamics::guide::Guide;
 use crate::dynamics::step::Component;
 use crate::dynamics::tolerance::{Accuracy, Outcome};
 use bevy::math::DVec3;
@@ -327,82 +325,4 @@ impl Assembly {
             }
         }
     }
-}
-
-impl Step<'_> {
-    fn end(&self, held: Held, guide: Guide, bodies: &[BodyRow], set: &RigidBodySet) -> End {
-        if let Held::Body {
-            handle,
-            local,
-            movable: Some(index),
-            ..
-        } = held
-            && let Some(body) = set.get(handle)
-        {
-            return End::Body {
-                index: bodies[index].slot,
-                arm: local - body.local_center_of_mass().as_dvec3(),
-            };
-        }
-        let (from, to) = self.path(&held, set);
-        let mut path = Path::straight(from, (to - from) / self.plan.time);
-        if let Held::Body { handle, .. } = held
-            && guide.turns()
-            && let Some(body) = set.get(handle)
-        {
-            (path.rotation, path.turning) = turning_of(body, self.plan.time);
-        }
-        End::Path(path)
-    }
-}
-
-/// The integrator's element, its rest length captured if need be; or none, with the fault noted.
-fn element(row: &mut ElementRow, ends: [End; 2], bodies: &[Body]) -> Option<Element> {
-    row.passing = None;
-    let p = &mut row.parameters;
-    let mut element = Element {
-        ends,
-        stiffness: f64::from(p.stiffness),
-        damping: f64::from(p.damping),
-        rest_length: f64::from(p.rest_length.unwrap_or(0.0)),
-        guide: row.companion.guide,
-        law: row.companion.law.clone(),
-        angle: row.memory.angle,
-        heat: 0.0,
-        work: 0.0,
-        direction: row.memory.direction,
-        stiff_damper: false,
-    };
-    if p.rest_length.is_some()
-        && element.law.is_none()
-        && let Some(inverse_mass) = element.plain_inverse_mass(bodies)
-    {
-        row.inverse_mass = inverse_mass;
-        return Some(element);
-    }
-    let guided = element.guide != Guide::Centres;
-    let mut line = element.line(bodies);
-    if p.rest_length.is_none() {
-        let length = line.map_or(0.0, |line| line.distance());
-        p.rest_length = Some(length as f32);
-        element.rest_length = f64::from(length as f32);
-        row.captured = true;
-        line = element.line(bodies);
-    }
-    let Some(line) = line else {
-        let reason = if guided {
-            "is tilted half a turn against body_a, where a twist has no meaning"
-        } else {
-            "coincides with body_a, so nothing says which way to push; move one or set Anchors"
-        };
-        row.passing = Some(Fault::new(p.names.ends[1], reason));
-        return None;
-    };
-    let rate = line.motion(&element, bodies, 0.0).axial;
-    if !element.is_sound(line.distance(), rate) {
-        row.passing = Some(Fault::new("ForceLaw", "gives NaN or infinity"));
-        return None;
-    }
-    row.inverse_mass = line.inverse_mass;
-    Some(element)
 }

@@ -11,6 +11,7 @@ mod breaking;
 mod carry;
 mod check;
 mod companions;
+mod element;
 mod ends;
 mod energy;
 mod find;

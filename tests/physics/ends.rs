@@ -250,3 +250,28 @@ fn between_two_ends_that_nothing_moves_it_still_measures() {
     lab.run(0.1);
     assert_eq!(lab.readout(element).spring_force, 10.0);
 }
+
+#[test]
+fn two_springs_off_the_centre_of_a_body_that_cannot_turn_hold_it_where_they_are_fixed() {
+    let mut lab = Lab::new();
+    let mass = 2.0;
+    let shelf = lab.spawn((
+        brick(mass, Vec3::ONE, Vec3::ZERO),
+        LockedAxes::ROTATION_LOCKED,
+    ));
+    let stiffness = 500.0;
+    for side in [Vec3::X, Vec3::NEG_X] {
+        let hook = lab.point(side + Vec3::Y);
+        lab.spawn((
+            SpringDamper::new(hook, shelf)
+                .with_stiffness(stiffness)
+                .with_damping(30.0)
+                .with_rest_length(1.0),
+            Anchors::new(Vec3::ZERO, side),
+        ));
+    }
+    lab.run(4.0);
+    let sag = mass * 9.81 / (2.0 * stiffness);
+    let low = -lab.position(shelf).y;
+    assert!((low - sag).abs() < 1e-4, "{low} m instead of {sag}");
+}

@@ -1,0 +1,200 @@
+//! Does any network of any stiffness gain energy, and does it come to rest where statics says?
+
+mod nets;
+mod statics;
+
+use crate::harness::*;
+use bevy::math::DVec3;
+use bevy::prelude::*;
+use bevy_coilover::prelude::*;
+use bevy_rapier3d::prelude::*;
+use nets::{HEAVY, Net, chain, lattice, star, tensegrity};
+use statics::Statics;
+
+const PHASES: [f32; 5] = [0.3, 1.0, 3.0, 10.0, 100.0];
+
+impl Net {
+    /// Stiffness for a phase per step of one spring between two heavy bodies.
+    fn stiffness(phase: f32) -> f32 {
+        let omega = phase / DT;
+        omega * omega * HEAVY / 2.0
+    }
+
+    /// The scene; `drag` is the engine's own damping of all bodies.
+    fn build(&self, phase: f32, zeta: f32, drag: f32) -> (Lab, Vec<Entity>) {
+        let k = Self::stiffness(phase);
+        let c = 2.0 * zeta * (k * HEAVY / 2.0).sqrt();
+        let mut lab = Lab::new();
+        let bodies: Vec<Entity> = self
+            .points
+            .iter()
+            .map(|(at, mass)| match mass {
+                Some(mass) => lab.spawn((
+                    body(*mass, *at),
+                    Damping {
+                        linear_damping: drag,
+                        angular_damping: 0.0,
+                    },
+                )),
+                None => lab.point(*at),
+            })
+            .collect();
+        for (a, b, rest) in &self.links {
+            lab.spawn(
+                SpringDamper::new(bodies[*a], bodies[*b])
+                    .with_stiffness(k)
+                    .with_damping(c)
+                    .with_rest_length(*rest),
+            );
+        }
+        (lab, bodies)
+    }
+
+    fn places(lab: &Lab, bodies: &[Entity]) -> Vec<DVec3> {
+        bodies
+            .iter()
+            .map(|body| lab.position(*body).as_dvec3())
+            .collect()
+    }
+
+    /// Kinetic, stored and gravity's energy, from the engine's own state.
+    fn energy(&self, lab: &Lab, bodies: &[Entity], statics: &Statics) -> f64 {
+        let mut sum = statics.energy(&Self::places(lab, bodies));
+        for ((_, mass), body) in self.points.iter().zip(bodies) {
+            if let Some(mass) = mass {
+                let speed = f64::from(lab.velocity(*body).length());
+                sum += 0.5 * f64::from(*mass) * speed * speed;
+            }
+        }
+        sum
+    }
+
+    /// Comes to rest under drag, and compares with statics; returns the least energy.
+    fn check_rest(&self, phase: f32, seconds: f64) -> f64 {
+        let (mut lab, bodies) = self.build(phase, 0.1, 2.0);
+        lab.run(seconds);
+        let statics = Statics::new(self, f64::from(Self::stiffness(phase)));
+        let settled = statics.settle(Self::places(&lab, &bodies));
+        let strains = |at: &[DVec3]| -> Vec<f64> {
+            let strain = |(a, b, rest): &(usize, usize, f32)| {
+                at[*a].distance(at[*b]) / f64::from(*rest) - 1.0
+            };
+            self.links.iter().map(strain).collect()
+        };
+        // The mean of a second: the roundings of f32 keep the stiffest trembling.
+        let ticks = lab.ticks(1.0);
+        let mut mean = vec![0.0; self.links.len()];
+        for _ in 0..ticks {
+            lab.tick();
+            for (mean, strain) in mean.iter_mut().zip(strains(&Self::places(&lab, &bodies))) {
+                *mean += strain / ticks as f64;
+            }
+        }
+        let wanted = strains(&settled);
+        let largest = wanted.iter().fold(0.0_f64, |most, s| most.max(s.abs()));
+        let (mut worst, mut far) = (0.0_f64, 0.0_f64);
+        for ((mean, wanted), link) in mean.iter().zip(wanted).zip(&self.links) {
+            // The engine adds to a position four times a step, and half a rounding can be lost each time;
+            // a length has two positions; half as much again for the trembling that comes of it.
+            far = far.max(
+                settled[link.0]
+                    .abs()
+                    .max(settled[link.1].abs())
+                    .max_element(),
+            );
+            let rounding = 6.0 * f64::from(f32::EPSILON) * far / f64::from(link.2);
+            worst = worst.max(((mean - wanted).abs() - rounding).max(0.0));
+        }
+        let masses = self.points.iter().filter_map(|(_, mass)| *mass);
+        let lightest = f64::from(masses.fold(f32::MAX, f32::min)) * GRAVITY;
+        let blow = f64::from(Self::stiffness(phase) * f32::EPSILON) * far;
+        // A rounding of a position that is a blow of ten times a body's weight keeps it trembling for
+        // ever; there all that can be asked is that lengths are right.
+        let bar = if blow < 10.0 * lightest {
+            0.01 * largest
+        } else {
+            0.01
+        };
+        println!(
+            "{}, ω·dt {phase}: at rest strains up to {largest:.2e}, error {worst:.1e} (bar {bar:.1e})",
+            self.name
+        );
+        assert!(worst <= bar, "{} ω·dt {phase}: {worst}", self.name);
+        statics.energy(&settled)
+    }
+
+    /// Runs free and watches the energy.
+    fn check_energy(&self, phase: f32, zeta: f32, least: f64, seconds: f64) {
+        let statics = Statics::new(self, f64::from(Self::stiffness(phase)));
+        let (mut lab, bodies) = self.build(phase, zeta, 0.0);
+        let first = self.energy(&lab, &bodies, &statics) - least;
+        let mut highest = 0.0_f64;
+        for _ in 0..lab.ticks(seconds) {
+            lab.tick();
+            highest = highest.max(self.energy(&lab, &bodies, &statics) - least);
+        }
+        let last = self.energy(&lab, &bodies, &statics) - least;
+        println!(
+            "{}, ω·dt {phase} ζ {zeta}: energy at most {:.4} of the first, at the end {:.4}",
+            self.name,
+            highest / first,
+            last / first
+        );
+        assert!(
+            highest <= 1.05 * first,
+            "{} ω·dt {phase} ζ {zeta}: {highest} J of {first} J",
+            self.name
+        );
+    }
+}
+
+/// Every stiffness and damping, with equal masses or one to ten thousand.
+fn check(net: fn(bool, f32) -> Net, unequal: bool, seconds: f64) {
+    for phase in PHASES {
+        let net = net(unequal, phase);
+        let least = net.check_rest(phase, 20.0_f64.min(seconds));
+        for zeta in [0.0, 0.1] {
+            net.check_energy(phase, zeta, least, seconds);
+        }
+    }
+}
+
+#[test]
+fn a_chain_of_equal_masses() {
+    check(chain, false, 60.0);
+}
+
+#[test]
+fn a_chain_of_masses_one_to_ten_thousand() {
+    check(chain, true, 60.0);
+}
+
+#[test]
+fn a_star_of_equal_masses() {
+    check(star, false, 60.0);
+}
+
+#[test]
+fn a_star_with_a_hub_of_a_ten_thousandth() {
+    check(star, true, 60.0);
+}
+
+#[test]
+fn a_tensegrity_prism_of_equal_masses() {
+    check(tensegrity, false, 60.0);
+}
+
+#[test]
+fn a_tensegrity_prism_of_masses_one_to_ten_thousand() {
+    check(tensegrity, true, 60.0);
+}
+
+#[test]
+fn a_lattice_of_equal_masses() {
+    check(lattice, false, 10.0);
+}
+
+#[test]
+fn a_lattice_of_masses_one_to_ten_thousand() {
+    check(lattice, true, 10.0);
+}
