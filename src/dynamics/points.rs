@@ -13,7 +13,7 @@ use super::element::{Element, End, rounding};
 use super::energy::Energy;
 use super::guide::Guide;
 use super::step::EXTRAPOLATION_LIMIT;
-use super::tolerance::{Motion, VELOCITY_COUNTS};
+use super::tolerance::{Motion, velocity_counts};
 use bevy::math::DVec3;
 pub(crate) use carry::Flight;
 use kick::Bar;
@@ -374,11 +374,22 @@ impl Motion for Points {
     }
 
     fn distance(&self, slot: usize) -> f64 {
+        let other = &self.saved[slot].0;
+        let faster = |i: usize| self.points[i].velocity - other[i].velocity;
+        let (mut motion, mut stiffened) = (0.0, 0.0);
+        for (i, point) in self.points[..self.bodies].iter().enumerate() {
+            motion += faster(i).length_squared() / point.inverse_mass;
+        }
+        for wire in &self.wires {
+            let [a, b] = wire.ends.map(|end| faster(end as usize));
+            let along = wire.side.normalize_or_zero();
+            stiffened += wire.stiffness * (b - a).dot(along).powi(2);
+        }
+        let counts = velocity_counts(motion, stiffened);
         let apart = |(a, b): (&Point, &Point)| {
-            a.position.distance(b.position) + VELOCITY_COUNTS * a.velocity.distance(b.velocity)
+            a.position.distance(b.position) + counts * a.velocity.distance(b.velocity)
         };
-        let pairs = self.points.iter().zip(&self.saved[slot].0);
-        pairs.map(apart).fold(0.0, f64::max)
+        self.points.iter().zip(other).map(apart).fold(0.0, f64::max)
     }
 
     fn extrapolate(&mut self, slot: usize) {

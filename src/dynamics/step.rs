@@ -10,7 +10,9 @@ use super::kick::{self, Map, Memo};
 use super::network::{Network, RESOLVED};
 use super::points::Points;
 use super::shock::Apart;
-use super::tolerance::{Accuracy, Controller, Method, Motion, Outcome, VELOCITY_COUNTS};
+use super::tolerance::{
+    Accuracy, Controller, Method, Motion, Outcome, VELOCITY_COUNTS, velocity_counts,
+};
 use bevy::math::DVec3;
 
 mod carry;
@@ -227,6 +229,24 @@ impl Component {
         self.bodies.len() <= 2 && element.law.is_none() && !(isotropic && turns)
     }
 
+    /// Time over which velocities that are off these count.
+    fn velocity_counts(&self, other: &[Body]) -> f64 {
+        if self.bodies.iter().any(|body| body.spin != Spin::Still) {
+            return VELOCITY_COUNTS;
+        }
+        let faster = |i: usize| self.bodies[i].velocity - other[i].velocity;
+        let motion = (0..other.len()).map(|i| (self.bodies[i].mass() * faster(i)).dot(faster(i)));
+        let stiffened = self.elements.iter().filter(|e| e.law.is_none()).map(|e| {
+            let [a, b] = e.ends.map(|end| match end {
+                End::Body { index, .. } => faster(index),
+                End::Path(_) => DVec3::ZERO,
+            });
+            let along = e.direction.unwrap_or(DVec3::ZERO);
+            e.stiffness * (b - a).dot(along).powi(2)
+        });
+        velocity_counts(motion.sum(), stiffened.sum())
+    }
+
     fn aim(&mut self, step: f64) {
         for element in &mut self.elements {
             element.aim(&self.bodies, step);
@@ -292,9 +312,11 @@ impl Motion for Component {
 
     fn distance(&self, slot: usize) -> f64 {
         let mut worst = 0.0_f64;
-        for (a, b) in self.bodies.iter().zip(&self.memory.saved[slot].bodies) {
-            let mut apart = (a.position - b.position).length()
-                + VELOCITY_COUNTS * (a.velocity - b.velocity).length();
+        let other = &self.memory.saved[slot].bodies;
+        let counts = self.velocity_counts(other);
+        for (a, b) in self.bodies.iter().zip(other) {
+            let mut apart =
+                (a.position - b.position).length() + counts * (a.velocity - b.velocity).length();
             if a.spin != Spin::Still {
                 let radius = (a.inertia.max_element() * a.inverse_mass.max_element()).sqrt();
                 let turned = (a.rotation * b.rotation.inverse()).to_scaled_axis();

@@ -60,9 +60,21 @@ pub(crate) trait Motion {
 /// Time over which a velocity that is wrong becomes a position that is wrong, s.
 pub(crate) const VELOCITY_COUNTS: f64 = 0.15;
 
+/// The same of velocities with so much kinetic energy in all, against which springs gain energy at first as the
+/// square of time times so much (J, J/s²): what swings back within a period counts no longer than that. By
+/// Rayleigh's quotient of the two.
+pub(crate) fn velocity_counts(motion: f64, stiffened: f64) -> f64 {
+    let omega = (stiffened / motion).sqrt();
+    // NaN where nothing is wrong.
+    VELOCITY_COUNTS.min(omega.recip())
+}
+
 /// Steps from probe to probe, where little is needed and elsewhere.
 const CALM: u32 = 24;
 const BUSY: u32 = 8;
+
+/// Growth of the error from probe to probe above which the next comes sooner.
+const GROWTH: f64 = 2.0;
 
 /// Memory of a motion's errors.
 #[derive(Clone, Copy, Debug, Default)]
@@ -73,6 +85,8 @@ pub(crate) struct Controller {
     age: u32,
     /// Probes in a row that found little to do.
     calm: u32,
+    /// Steps from the last probe to the next.
+    span: u32,
 }
 
 /// One way to take a step.
@@ -118,7 +132,8 @@ impl Controller {
         tolerance: f64,
         [least, most]: [u32; 2],
     ) -> Outcome {
-        let m = match self.known {
+        let before = self.known;
+        let m = match before {
             Some(known) => match cheapest(known, tolerance, [least, most]).0 {
                 Plan::Plain(n) => (n / 4).max(least),
                 Plan::Extrapolated(m) => (m / 2).max(least),
@@ -149,10 +164,16 @@ impl Controller {
             self.known = Some((plain, Some(fine)));
         }
         let known = self.known.unwrap_or_default();
+        let before = before.map_or(0.0, |known| known.0);
+        self.span = if known.0 > GROWTH * before {
+            (self.span / 2).max(1)
+        } else {
+            (2 * self.span).min(BUSY)
+        };
         let (plan, capped) = cheapest(known, tolerance, [least, most]);
-        let calm = plan == Plan::Plain(least) && known.0 < 0.25 * tolerance;
+        let calm = plan == Plan::Plain(least) && error_of(known, plan) < 0.25 * tolerance;
         self.calm = if calm { self.calm + 1 } else { 0 };
-        self.age = if self.calm > 2 { CALM } else { BUSY };
+        self.age = if self.calm > 2 { CALM } else { self.span };
         let taken = match known.1 {
             Some(_) => Plan::Extrapolated(2 * m),
             None => Plan::Plain(2 * m),

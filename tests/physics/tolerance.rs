@@ -103,7 +103,7 @@ fn the_error_of_the_first_second_is_near_the_tolerance() {
                 "{name}, {tolerance}: {error}"
             );
             let price = price.unwrap_or(0.0);
-            assert!(price < 2.5, "{name}, {tolerance}: {price}");
+            assert!(price < 2.0, "{name}, {tolerance}: {price}");
         }
     }
 }
