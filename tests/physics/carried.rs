@@ -111,3 +111,88 @@ fn a_network_left_alone_moves_as_one_that_is_read_anew_bit_for_bit() {
         }
     }
 }
+
+/// Numbers that follow no pattern.
+struct Dice(u64);
+
+impl Dice {
+    fn roll(&mut self, most: usize) -> usize {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005) + 1;
+        (self.0 >> 33) as usize % most
+    }
+}
+
+impl Net {
+    /// Something happens to a net whose springs and balls nobody need know about.
+    fn surprise(&mut self, dice: &mut Dice) {
+        let (ball, spring) = (dice.roll(20), dice.roll(self.springs.len()));
+        let (kind, size) = (dice.roll(16), dice.roll(10) as f32);
+        let (ball, spring) = (self.balls[ball], self.springs[spring]);
+        let mut entity = self.lab.app.world_mut().entity_mut(ball);
+        match kind {
+            0 => drop(entity.insert(RigidBodyDisabled)),
+            1 => drop(entity.remove::<RigidBodyDisabled>()),
+            2 => drop(entity.insert(LockedAxes::TRANSLATION_LOCKED_X)),
+            3 => drop(entity.insert(LockedAxes::ROTATION_LOCKED)),
+            4 => drop(entity.insert(LockedAxes::empty())),
+            5 => drop(entity.insert(GravityScale(0.2 * size))),
+            6 => drop(entity.insert(ExternalImpulse {
+                impulse: Vec3::Z * 0.1 * size,
+                ..default()
+            })),
+            7 => drop(entity.insert(RigidBody::KinematicVelocityBased)),
+            8 => drop(entity.insert(RigidBody::Dynamic)),
+            9 => drop(entity.insert(Damping {
+                linear_damping: 0.1 * size,
+                angular_damping: 0.0,
+            })),
+            10 => drop(entity.insert(AdditionalSolverIterations(size as usize % 3))),
+            11 => {
+                let dt = 1.0 / (50.0 + 2.0 * size);
+                let mut mode = self.lab.app.world_mut().resource_mut::<TimestepMode>();
+                *mode = TimestepMode::Fixed { dt, substeps: 1 };
+            }
+            12 => {
+                let mut spring = self.lab.get_mut::<SpringDamper>(spring);
+                spring.rest_length = Some(0.5 + 0.1 * size);
+            }
+            13 => {
+                let world = self.lab.app.world_mut();
+                let off = Anchors::new(Vec3::ZERO, Vec3::Y * 0.05 * size);
+                world.entity_mut(spring).insert(off);
+            }
+            14 => {
+                let world = self.lab.app.world_mut();
+                world.entity_mut(spring).remove::<Anchors>();
+            }
+            _ => {
+                let mut velocity = self.lab.get_mut::<Velocity>(ball);
+                velocity.angular.x += size;
+            }
+        }
+    }
+}
+
+#[test]
+fn whatever_happens_to_a_network_it_goes_on_as_one_that_is_read_anew() {
+    for seed in 1..=40 {
+        let (stiffness, damping) = [(60.0, 0.0), (300.0, 1.0), (2e4, 5.0)][seed % 3];
+        let mut alone = Net::new(stiffness, damping);
+        let mut touched = Net::new(stiffness, damping);
+        let mut dice = [Dice(seed as u64), Dice(seed as u64)];
+        for tick in 0..90 {
+            let spring = touched.springs[0];
+            touched.lab.get_mut::<SpringDamper>(spring).damping = damping;
+            for (net, dice) in [&mut alone, &mut touched].into_iter().zip(&mut dice) {
+                if tick % 5 == 4 {
+                    net.surprise(dice);
+                }
+                net.lab.tick();
+            }
+            assert!(
+                alone.state() == touched.state(),
+                "{stiffness} N/m, seed {seed}, tick {tick}"
+            );
+        }
+    }
+}
