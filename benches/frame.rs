@@ -8,9 +8,13 @@
 mod scenes;
 
 use bevy::app::App;
+use bevy::ecs::world::World;
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use scenes::{Link, Own, Scene};
 use std::time::Duration;
+
+/// What happens before a frame.
+type Change = fn(&mut World);
 
 /// An app that is made when a benchmark first needs it, so that one left out by a filter costs nothing.
 struct Lazy<F>(Option<App>, F);
@@ -24,11 +28,12 @@ impl<F: Fn() -> App> Lazy<F> {
         self.0.get_or_insert_with(&self.1)
     }
 
-    /// Time in our systems over so many frames.
-    fn own(&mut self, frames: u64) -> Duration {
+    /// Time in our systems over so many frames, each after some change.
+    fn own(&mut self, frames: u64, change: Change) -> Duration {
         let app = self.app();
         app.world_mut().resource_mut::<Own>().0 = Duration::ZERO;
         for _ in 0..frames {
+            change(app.world_mut());
             app.update();
         }
         app.world().resource::<Own>().0
@@ -58,7 +63,7 @@ fn isolated(c: &mut Criterion) {
         let mut lazy = Lazy::new(|| scene.app(count, link, microsteps));
         group.throughput(Throughput::Elements(u64::from(count)));
         group.bench_function(BenchmarkId::new(name, count), |b| {
-            b.iter_custom(|frames| lazy.own(frames));
+            b.iter_custom(|frames| lazy.own(frames, |_| {}));
         });
     };
     for count in [1, 10, 100, 1_000, 10_000, 100_000] {
@@ -79,12 +84,32 @@ fn networks(c: &mut Criterion) {
             let mut lazy = Lazy::new(|| scene.app(count, Link::Ours, 1));
             group.throughput(Throughput::Elements(u64::from(count)));
             group.bench_function(BenchmarkId::from_parameter(count), |b| {
-                b.iter_custom(|frames| lazy.own(frames));
+                b.iter_custom(|frames| lazy.own(frames, |_| {}));
             });
         }
         group.finish();
     }
 }
 
-criterion_group!(benches, frames, isolated, networks);
+/// What it costs that something comes and goes in every frame.
+fn churn(c: &mut Criterion) {
+    let mut group = c.benchmark_group("own/churn");
+    group.sample_size(10);
+    let count = 10_000;
+    let cases: [(&str, Change); 3] = [
+        ("nothing", |_| {}),
+        ("a body without spring", scenes::shoot),
+        ("a spring", scenes::respring),
+    ];
+    for (name, change) in cases {
+        let mut lazy = Lazy::new(|| Scene::Isolated.app(count, Link::Ours, 1));
+        group.throughput(Throughput::Elements(u64::from(count)));
+        group.bench_function(BenchmarkId::new(name, count), |b| {
+            b.iter_custom(|frames| lazy.own(frames, change));
+        });
+    }
+    group.finish();
+}
+
+criterion_group!(benches, frames, isolated, networks, churn);
 criterion_main!(benches);

@@ -31,6 +31,33 @@ pub enum Scene {
     Lattice,
 }
 
+/// What has come last and is the next to go.
+#[derive(Resource)]
+struct Last(Entity);
+
+fn replace(world: &mut World, new: Entity) {
+    if let Some(last) = world.remove_resource::<Last>() {
+        world.despawn(last.0);
+    }
+    world.insert_resource(Last(new));
+}
+
+/// A body comes, that of the last time goes.
+pub fn shoot(world: &mut World) {
+    let new = body(world, Vec3::NEG_Y * 10.0, Vec3::NEG_Y);
+    replace(world, new);
+}
+
+/// A spring comes between two points of the world, that of the last time goes.
+pub fn respring(world: &mut World) {
+    let [a, b] = [Vec3::NEG_Y, Vec3::NEG_Z].map(|at| {
+        let place = Transform::from_translation(at);
+        world.spawn(place).id()
+    });
+    let new = world.spawn(Spring::new(a, b)).id();
+    replace(world, new);
+}
+
 /// Time spent in our systems since it was last set to zero.
 #[derive(Resource, Default)]
 pub struct Own(pub Duration);

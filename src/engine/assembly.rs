@@ -20,6 +20,8 @@ use bevy_rapier3d::rapier::dynamics::RigidBodySet;
 /// A component with its bodies and elements, kept from tick to tick.
 #[derive(Default)]
 pub(crate) struct Assembly {
+    /// Tells its component from others.
+    pub(super) signature: u64,
     pub(super) component: Component,
     /// Its bodies at the start of the step, with their full mass.
     start: Vec<Body>,

@@ -13,7 +13,7 @@ use bevy::ecs::system::SystemParam;
 use bevy::math::DVec3;
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
-use std::mem::take;
+use std::mem::{swap, take};
 
 /// Finds the ends of elements and judges them.
 #[derive(SystemParam)]
@@ -130,10 +130,30 @@ impl Finder<'_, '_> {
     }
 }
 
-/// The rows before they were made anew, by entity.
-struct Known {
-    elements: EntityHashMap<ElementRow>,
-    bodies: EntityHashMap<BodyRow>,
+/// The rows before they were made anew. Kept between, for their memory alone.
+#[derive(Default)]
+pub(super) struct Known {
+    elements: Vec<ElementRow>,
+    row_of: EntityHashMap<usize>,
+    bodies: Vec<BodyRow>,
+    index: EntityHashMap<usize>,
+}
+
+impl Known {
+    fn element(&self, entity: Entity) -> Option<&ElementRow> {
+        Some(&self.elements[*self.row_of.get(&entity)?])
+    }
+
+    fn body(&self, entity: Entity) -> Option<&BodyRow> {
+        Some(&self.bodies[*self.index.get(&entity)?])
+    }
+
+    fn clear(&mut self) {
+        self.elements.clear();
+        self.row_of.clear();
+        self.bodies.clear();
+        self.index.clear();
+    }
 }
 
 impl Scene {
@@ -147,25 +167,19 @@ impl Scene {
         modified: &EntityHashSet,
         commands: &mut Commands,
     ) {
-        let known = Known {
-            elements: take(&mut self.elements)
-                .into_iter()
-                .map(|row| (row.entity, row))
-                .collect(),
-            bodies: take(&mut self.bodies)
-                .into_iter()
-                .map(|row| (row.entity, row))
-                .collect(),
-        };
-        self.index.clear();
-        self.row_of.clear();
+        let mut known = take(&mut self.known);
+        swap(&mut self.elements, &mut known.elements);
+        swap(&mut self.row_of, &mut known.row_of);
+        swap(&mut self.bodies, &mut known.bodies);
+        swap(&mut self.index, &mut known.index);
         self.changed.clear();
         self.faulty.clear();
         self.followed.clear();
-        let mut found_all = Vec::new();
+        self.walls.clear();
+        let mut found_all = Vec::with_capacity(known.elements.len());
         for parts in elements {
             let entity = parts.entity;
-            let mut row = ElementRow::fresh(entity, known.elements.get(&entity));
+            let mut row = ElementRow::fresh(entity, known.element(entity));
             let parameters = parts.parameters();
             if parameters.is_err() {
                 row.parameters = Parameters::NONE;
@@ -217,6 +231,11 @@ impl Scene {
                 if row.watched[end] {
                     self.followed.push((index, end));
                 }
+                if let (Place::OnBody { entity, .. }, None) =
+                    (found.places[end], row.held[end].movable())
+                {
+                    self.walls.insert(entity);
+                }
             }
             for body in row.held.iter().filter_map(Held::movable) {
                 let body = &mut self.bodies[body];
@@ -225,7 +244,7 @@ impl Scene {
             }
         }
         for body in &mut self.bodies {
-            let before = known.bodies.get(&body.entity).map(|row| row.signature);
+            let before = known.body(body.entity).map(|row| row.signature);
             body.disturbed |= before != Some(body.signature);
         }
         self.immovable = self
@@ -233,7 +252,10 @@ impl Scene {
             .iter()
             .any(|row| row.fault.is_none() && row.held.iter().all(|held| held.movable().is_none()));
         self.groups.find(&self.elements, &self.bodies);
-        self.groups.furnish(&mut self.assemblies, &self.bodies);
+        self.groups
+            .furnish(&mut self.assemblies, &self.elements, &self.bodies);
+        known.clear();
+        self.known = known;
     }
 
     /// Rows of all movable bodies.
@@ -254,7 +276,7 @@ impl Scene {
                 };
                 let slot = *self.index.entry(entity).or_insert_with(|| {
                     let mut row = BodyRow::new(entity, handle, context);
-                    if let Some(known) = known.bodies.get(&entity).filter(|k| k.handle == handle) {
+                    if let Some(known) = known.body(entity).filter(|k| k.handle == handle) {
                         row = BodyRow {
                             turns: false,
                             elements: 0,
@@ -341,7 +363,7 @@ impl ElementRow {
 }
 
 /// Spreads an entity's bits, so that sums of them tell sets apart.
-fn mix(bits: u64) -> u64 {
+pub(super) fn mix(bits: u64) -> u64 {
     let x = (bits ^ (bits >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb)
 }

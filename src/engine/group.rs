@@ -1,7 +1,10 @@
 //! Which elements have to be solved together.
 
 use super::assembly::{Assembly, Members};
+use super::find::mix;
+use super::held::Support;
 use super::scene::{BodyRow, ElementRow, Held};
+use bevy::platform::collections::HashMap;
 use bevy::prelude::Entity;
 use bevy_rapier3d::rapier::dynamics::RigidBodyHandle;
 use std::ops::Range;
@@ -11,6 +14,8 @@ use std::ops::Range;
 pub(super) struct Group {
     elements: Range<usize>,
     bodies: Range<usize>,
+    /// A hash of its bodies and elements.
+    signature: u64,
     /// Rapier's context, in which all of it is.
     pub context: Entity,
     /// Index of what it is assembled in; none for a lone element on bodies that it does not turn.
@@ -89,31 +94,52 @@ impl Groups {
             elements: element_starts[g]..element_starts[g + 1],
             bodies: body_starts[g]..body_starts[g + 1],
             context: bodies[self.bodies[body_starts[g]]].context,
+            signature: 0,
             assembly: None,
             dozing: None,
         }));
     }
 
-    /// Gives every group that needs one its assembly.
-    pub(super) fn furnish(&mut self, assemblies: &mut Vec<Assembly>, bodies: &[BodyRow]) {
-        let mut count = 0;
+    /// Gives every group that needs one its assembly: the one that it had, if it was there before.
+    pub(super) fn furnish(
+        &mut self,
+        assemblies: &mut Vec<Assembly>,
+        elements: &[ElementRow],
+        bodies: &[BodyRow],
+    ) {
+        let mut known: HashMap<u64, Assembly> =
+            assemblies.drain(..).map(|a| (a.signature, a)).collect();
         for group in &mut self.list {
-            let turns = self.bodies[group.bodies.clone()]
-                .iter()
-                .any(|b| bodies[*b].turns);
-            if turns || group.elements.len() > 1 {
-                group.assembly = Some(count);
-                count += 1;
+            let members = Members {
+                elements: &self.elements[group.elements.clone()],
+                bodies: &self.bodies[group.bodies.clone()],
+            };
+            let entities = members.bodies.iter().map(|b| bodies[*b].entity);
+            let entities = entities.chain(members.elements.iter().map(|e| elements[*e].entity));
+            group.signature = entities.fold(members.elements.len() as u64, |sum, entity| {
+                mix(sum ^ entity.to_bits())
+            });
+            let any = |is: fn(&BodyRow) -> bool| members.bodies.iter().any(|b| is(&bodies[*b]));
+            let alone = members.elements.len() == 1 && !any(|body| body.turns);
+            let is_plain = alone && !any(|body| body.support != Support::None);
+            let before = known.remove(&group.signature).filter(|_| !is_plain);
+            if alone && before.is_none() {
+                continue;
             }
+            group.assembly = Some(assemblies.len());
+            let mut assembly = before.unwrap_or_default();
+            assembly.signature = group.signature;
+            assemblies.push(assembly);
         }
-        assemblies.clear();
-        assemblies.resize_with(count, Assembly::default);
     }
 
     /// Gives a lone element's group an assembly of its own after all.
     pub(super) fn promote(&mut self, group: usize, assemblies: &mut Vec<Assembly>) {
-        self.list[group].assembly = Some(assemblies.len());
-        assemblies.push(Assembly::default());
+        let group = &mut self.list[group];
+        group.assembly = Some(assemblies.len());
+        let mut assembly = Assembly::default();
+        assembly.signature = group.signature;
+        assemblies.push(assembly);
     }
 
     pub(super) fn list(&self) -> &[Group] {

@@ -28,7 +28,7 @@ pub(crate) fn prepare(
     mut commands: Commands,
 ) {
     let scene = &mut *scene;
-    let mut same = !watch.saw_change(&scene.index);
+    let mut same = !watch.saw_change(scene);
     same &= !std::mem::take(&mut scene.stale);
     companions.look();
     // What comes and goes is seen by the watch; this is for whatever else may take elements away.

@@ -4,6 +4,7 @@ use super::assembly::Assembly;
 use super::check::{Fault, Parameters};
 use super::companions::Companion;
 use super::energy::EnergyLedger;
+use super::find::Known;
 use super::forces::Share;
 use super::group::Groups;
 use super::held::{Expected, Support, Twist};
@@ -11,7 +12,7 @@ use super::sleep::Rest;
 use super::touch::Partner;
 use crate::dynamics::kick::Memo;
 use crate::dynamics::tolerance::{Controller, Outcome};
-use bevy::ecs::entity::EntityHashMap;
+use bevy::ecs::entity::{EntityHashMap, EntityHashSet};
 use bevy::math::DVec3;
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::ExternalForce;
@@ -192,6 +193,9 @@ pub struct Scene {
     /// In the order of their entities.
     pub(super) bodies: Vec<BodyRow>,
     pub(super) index: EntityHashMap<usize>,
+    pub(super) known: Known,
+    /// Bodies that hold elements, but that these cannot move.
+    pub(super) walls: EntityHashSet,
     pub(super) groups: Groups,
     pub(super) assemblies: Vec<Assembly>,
     /// Seconds that the engine will step in this tick; 0 if it will not.
@@ -211,6 +215,13 @@ pub struct Scene {
 }
 
 impl Scene {
+    /// Whether it is an element or a body that holds one.
+    pub(super) fn knows(&self, entity: Entity) -> bool {
+        self.index.contains_key(&entity)
+            || self.walls.contains(&entity)
+            || self.row_of.contains_key(&entity)
+    }
+
     /// The row of a body that says it stands at `slot`.
     pub(super) fn body(&mut self, slot: usize, entity: Entity) -> Option<&mut BodyRow> {
         self.bodies.get_mut(slot).filter(|row| row.entity == entity)

@@ -2,10 +2,11 @@
 //! body, and components that are taken away.
 
 use super::forces::SpringLoad;
+use super::scene::Scene;
 use crate::element::{
     Anchors, Damper, Spring, SpringDamper, TorsionDamper, TorsionSpring, TorsionSpringDamper,
 };
-use bevy::ecs::entity::{EntityHashMap, EntityHashSet};
+use bevy::ecs::entity::EntityHashSet;
 use bevy::ecs::entity_disabling::Disabled;
 use bevy::ecs::message::MessageReader;
 use bevy::ecs::query::Allow;
@@ -28,7 +29,7 @@ type BodyChange = (
 /// Watches for such changes.
 #[derive(SystemParam)]
 pub(crate) struct Watch<'w, 's> {
-    changed: Query<'w, 's, (), BodyChange>,
+    changed: Query<'w, 's, Entity, BodyChange>,
     handles: RemovedComponents<'w, 's, RapierRigidBodyHandle>,
     links: RemovedComponents<'w, 's, RapierContextEntityLink>,
     disabled: RemovedComponents<'w, 's, RigidBodyDisabled>,
@@ -47,16 +48,21 @@ pub(crate) struct Watch<'w, 's> {
 }
 
 impl Watch<'_, '_> {
-    /// Whether anything of the kind happened since the last tick.
-    pub(super) fn saw_change(&mut self, index: &EntityHashMap<usize>) -> bool {
+    /// Whether anything of the kind happened to the scene since the last tick. What elements have nothing to do
+    /// with may come and go as it likes.
+    pub(super) fn saw_change(&mut self, scene: &Scene) -> bool {
+        let is_known = |entity: Entity| scene.knows(entity);
+        let is_loaded = |entity: Entity| scene.index.contains_key(&entity);
         self.mass_modified.clear();
         self.mass_modified.extend(self.masses.read().map(|m| m.0));
-        let mut changed = !self.changed.is_empty();
-        changed |= self.mass_modified.iter().any(|e| index.contains_key(e));
+        let mut changed = self.changed.iter().any(is_known);
+        changed |= self.mass_modified.iter().any(|e| is_loaded(*e));
         // Each has to be read to its end.
-        changed |= self.handles.read().count() > 0;
-        changed |= self.links.read().count() > 0;
-        changed |= self.disabled.read().count() > 0;
+        changed |= self.handles.read().filter(|e| is_known(*e)).count() > 0;
+        changed |= self.links.read().filter(|e| is_known(*e)).count() > 0;
+        changed |= self.disabled.read().filter(|e| is_known(*e)).count() > 0;
+        changed |= self.loads.read().filter(|e| is_loaded(*e)).count() > 0;
+        changed |= self.forces.read().filter(|e| is_loaded(*e)).count() > 0;
         changed |= self.hidden.read().count() > 0;
         changed |= self.springs.read().count() > 0;
         changed |= self.dampers.read().count() > 0;
@@ -65,8 +71,6 @@ impl Watch<'_, '_> {
         changed |= self.torsion_dampers.read().count() > 0;
         changed |= self.torsion_pairs.read().count() > 0;
         changed |= self.anchors.read().count() > 0;
-        changed |= self.loads.read().any(|e| index.contains_key(&e));
-        changed |= self.forces.read().any(|e| index.contains_key(&e));
         changed
     }
 }

@@ -15,7 +15,10 @@ struct Net {
 
 impl Net {
     fn new(stiffness: f32, damping: f32) -> Self {
-        let mut lab = Lab::new();
+        Self::within(Lab::new(), stiffness, damping)
+    }
+
+    fn within(mut lab: Lab, stiffness: f32, damping: f32) -> Self {
         let hook = lab.point(Vec3::new(0.0, 1.0, 0.0));
         let fixed = lab.spawn((RigidBody::Fixed, Transform::from_xyz(4.0, 1.0, 0.0)));
         let at = |i: usize| Vec3::new((i % 5) as f32, -((i / 5) as f32), 0.1 * (i % 3) as f32);
@@ -193,6 +196,32 @@ fn whatever_happens_to_a_network_it_goes_on_as_one_that_is_read_anew() {
                 alone.state() == touched.state(),
                 "{stiffness} N/m, seed {seed}, tick {tick}"
             );
+        }
+    }
+}
+
+#[test]
+fn what_comes_and_goes_elsewhere_changes_nothing_of_a_network() {
+    let exact = CoiloverPlugin::default().with_tolerance(1e-3);
+    for plugin in [CoiloverPlugin::default(), exact] {
+        let net = || Net::within(Lab::with(plugin, Engine::default()), 300.0, 1.0);
+        let (mut quiet, mut busy) = (net(), net());
+        let mut guest = None;
+        for tick in 0..120 {
+            if let Some(guest) = guest.take() {
+                busy.lab.app.world_mut().despawn(guest);
+            }
+            if tick % 3 == 0 {
+                let at = |x: f32| Vec3::new(x, 50.0, 0.0);
+                let (hook, ball) = (
+                    busy.lab.point(at(tick as f32)),
+                    busy.lab.body(1.0, at(-3.0)),
+                );
+                guest = Some(busy.lab.spawn(Spring::new(hook, ball)));
+            }
+            quiet.lab.tick();
+            busy.lab.tick();
+            assert!(quiet.state() == busy.state(), "{plugin:?}: tick {tick}");
         }
     }
 }

@@ -275,3 +275,52 @@ fn two_springs_off_the_centre_of_a_body_that_cannot_turn_hold_it_where_they_are_
     let low = -lab.position(shelf).y;
     assert!((low - sag).abs() < 1e-4, "{low} m instead of {sag}");
 }
+
+#[test]
+fn what_holds_an_end_may_become_another_kind_of_thing_at_any_time() {
+    type Change = fn(&mut EntityWorldMut);
+    let cases: [(&str, Change, Change); 4] = [
+        (
+            "a wall that is let go",
+            |wall| drop(wall.insert(RigidBody::Fixed)),
+            |wall| drop(wall.insert(RigidBody::Dynamic)),
+        ),
+        (
+            "a disabled body that is enabled",
+            |body| drop(body.insert((RigidBody::Dynamic, RigidBodyDisabled))),
+            |body| drop(body.remove::<RigidBodyDisabled>()),
+        ),
+        (
+            "a point that becomes a body",
+            |_| {},
+            |point| drop(point.insert(RigidBody::Dynamic)),
+        ),
+        (
+            "a thing that moves by itself and then falls",
+            |thing| drop(thing.insert(RigidBody::KinematicPositionBased)),
+            |thing| drop(thing.insert(RigidBody::Dynamic)),
+        ),
+    ];
+    for (name, before, after) in cases {
+        let mut lab = Lab::new();
+        let top = lab.spawn((Transform::default(), AdditionalMassProperties::Mass(1.0)));
+        before(&mut lab.app.world_mut().entity_mut(top));
+        let low = lab.body(2.0, Vec3::NEG_Y);
+        lab.spawn(
+            SpringDamper::new(top, low)
+                .with_stiffness(K)
+                .with_damping(C),
+        );
+        lab.run(3.0);
+        let hung = lab.position(low).y;
+        let sag = -1.0 - 2.0 * 9.81 / K;
+        assert!((hung - sag).abs() < 1e-3, "{name}: {hung}, not {sag}");
+        after(&mut lab.app.world_mut().entity_mut(top));
+        lab.run(1.0);
+        // Both fall together, and the spring has drawn them to its rest length.
+        let apart = lab.position(top).y - lab.position(low).y;
+        let fallen = lab.position(top).y;
+        assert!(fallen < -3.0, "{name}: at {fallen} after a second");
+        assert!((apart - 1.0).abs() < 0.02, "{name}: {apart} m apart");
+    }
+}
