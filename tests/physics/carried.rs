@@ -131,25 +131,31 @@ impl Net {
         let (ball, spring) = (dice.roll(20), dice.roll(self.springs.len()));
         let (kind, size) = (dice.roll(16), dice.roll(10) as f32);
         let (ball, spring) = (self.balls[ball], self.springs[spring]);
-        let mut entity = self.lab.app.world_mut().entity_mut(ball);
+        let mut at = self.lab.app.world_mut().entity_mut(ball);
+        let push = ExternalImpulse {
+            impulse: Vec3::Z * 0.1 * size,
+            ..default()
+        };
+        let drag = Damping {
+            linear_damping: 0.1 * size,
+            angular_damping: 0.0,
+        };
+        let _ = match kind {
+            0 => at.insert(RigidBodyDisabled),
+            1 => at.remove::<RigidBodyDisabled>(),
+            2 => at.insert(LockedAxes::TRANSLATION_LOCKED_X),
+            3 => at.insert(LockedAxes::ROTATION_LOCKED),
+            4 => at.insert(LockedAxes::empty()),
+            5 => at.insert(GravityScale(0.2 * size)),
+            6 => at.insert(push),
+            7 => at.insert(RigidBody::KinematicVelocityBased),
+            8 => at.insert(RigidBody::Dynamic),
+            9 => at.insert(drag),
+            10 => at.insert(AdditionalSolverIterations(size as usize % 3)),
+            _ => &mut at,
+        };
         match kind {
-            0 => drop(entity.insert(RigidBodyDisabled)),
-            1 => drop(entity.remove::<RigidBodyDisabled>()),
-            2 => drop(entity.insert(LockedAxes::TRANSLATION_LOCKED_X)),
-            3 => drop(entity.insert(LockedAxes::ROTATION_LOCKED)),
-            4 => drop(entity.insert(LockedAxes::empty())),
-            5 => drop(entity.insert(GravityScale(0.2 * size))),
-            6 => drop(entity.insert(ExternalImpulse {
-                impulse: Vec3::Z * 0.1 * size,
-                ..default()
-            })),
-            7 => drop(entity.insert(RigidBody::KinematicVelocityBased)),
-            8 => drop(entity.insert(RigidBody::Dynamic)),
-            9 => drop(entity.insert(Damping {
-                linear_damping: 0.1 * size,
-                angular_damping: 0.0,
-            })),
-            10 => drop(entity.insert(AdditionalSolverIterations(size as usize % 3))),
+            ..11 => {}
             11 => {
                 let dt = 1.0 / (50.0 + 2.0 * size);
                 let mut mode = self.lab.app.world_mut().resource_mut::<TimestepMode>();

@@ -282,23 +282,37 @@ fn what_holds_an_end_may_become_another_kind_of_thing_at_any_time() {
     let cases: [(&str, Change, Change); 4] = [
         (
             "a wall that is let go",
-            |wall| drop(wall.insert(RigidBody::Fixed)),
-            |wall| drop(wall.insert(RigidBody::Dynamic)),
+            |wall| {
+                wall.insert(RigidBody::Fixed);
+            },
+            |wall| {
+                wall.insert(RigidBody::Dynamic);
+            },
         ),
         (
             "a disabled body that is enabled",
-            |body| drop(body.insert((RigidBody::Dynamic, RigidBodyDisabled))),
-            |body| drop(body.remove::<RigidBodyDisabled>()),
+            |body| {
+                body.insert((RigidBody::Dynamic, RigidBodyDisabled));
+            },
+            |body| {
+                body.remove::<RigidBodyDisabled>();
+            },
         ),
         (
             "a point that becomes a body",
             |_| {},
-            |point| drop(point.insert(RigidBody::Dynamic)),
+            |point| {
+                point.insert(RigidBody::Dynamic);
+            },
         ),
         (
             "a thing that moves by itself and then falls",
-            |thing| drop(thing.insert(RigidBody::KinematicPositionBased)),
-            |thing| drop(thing.insert(RigidBody::Dynamic)),
+            |thing| {
+                thing.insert(RigidBody::KinematicPositionBased);
+            },
+            |thing| {
+                thing.insert(RigidBody::Dynamic);
+            },
         ),
     ];
     for (name, before, after) in cases {
