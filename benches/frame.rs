@@ -71,6 +71,7 @@ fn isolated(c: &mut Criterion) {
     }
     bench("asleep", Scene::Asleep, Link::Ours, 10_000, 1);
     bench("with laws", Scene::Isolated, Link::Laws, 10_000, 1);
+    bench("turning", Scene::Isolated, Link::Turning, 1_000, 1);
     bench("4 microsteps", Scene::Isolated, Link::Ours, 10_000, 4);
     bench("16 microsteps", Scene::Isolated, Link::Ours, 10_000, 16);
     group.finish();

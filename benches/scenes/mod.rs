@@ -15,6 +15,8 @@ pub enum Link {
     Ours,
     /// Ours with force laws beside them.
     Laws,
+    /// Ours, held off the centres of the bodies, which they turn.
+    Turning,
     Joint,
 }
 
@@ -164,6 +166,15 @@ fn join(world: &mut World, a: Entity, b: Entity, link: Link) {
                 SpringTravel::new(0.5, 1.5, 4000.0),
             ));
         }
+        Link::Turning => {
+            world.spawn((
+                SpringDamper::new(a, b)
+                    .with_stiffness(40.0)
+                    .with_damping(0.1)
+                    .with_rest_length(0.8),
+                Anchors::new(Vec3::new(0.1, 0.05, 0.0), Vec3::new(-0.1, 0.0, 0.05)),
+            ));
+        }
         Link::Joint => {
             let joint = SpringJointBuilder::new(1.0, 40.0, 0.1);
             world.entity_mut(b).insert(ImpulseJoint::new(a, joint));
@@ -181,6 +192,17 @@ fn pairs(world: &mut World, count: u32, link: Link, moving: bool) {
         };
         let a = body(world, at, across);
         let b = body(world, at + Vec3::X * stretch, -across);
+        if let Link::Turning = link {
+            for body in [a, b] {
+                let brick = MassProperties {
+                    mass: 1.0,
+                    principal_inertia: Vec3::new(0.02, 0.03, 0.04),
+                    ..default()
+                };
+                let brick = AdditionalMassProperties::MassProperties(brick);
+                world.entity_mut(body).insert(brick);
+            }
+        }
         join(world, a, b, link);
     }
 }

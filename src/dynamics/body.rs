@@ -45,6 +45,17 @@ pub(crate) struct Body {
     pub held: Option<DVec3>,
     /// What elements have given it so far in this step: impulse (N s) and angular impulse (N m s).
     pub given: (DVec3, DVec3),
+    /// What [`Body::note_turn`] has found.
+    pub turned: Option<Turned>,
+}
+
+/// Inverse inertia in the world frame, and for which rotation and mobility: it is asked for many times between
+/// one rotation and the next.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Turned {
+    rotation: DQuat,
+    mobility: f64,
+    inverse_inertia: DMat3,
 }
 
 /// exp of a rotation vector.
@@ -56,7 +67,30 @@ impl Body {
     /// Inverse inertia in the world frame at the present rotation; zero where locked.
     pub(crate) fn inverse_inertia(&self) -> DMat3 {
         // A body without inertia about some axis is not turned by elements at all.
-        if self.spin == Spin::Still || self.inertia.min_element() <= 0.0 {
+        if self.spin == Spin::Still {
+            return DMat3::ZERO;
+        }
+        match &self.turned {
+            Some(t) if t.rotation == self.rotation && t.mobility == self.mobility => {
+                t.inverse_inertia
+            }
+            _ => self.turn_inertia(),
+        }
+    }
+
+    /// Works out the inverse inertia at the present rotation, for all who will ask.
+    pub(crate) fn note_turn(&mut self) {
+        if self.spin != Spin::Still {
+            self.turned = Some(Turned {
+                rotation: self.rotation,
+                mobility: self.mobility,
+                inverse_inertia: self.turn_inertia(),
+            });
+        }
+    }
+
+    fn turn_inertia(&self) -> DMat3 {
+        if self.inertia.min_element() <= 0.0 {
             return DMat3::ZERO;
         }
         let inverse = self.mobility * self.inertia.recip();
@@ -119,6 +153,7 @@ impl Body {
             }
             Spin::Free { momentum } => self.tumble(time, momentum),
         }
+        self.note_turn();
     }
 
     /// A free rigid body as a symmetric top between two halves of what is left: exact for tops, second

@@ -126,6 +126,7 @@ pub(super) fn read(body: &RapierBody, gravity: Vec3, user: &ExternalForce, turns
         mobility: 1.0,
         held: None,
         given: (DVec3::ZERO, DVec3::ZERO),
+        turned: None,
     };
     if turns {
         // No inertia about an axis means to the engine that nothing turns the body about it.
@@ -139,6 +140,7 @@ pub(super) fn read(body: &RapierBody, gravity: Vec3, user: &ExternalForce, turns
                 velocity: angular_velocity,
             };
         }
+        out.note_turn();
     }
     out
 }

@@ -328,6 +328,7 @@ pub(super) fn held(free: &Body, mobility: f64, direction: Option<DVec3>) -> Body
         body.inverse_mass *= mobility;
         body.acceleration *= mobility;
         body.mobility = mobility;
+        body.note_turn();
     }
     body
 }
