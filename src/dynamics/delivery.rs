@@ -76,33 +76,29 @@ impl Schedule {
 
     /// Angular part: from the start's rotation and angular velocity to where `end` now is.
     pub(crate) fn angular(&self, start: &Body, gyroscopic: bool, end: &Body) -> Delivery {
-        let (from, spin) = (start.rotation, start.angular_velocity());
+        let spin = start.angular_velocity();
         let wanted = end.angular_velocity();
-        let angle = |r: DQuat| {
-            let r = end.rotation * r.inverse();
-            (if r.w < 0.0 { -r } else { r }).to_scaled_axis()
-        };
-        let mut delivery = self.reach(angle(from) - self.time * spin, wanted - spin);
-        for _ in 0..5 {
-            let (rotation, velocity) = self.engine_rotation(start, spin, gyroscopic, &delivery);
-            let correction = self.reach(angle(rotation), wanted - velocity);
+        let engine = Rounded::new(self, start, gyroscopic);
+        let turned = shortest(end.rotation * start.rotation.inverse()).to_scaled_axis();
+        let mut delivery = self.reach(turned - self.time * spin, wanted - spin);
+        for _ in 0..ROUNDS {
+            let (rotation, velocity) = engine.run(spin, &delivery);
+            let (angle, change) = (
+                small_angle(end.rotation * rotation.inverse()),
+                wanted - velocity,
+            );
+            let correction = self.reach(angle, change);
             delivery.jump += correction.jump;
             delivery.rate += correction.rate;
-            let missed = angle(rotation).length() + self.time * (wanted - velocity).length();
-            if missed < 1e-12 {
+            if angle.length() + self.time * change.length() < MISSED {
                 break;
             }
         }
-        // The engine's f32 gyroscopic term is biased: over ten seconds it loses 1e-4 of the momentum.
-        // Running it in f32 as well shows the bias of this very step.
-        let (rotation, velocity) = self.rounded_rotation(start, spin, gyroscopic, &delivery);
-        let correction = self.reach(angle(rotation), wanted - velocity);
-        delivery.jump += correction.jump;
-        delivery.rate += correction.rate;
         delivery
     }
 
-    /// [`engine_rotation`](Self::engine_rotation) with the engine's own rounding.
+    /// What the engine makes of a delivery, to its rounding: rotation and angular velocity.
+    #[cfg(test)]
     pub(super) fn rounded_rotation(
         &self,
         start: &Body,
@@ -110,24 +106,70 @@ impl Schedule {
         gyroscopic: bool,
         delivery: &Delivery,
     ) -> (DQuat, DVec3) {
-        let h = (self.time / f64::from(self.substeps)) as f32;
+        Rounded::new(self, start, gyroscopic).run(spin, delivery)
+    }
+}
+
+/// Most rounds of correction, each of which leaves a thirtieth of what was missed.
+const ROUNDS: usize = 6;
+
+/// What may be missed before the last correction, rad.
+const MISSED: f64 = 1e-6;
+
+/// The one of both equal rotations that turns less than half a turn.
+fn shortest(rotation: DQuat) -> DQuat {
+    if rotation.w < 0.0 {
+        -rotation
+    } else {
+        rotation
+    }
+}
+
+/// The rotation vector of a small rotation; of larger ones too little, by θ⁵/20.
+fn small_angle(rotation: DQuat) -> DVec3 {
+    let half = shortest(rotation).xyz();
+    2.0 * half * (1.0 + half.length_squared() / 6.0)
+}
+
+/// The engine's rotation of a body over its substeps, with its own f32: its gyroscopic term is biased by that, over
+/// ten seconds by 1e-4 of the momentum, and running it shows the bias of this very step.
+struct Rounded {
+    substeps: u32,
+    /// Of one substep.
+    time: f32,
+    rotation: Quat,
+    principal: Quat,
+    inertia: Vec3,
+    inverse_inertia: Vec3,
+    gyroscopic: bool,
+}
+
+impl Rounded {
+    fn new(schedule: &Schedule, start: &Body, gyroscopic: bool) -> Self {
+        let inertia = start.inertia.as_vec3();
+        // Equal moments have no gyroscopic term.
+        let is_ball = inertia.x == inertia.y && inertia.y == inertia.z;
+        Self {
+            substeps: schedule.substeps,
+            time: (schedule.time / f64::from(schedule.substeps)) as f32,
+            rotation: start.rotation.as_quat(),
+            principal: start.principal.as_quat(),
+            inertia,
+            inverse_inertia: Vec3::select(inertia.cmpgt(Vec3::ZERO), inertia.recip(), Vec3::ZERO),
+            gyroscopic: gyroscopic && !is_ball,
+        }
+    }
+
+    /// Rotation and angular velocity after the step.
+    fn run(&self, spin: DVec3, delivery: &Delivery) -> (DQuat, DVec3) {
+        let h = self.time;
         let increment = (delivery.rate * f64::from(h)).as_vec3();
-        let (principal, inertia) = (start.principal.as_quat(), start.inertia.as_vec3());
-        let inverse = Vec3::select(inertia.cmpgt(Vec3::ZERO), inertia.recip(), Vec3::ZERO);
-        let mut rotation = start.rotation.as_quat();
+        let mut rotation = self.rotation;
         let mut velocity = (spin + delivery.jump).as_vec3();
         for _ in 0..self.substeps {
             velocity += increment;
-            if gyroscopic {
-                let axes = rotation * principal;
-                let w = axes.inverse() * velocity;
-                let momentum = inertia * w;
-                let moved = momentum - w.cross(momentum) * h;
-                let square = moved.length_squared();
-                if square != 0.0 {
-                    let kept = moved * (momentum.length_squared() / square).sqrt();
-                    velocity = axes * (inverse * kept);
-                }
+            if self.gyroscopic {
+                velocity = self.precessed(rotation, velocity);
             }
             let half = velocity * (h * 0.5);
             rotation = (Quat::from_xyzw(half.x, half.y, half.z, 1.0) * rotation).normalize();
@@ -135,42 +177,20 @@ impl Schedule {
         (rotation.as_dquat(), velocity.as_dvec3())
     }
 
-    /// What the engine's substeps do to rotation and angular velocity.
-    fn engine_rotation(
-        &self,
-        start: &Body,
-        spin: DVec3,
-        gyroscopic: bool,
-        delivery: &Delivery,
-    ) -> (DQuat, DVec3) {
-        let h = self.time / f64::from(self.substeps);
-        let (mut rotation, mut velocity) = (start.rotation, spin + delivery.jump);
-        for _ in 0..self.substeps {
-            velocity += h * delivery.rate;
-            if gyroscopic {
-                velocity =
-                    gyroscopic_correction(velocity, rotation * start.principal, start.inertia, h);
-            }
-            let half = 0.5 * h * velocity;
-            rotation = (DQuat::from_xyzw(half.x, half.y, half.z, 1.0) * rotation).normalize();
+    /// Rapier's explicit gyroscopic term, which keeps the size of the angular momentum
+    /// (`gyroscopic_corrected_angvel` in rapier3d's rigid_body.rs).
+    fn precessed(&self, rotation: Quat, velocity: Vec3) -> Vec3 {
+        let axes = rotation * self.principal;
+        let w = axes.inverse() * velocity;
+        let momentum = self.inertia * w;
+        let moved = momentum - w.cross(momentum) * self.time;
+        let square = moved.length_squared();
+        if square == 0.0 {
+            return velocity;
         }
-        (rotation, velocity)
+        let kept = moved * (momentum.length_squared() / square).sqrt();
+        axes * (self.inverse_inertia * kept)
     }
-}
-
-/// Rapier's explicit gyroscopic term, which keeps the size of the angular momentum
-/// (`gyroscopic_corrected_angvel` in rapier3d's rigid_body.rs).
-fn gyroscopic_correction(velocity: DVec3, axes: DQuat, inertia: DVec3, h: f64) -> DVec3 {
-    let w = axes.inverse() * velocity;
-    let momentum = inertia * w;
-    let moved = momentum - h * w.cross(momentum);
-    let square = moved.length_squared();
-    if square == 0.0 {
-        return velocity;
-    }
-    let kept = moved * (momentum.length_squared() / square).sqrt();
-    let inverse = DVec3::select(inertia.cmpgt(DVec3::ZERO), inertia.recip(), DVec3::ZERO);
-    axes * (inverse * kept)
 }
 
 /// The force or torque with which an inverse mass or inertia gives an acceleration; nothing along
