@@ -78,10 +78,15 @@ fn isolated(c: &mut Criterion) {
 }
 
 fn networks(c: &mut Criterion) {
-    for scene in [Scene::Chain, Scene::Lattice] {
+    let sizes = [1_000, 10_000, 50_000];
+    for (scene, sizes) in [
+        (Scene::Chain, &sizes[..]),
+        (Scene::Lattice, &sizes),
+        (Scene::Cars, &sizes[..1]),
+    ] {
         let mut group = c.benchmark_group(format!("own/{scene:?}"));
         group.sample_size(10);
-        for count in [1_000, 10_000, 50_000] {
+        for count in sizes.iter().copied() {
             let mut lazy = Lazy::new(|| scene.app(count, Link::Ours, 1));
             group.throughput(Throughput::Elements(u64::from(count)));
             group.bench_function(BenchmarkId::from_parameter(count), |b| {

@@ -31,6 +31,8 @@ pub enum Scene {
     Chain,
     /// A cubic lattice with springs along its edges.
     Lattice,
+    /// Many chassis, each on four springs held at its corners, with a wheel below each.
+    Cars,
 }
 
 /// What has come last and is the next to go.
@@ -119,6 +121,7 @@ impl Scene {
             Self::Isolated => pairs(app.world_mut(), count, link, true),
             Self::Asleep => pairs(app.world_mut(), count, link, false),
             Self::Chain => chain(app.world_mut(), count, link),
+            Self::Cars => cars(app.world_mut(), count),
             Self::Lattice => lattice(app.world_mut(), count, link),
         }
         let settle = if matches!(self, Self::Asleep) {
@@ -218,6 +221,31 @@ fn chain(world: &mut World, count: u32, link: Link) {
         };
         join(world, last, next, link);
         last = next;
+    }
+}
+
+fn cars(world: &mut World, count: u32) {
+    for i in 0..count / 4 {
+        let at = Vec3::new((i % 30) as f32 * 5.0, 0.0, (i / 30) as f32 * 5.0);
+        let chassis = body(world, at, Vec3::Y * 0.3);
+        let box_of = MassProperties {
+            mass: 10.0,
+            principal_inertia: Vec3::new(5.0, 8.0, 4.0),
+            ..default()
+        };
+        let box_of = AdditionalMassProperties::MassProperties(box_of);
+        world.entity_mut(chassis).insert(box_of);
+        for corner in [(1.0, 1.5), (1.0, -1.5), (-1.0, 1.5), (-1.0, -1.5)] {
+            let corner = Vec3::new(corner.0, 0.0, corner.1);
+            let wheel = body(world, at + corner - Vec3::Y * 0.9, Vec3::ZERO);
+            world.spawn((
+                SpringDamper::new(chassis, wheel)
+                    .with_stiffness(400.0)
+                    .with_damping(2.0)
+                    .with_rest_length(1.0),
+                Anchors::new(corner, Vec3::ZERO),
+            ));
+        }
     }
 }
 

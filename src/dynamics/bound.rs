@@ -182,12 +182,10 @@ fn rounding(elements: &[Element], bodies: &[Body]) -> f64 {
         sum += unit * (body.mass() * body.velocity).dot(body.velocity);
     }
     for element in elements {
-        let Some(line) = element.line(bodies) else {
-            continue;
-        };
         // Four substeps, two ends.
-        let off = 8.0 * unit * line.reach();
-        let elastic = element.elastic(line.length);
+        let (length, reach) = element.distance(bodies);
+        let off = 8.0 * unit * reach;
+        let elastic = element.elastic(length);
         sum += off * (elastic.force.abs() + elastic.stiffness * off);
     }
     sum

@@ -130,6 +130,15 @@ impl End {
         matches!(self, End::Path(_))
     }
 
+    /// Where the held point is.
+    fn position(&self, bodies: &[Body]) -> DVec3 {
+        match *self {
+            End::Path(path) => path.position,
+            End::Body { index, arm } if arm == DVec3::ZERO => bodies[index].position,
+            End::Body { index, arm } => bodies[index].position + bodies[index].rotation * arm,
+        }
+    }
+
     /// Moves a prescribed point along its path.
     pub(crate) fn drift(&mut self, time: f64) {
         if let End::Path(path) = self {
@@ -291,6 +300,17 @@ impl Element {
             isotropic,
             guided: false,
         })
+    }
+
+    /// Length with the sign it has at rest, and the largest coordinate of the ends; 0 where there is no line.
+    pub(crate) fn distance(&self, bodies: &[Body]) -> (f64, f64) {
+        if self.guide != Guide::Centres {
+            return self
+                .guided_line(bodies)
+                .map_or((0.0, 0.0), |line| (line.length, line.reach()));
+        }
+        let [a, b] = self.ends.each_ref().map(|end| end.position(bodies));
+        (a.distance(b), a.abs().max(b.abs()).max_element())
     }
 
     /// Tension without damping, its slope, and the stored energy. A length is negative on the far side

@@ -24,8 +24,7 @@ impl Energy {
             energy.place -= (body.mass() * body.acceleration).dot(body.position);
         }
         for element in elements {
-            let length = element.line(bodies).map_or(0.0, |line| line.distance());
-            energy.stored += element.elastic(length).energy;
+            energy.stored += element.elastic(element.distance(bodies).0).energy;
         }
         energy
     }
