@@ -28,6 +28,9 @@ pub(super) struct System {
     /// 1 on axes that are free, 0 on locked ones.
     free: Twists,
     turns: bool,
+    /// Where each body's unknowns begin in the matrix, and whether those of its turning are among them.
+    places: Vec<(usize, bool)>,
+    unknowns: usize,
     blocks: Vec<DMat3>,
     blocks_turning: Vec<Matrix6<f64>>,
     matrix: DMatrix<f64>,
@@ -47,6 +50,8 @@ impl System {
         self.mass.clear();
         self.inertia.clear();
         self.free.clear(bodies.len(), self.turns);
+        self.places.clear();
+        self.unknowns = 0;
         for (i, body) in bodies.iter().enumerate() {
             let w = body.inverse_mass;
             let free = DVec3::select(w.cmpgt(DVec3::ZERO), DVec3::ONE, DVec3::ZERO);
@@ -58,7 +63,13 @@ impl System {
                 mass += DMat3::from_cols(held * held.x, held * held.y, held * held.z) * more;
             }
             self.mass.push(mass);
-            if self.turns {
+            let turns = body.spin != Spin::Still;
+            self.places.push((self.unknowns, turns));
+            self.unknowns += if turns { 6 } else { 3 };
+            if self.turns && !turns {
+                self.inertia.push(DMat3::IDENTITY);
+            }
+            if turns {
                 let mut inverse = body.inverse_inertia();
                 let mut free = DVec3::ONE;
                 for k in 0..3 {
@@ -78,12 +89,8 @@ impl System {
         self.turns
     }
 
-    fn unknowns(&self) -> usize {
-        self.mass.len() * if self.turns { 6 } else { 3 }
-    }
-
     pub(super) fn is_dense(&self) -> bool {
-        self.unknowns() <= DENSE
+        self.unknowns <= DENSE
     }
 
     /// Readies the solution for the struts as they are now.
@@ -102,9 +109,9 @@ impl System {
             x.clear(self.mass.len(), self.turns);
         }
         if let Some(factor) = &self.factor {
-            scatter(right, &mut self.vector);
+            scatter(right, &self.places, &mut self.vector);
             factor.solve_mut(&mut self.vector);
-            gather(&self.vector, x);
+            gather(&self.vector, &self.places, x);
             return Effort { converged: true };
         }
         self.iterate(right, x, budget)
@@ -229,18 +236,17 @@ impl System {
     }
 
     fn factorise(&mut self) {
-        let n = self.unknowns();
-        let width = if self.turns { 6 } else { 3 };
+        let n = self.unknowns;
         let mut matrix = std::mem::take(&mut self.matrix);
         if matrix.nrows() != n {
             matrix = DMatrix::zeros(n, n);
             self.vector = DVector::zeros(n);
         }
         matrix.fill(0.0);
-        for (i, mass) in self.mass.iter().enumerate() {
-            put(&mut matrix, width * i, width * i, *mass);
-            if self.turns {
-                put(&mut matrix, width * i + 3, width * i + 3, self.inertia[i]);
+        for (i, (at, turns)) in self.places.iter().enumerate() {
+            put(&mut matrix, *at, *at, self.mass[i]);
+            if *turns {
+                put(&mut matrix, at + 3, at + 3, self.inertia[i]);
             }
         }
         for strut in &self.struts {
@@ -251,28 +257,34 @@ impl System {
                         continue;
                     }
                     let own = if i == j { own } else { own * -1.0 };
-                    let (r, c) = (width * row, width * column);
+                    let ((r, r_turns), (c, c_turns)) = (self.places[row], self.places[column]);
                     if strut.twist {
-                        put(&mut matrix, r + 3, c + 3, own);
+                        if r_turns && c_turns {
+                            put(&mut matrix, r + 3, c + 3, own);
+                        }
                         continue;
                     }
                     put(&mut matrix, r, c, own);
-                    if self.turns {
-                        let (a, b) = (cross(strut.arms[i]), cross(strut.arms[j]));
+                    let (a, b) = (cross(strut.arms[i]), cross(strut.arms[j]));
+                    if c_turns {
                         put(&mut matrix, r, c + 3, own * -b);
+                    }
+                    if r_turns {
                         put(&mut matrix, r + 3, c, a * own);
+                    }
+                    if r_turns && c_turns {
                         put(&mut matrix, r + 3, c + 3, a * own * -b);
                     }
                 }
             }
         }
-        for i in 0..self.mass.len() {
+        for (i, (at, turns)) in self.places.iter().enumerate() {
             for k in 0..3 {
                 if self.free.linear[i][k] == 0.0 {
-                    lock_row(&mut matrix, width * i + k);
+                    lock_row(&mut matrix, at + k);
                 }
-                if self.turns && self.free.angular[i][k] == 0.0 {
-                    lock_row(&mut matrix, width * i + 3 + k);
+                if *turns && self.free.angular[i][k] == 0.0 {
+                    lock_row(&mut matrix, at + 3 + k);
                 }
             }
         }
@@ -323,25 +335,23 @@ fn stack(linear: DVec3, angular: DVec3) -> Vector6<f64> {
     )
 }
 
-fn scatter(from: &Twists, to: &mut DVector<f64>) {
-    let width = if from.angular.is_empty() { 3 } else { 6 };
-    for (i, linear) in from.linear.iter().enumerate() {
+fn scatter(from: &Twists, places: &[(usize, bool)], to: &mut DVector<f64>) {
+    for (i, (at, turns)) in places.iter().enumerate() {
         for k in 0..3 {
-            to[width * i + k] = linear[k];
-            if width == 6 {
-                to[width * i + 3 + k] = from.angular[i][k];
+            to[at + k] = from.linear[i][k];
+            if *turns {
+                to[at + 3 + k] = from.angular[i][k];
             }
         }
     }
 }
 
-fn gather(from: &DVector<f64>, to: &mut Twists) {
-    let width = if to.angular.is_empty() { 3 } else { 6 };
-    for i in 0..to.linear.len() {
+fn gather(from: &DVector<f64>, places: &[(usize, bool)], to: &mut Twists) {
+    for (i, (at, turns)) in places.iter().enumerate() {
         for k in 0..3 {
-            to.linear[i][k] = from[width * i + k];
-            if width == 6 {
-                to.angular[i][k] = from[width * i + 3 + k];
+            to.linear[i][k] = from[at + k];
+            if *turns {
+                to.angular[i][k] = from[at + 3 + k];
             }
         }
     }
