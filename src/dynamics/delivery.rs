@@ -114,7 +114,7 @@ impl Schedule {
 const ROUNDS: usize = 6;
 
 /// What may be missed before the last correction, rad.
-const MISSED: f64 = 1e-6;
+const MISSED: f64 = 3e-6;
 
 /// The one of both equal rotations that turns less than half a turn.
 fn shortest(rotation: DQuat) -> DQuat {

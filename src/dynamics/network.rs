@@ -71,8 +71,18 @@ impl Network {
         bodies: &[Body],
         step: f64,
     ) -> (f64, f64) {
-        self.measure(elements, bodies, step);
-        self.bounds_of_rows(elements, bodies.len(), step)
+        self.begin_bounds(bodies.len());
+        for element in elements {
+            if let Some(line) = element.line(bodies) {
+                // Of a linear one they do not depend on how fast it is.
+                let rate = match element.law {
+                    Some(_) => line.motion(element, bodies, step).axial,
+                    None => 0.0,
+                };
+                self.add_bounds(element, &line, rate, step);
+            }
+        }
+        self.end_bounds(step)
     }
 
     /// Where the lines are and what they do.
@@ -95,26 +105,39 @@ impl Network {
     }
 
     fn bounds_of_rows(&mut self, elements: &[Element], bodies: usize, step: f64) -> (f64, f64) {
+        self.begin_bounds(bodies);
+        let rows = std::mem::take(&mut self.rows);
+        for row in &rows {
+            self.add_bounds(&elements[row.element], &row.line, row.before.axial, step);
+        }
+        self.rows = rows;
+        self.end_bounds(step)
+    }
+
+    fn begin_bounds(&mut self, bodies: usize) {
         for sums in [&mut self.stiffness, &mut self.damping] {
             sums.clear();
             sums.resize(bodies, 0.0);
         }
-        for row in &self.rows {
-            let (element, line) = (&elements[row.element], &row.line);
-            let rate = row.before.axial;
-            let stiffness = element.stiffness_ahead(line.length, step * rate);
-            let damping = element.drag(line.length, rate).slope;
-            let w = line
-                .holds
-                .map(|h| h.inverse_mass_along(line.direction).sqrt());
-            for (end, hold) in line.holds.iter().enumerate() {
-                if let Some(body) = hold.body {
-                    let share = w[end] * (w[0] + w[1]);
-                    self.stiffness[body] += stiffness * share;
-                    self.damping[body] += damping * share;
-                }
+    }
+
+    fn add_bounds(&mut self, element: &Element, line: &Line, rate: f64, step: f64) {
+        let stiffness = element.stiffness_ahead(line.length, step * rate);
+        let damping = element.drag(line.length, rate).slope;
+        let w = line
+            .holds
+            .each_ref()
+            .map(|h| h.inverse_mass_along(line.direction).sqrt());
+        for (end, hold) in line.holds.iter().enumerate() {
+            if let Some(body) = hold.body {
+                let share = w[end] * (w[0] + w[1]);
+                self.stiffness[body] += stiffness * share;
+                self.damping[body] += damping * share;
             }
         }
+    }
+
+    fn end_bounds(&self, step: f64) -> (f64, f64) {
         let largest = |sums: &[f64]| sums.iter().copied().fold(0.0, f64::max);
         (
             step * step * largest(&self.stiffness),

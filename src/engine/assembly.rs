@@ -90,7 +90,6 @@ impl Assembly {
         }
         let component = &mut self.component;
         component.forget_points();
-        component.bodies.clear();
         component.elements.clear();
         self.start.clear();
         component.stepped = false;
@@ -117,10 +116,9 @@ impl Assembly {
                 component.stepped |= members.elements.len() == 1;
             }
             component.stepped |= step.lag(row.handle, body) > 0.0;
-            component.bodies.push(free);
             self.start.push(free);
         }
-        let sound = component.bodies.iter().all(Body::is_finite);
+        let sound = self.start.iter().all(Body::is_finite);
         let (mut disturbed, mut omega) = (false, 0.0_f32);
         self.carry.ends.clear();
         for (index, e) in members.elements.iter().enumerate() {
@@ -128,7 +126,7 @@ impl Assembly {
             disturbed |= row.changed || step.has_moved(row, set);
             let guide = row.companion.guide;
             let ends = row.held.map(|held| step.end(held, guide, bodies, set));
-            if let Some(element) = element(row, ends, &component.bodies) {
+            if let Some(element) = element(row, ends, &self.start) {
                 omega = omega.max(omega_of(row));
                 for (end, _) in ends.iter().enumerate().filter(|(_, end)| end.is_path()) {
                     self.carry.ends.push((index, end));
@@ -155,10 +153,10 @@ impl Assembly {
             let time = step.plan.time;
             self.ledger
                 .settle(&component.elements, &mut self.start, rows, time);
-            component.bodies.clone_from(&self.start);
             component.owed = self.ledger.owed();
             self.give_way(members, bodies, set, time);
         }
+        self.component.bodies.clone_from(&self.start);
         self.state = if sound && !self.component.elements.is_empty() {
             State::Ready
         } else {
