@@ -33,10 +33,10 @@ pub(super) fn lay(
         Option<&ViewVisibility>,
         Option<(&Levels, &mut Mesh3d)>,
     )>,
-    elements: Query<&Placement>,
+    mut elements: Query<&mut Placement>,
 ) {
     for (part, parent, mut global, visibility, mut levels) in &mut parts {
-        let Ok(placement) = elements.get(parent.parent()) else {
+        let Ok(mut placement) = elements.get_mut(parent.parent()) else {
             continue;
         };
         // Whoever else has changed it, as transform propagation does, is overruled.
@@ -45,15 +45,22 @@ pub(super) fn lay(
                 || parent.is_changed()
                 || levels.as_ref().is_some_and(|(_, mesh)| mesh.is_changed())
         };
+        let shows = || visibility.is_some_and(|v| v.get());
         let is_due = match placement.due {
             Due::Nowhere => false,
             Due::Laid => has_changed(),
-            Due::Visible => visibility.is_some_and(|v| v.get()) || has_changed(),
+            Due::Hidden | Due::Visible => {
+                if shows() {
+                    placement.bypass_change_detection().shows = true;
+                }
+                shows() || has_changed()
+            }
             Due::All => true,
         };
         if !is_due {
             continue;
         }
+        let placement = &*placement;
         // Its `Transform` says nothing: propagation has run, and rendering reads this one. What has
         // not moved must not look changed, or it would be sent to the graphics card again.
         global.set_if_neq(world(placement, *part));

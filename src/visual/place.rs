@@ -10,11 +10,10 @@ use bevy::math::Vec3A;
 use bevy::prelude::*;
 
 /// An element out of everyone's sight is placed every so many frames only. It may still throw a shadow
-/// into the picture, so it is not left alone altogether.
+/// into the picture, so it is not left alone altogether. How one in sight is seen is found out as seldom: for
+/// that long it may be drawn a little too finely or too coarsely, or once it is out of sight be laid for
+/// nothing.
 const SELDOM: u32 = 8;
-/// How one in sight is seen is found out every so many frames only: it may be drawn a little too finely
-/// or too coarsely for that long, or once it is out of sight be laid for nothing.
-const NOW_AND_THEN: u32 = 4;
 
 /// Where an element is drawn.
 #[derive(Component, Clone, Copy, Debug, Default)]
@@ -26,6 +25,8 @@ pub struct Placement {
     squeezed: bool,
     /// It was in sight when that was last found out.
     seen: bool,
+    /// Some part of it was in some view in the last frame, be it for its shadow.
+    pub(super) shows: bool,
     /// The state of the views for which sight and level are right.
     looked: Option<u32>,
     /// From end to end, m.
@@ -46,8 +47,10 @@ pub(super) enum Due {
     /// Not even those: nobody knows where its ends are.
     #[default]
     Nowhere,
-    /// None: all lie where they should.
+    /// None: all lie where they should,
     Laid,
+    /// or it does not matter where they lie, for none was seen in the last frame.
+    Hidden,
     /// Those that were seen in the last frame.
     Visible,
     All,
@@ -94,7 +97,7 @@ impl Placement {
 
     /// Follows the ends, and says what follows from that. Some frames have their turn.
     #[inline(always)]
-    fn find(&mut self, ends: Ends, views: &Views, turn: u32) -> Due {
+    fn find(&mut self, ends: Ends, views: &Views, has_turn: bool) -> Due {
         let rests = matches!(self.due, Due::Laid | Due::All) && ends.are(&self.ends);
         if rests && self.looked == Some(views.state()) {
             return Due::Laid;
@@ -106,7 +109,7 @@ impl Placement {
         }
         let before = self.level;
         // What comes into sight is seen at once.
-        if !self.seen || turn.is_multiple_of(NOW_AND_THEN) {
+        if has_turn || !self.seen {
             let middle = ends.from + 0.5 * between;
             let sight = views.sight(middle, 0.5 * length + self.layout.reach);
             self.seen = sight.seen;
@@ -120,6 +123,10 @@ impl Placement {
         if rests && self.level == before {
             return Due::Laid;
         }
+        let shows = std::mem::take(&mut self.shows);
+        if !(has_turn || self.seen || shows) {
+            return Due::Hidden;
+        }
         self.ends = ends;
         self.length = length;
         let upright = upright(ends.x, ends.y);
@@ -130,7 +137,7 @@ impl Placement {
             self.axis = upright * self.heading.axis();
         }
         self.side = upright * self.heading.side();
-        if self.seen || turn.is_multiple_of(SELDOM) {
+        if has_turn || self.seen {
             Due::All
         } else {
             Due::Visible
@@ -210,7 +217,7 @@ pub(super) fn place(
             continue;
         };
         let turn = element.index_u32().wrapping_add(*frame);
-        placement.due = placement.find(ends, &views, turn);
+        placement.due = placement.find(ends, &views, turn.is_multiple_of(SELDOM));
         if placement.has_become_squeezed() {
             log::warn!(
                 "{element}: Coil: it is {} m long, but all its turns touch at {} m already, so wire \

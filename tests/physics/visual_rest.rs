@@ -221,14 +221,31 @@ fn out_of_sight_it_is_laid_seldom_and_is_right_soon_after_it_stops() {
 }
 
 #[test]
+fn out_of_sight_but_with_a_shadow_in_the_picture_it_is_laid_in_every_frame() {
+    let mut rest = Rest::new();
+    let away = Transform::from_xyz(0.0, 0.5, 10.0).looking_to(Vec3::Z, Vec3::Y);
+    look(&mut rest.lab, away);
+    rest.lab.run(0.2);
+    for i in 0..16 {
+        // As the renderer marks what a light's view sees.
+        rest.insert(rest.coil, ViewVisibility::VISIBLE);
+        let low = -0.01 * i as f32 * Vec3::Y;
+        rest.lab.get_mut::<Transform>(rest.a).translation = low;
+        rest.lab.tick();
+        // Whether it shows is known from the frame before.
+        assert!(i < 2 || rest.goes(low, Vec3::Y), "frame {i}");
+    }
+}
+
+#[test]
 fn a_resting_coil_gets_coarser_as_the_camera_goes_away_and_finer_as_it_comes_back() {
     let mut rest = Rest::new();
     let camera = look(&mut rest.lab, Transform::from_xyz(0.0, 0.5, 3.0));
     let mut vertices = |distance: f32| {
         let at = Transform::from_xyz(0.0, 0.5, distance);
         turn(&mut rest.lab, camera, at);
-        // How an element is seen is looked at in every fourth frame.
-        rest.lab.run(4.0 / 60.0);
+        // How an element is seen is looked at in every eighth frame.
+        rest.lab.run(8.0 / 60.0);
         let mesh = rest.lab.get::<Mesh3d>(rest.coil);
         let meshes = rest.lab.app.world().resource::<Assets<Mesh>>();
         meshes.get(mesh).expect("loaded").count_vertices()
