@@ -123,7 +123,9 @@ impl Placement {
         if rests && self.level == before {
             return Due::Laid;
         }
-        let shows = std::mem::take(&mut self.shows);
+        let shows = self.shows;
+        // Found out anew in this frame, unless all parts are laid whatever they show.
+        self.shows &= has_turn || self.seen;
         if !(has_turn || self.seen || shows) {
             return Due::Hidden;
         }
