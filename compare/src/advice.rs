@@ -62,6 +62,44 @@ pub fn section(scenes: &[(&Scene, Vec<Row>)]) -> String {
         text.push('\n');
     }
     text.push('\n');
+    text.push_str(&tolerance_prices(scenes));
+    text
+}
+
+/// What a tolerance costs, beside the cheapest of our fixed settings that is no less exact.
+fn tolerance_prices(scenes: &[(&Scene, Vec<Row>)]) -> String {
+    let mut text = String::from(
+        "\nAt 60 steps a second: largest error with a tolerance, and its time as a multiple of that of the cheapest \
+         fixed setting whose error is no larger (– where no fixed one is as exact):\n\n\
+         | scene | tolerance 1e-2 | 1e-3 | 1e-4 m/s |\n|---|---|---|---|\n",
+    );
+    for (scene, rows) in scenes {
+        let _ = write!(text, "| {} |", scene.title);
+        for dial in [2, 3, 4].map(Dial::Tolerance) {
+            let setting = Setting {
+                method: Method::Ours,
+                dial,
+                rate: 60,
+            };
+            let Some(row) = find(rows, setting) else {
+                text.push_str(" – |");
+                continue;
+            };
+            let fixed = rows.iter().filter(|r| {
+                r.setting.method == Method::Ours
+                    && r.setting.rate == 60
+                    && !matches!(r.setting.dial, Dial::Tolerance(_))
+                    && !r.strayed.diverged
+                    && r.strayed.error <= row.strayed.error
+            });
+            let best = fixed.map(|r| r.times.median).min_by(|a, b| a.total_cmp(b));
+            let price = best.map_or("–".into(), |best| {
+                format!("{:.2}", row.times.median / best)
+            });
+            let _ = write!(text, " {} · {price} |", length(&row));
+        }
+        text.push('\n');
+    }
     text
 }
 
