@@ -68,7 +68,7 @@ pub(crate) struct Moving<'a> {
     pub pair: &'a Pair,
     pub state: Separation,
     pub memo: &'a mut Memo,
-    saved: [Separation; 3],
+    saved: [Option<Separation>; 3],
 }
 
 impl<'a> Moving<'a> {
@@ -77,18 +77,23 @@ impl<'a> Moving<'a> {
             pair,
             state,
             memo,
-            saved: [state; 3],
+            saved: [None; 3],
         }
+    }
+
+    /// What was saved last in a slot.
+    fn saved(&self, slot: usize) -> Separation {
+        self.saved[slot].unwrap_or(self.state)
     }
 }
 
 impl Motion for Moving<'_> {
     fn save(&mut self, slot: usize) {
-        self.saved[slot] = self.state;
+        self.saved[slot] = Some(self.state);
     }
 
     fn load(&mut self, slot: usize) {
-        self.state = self.saved[slot];
+        self.state = self.saved(slot);
     }
 
     fn least(&mut self, _: f64) -> u32 {
@@ -101,7 +106,7 @@ impl Motion for Moving<'_> {
     }
 
     fn distance(&self, slot: usize) -> f64 {
-        let (a, b) = (&self.state, &self.saved[slot]);
+        let (a, b) = (&self.state, self.saved(slot));
         let (moved, sped) = (a.d - b.d, a.v - b.v);
         let along = a.direction.unwrap_or(DVec3::ZERO);
         let axial = sped.dot(along);
@@ -112,7 +117,7 @@ impl Motion for Moving<'_> {
     }
 
     fn extrapolate(&mut self, slot: usize) {
-        self.state.towards(&self.saved[slot]);
+        self.state.towards(&self.saved(slot));
     }
 
     fn is_resolved(&mut self, step: f64) -> bool {

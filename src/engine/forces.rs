@@ -60,9 +60,11 @@ impl Share {
             torque: told_apart(user.torque + elements.torque, user.torque),
         };
         body.reset_forces(false);
-        body.reset_torques(false);
         body.add_force(sum.force, false);
-        body.add_torque(sum.torque, false);
+        if sum.torque != Vec3::ZERO || body.user_torque() != Vec3::ZERO {
+            body.reset_torques(false);
+            body.add_torque(sum.torque, false);
+        }
         Self {
             elements,
             sum,
