@@ -125,7 +125,7 @@ fn shortest(rotation: DQuat) -> DQuat {
     }
 }
 
-/// The rotation vector of a small rotation; of larger ones too little, by θ⁵/20.
+/// The rotation vector of a small rotation; of larger ones too little, by θ⁵/213.
 fn small_angle(rotation: DQuat) -> DVec3 {
     let half = shortest(rotation).xyz();
     2.0 * half * (1.0 + half.length_squared() / 6.0)

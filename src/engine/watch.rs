@@ -39,9 +39,11 @@ pub(crate) struct Watch<'w, 's> {
     springs: RemovedComponents<'w, 's, Spring>,
     dampers: RemovedComponents<'w, 's, Damper>,
     pairs: RemovedComponents<'w, 's, SpringDamper>,
-    torsion_springs: RemovedComponents<'w, 's, TorsionSpring>,
-    torsion_dampers: RemovedComponents<'w, 's, TorsionDamper>,
-    torsion_pairs: RemovedComponents<'w, 's, TorsionSpringDamper>,
+    torsion: (
+        RemovedComponents<'w, 's, TorsionSpring>,
+        RemovedComponents<'w, 's, TorsionDamper>,
+        RemovedComponents<'w, 's, TorsionSpringDamper>,
+    ),
     anchors: RemovedComponents<'w, 's, Anchors>,
     masses: MessageReader<'w, 's, MassModifiedEvent>,
     pub(super) mass_modified: Local<'s, EntityHashSet>,
@@ -63,14 +65,16 @@ impl Watch<'_, '_> {
         changed |= self.disabled.read().filter(|e| is_known(*e)).count() > 0;
         changed |= self.loads.read().filter(|e| is_loaded(*e)).count() > 0;
         changed |= self.forces.read().filter(|e| is_loaded(*e)).count() > 0;
-        changed |= self.hidden.read().count() > 0;
-        changed |= self.springs.read().count() > 0;
-        changed |= self.dampers.read().count() > 0;
-        changed |= self.pairs.read().count() > 0;
-        changed |= self.torsion_springs.read().count() > 0;
-        changed |= self.torsion_dampers.read().count() > 0;
-        changed |= self.torsion_pairs.read().count() > 0;
-        changed |= self.anchors.read().count() > 0;
+        // One that was not known comes into the count of elements, or is looked for in every tick.
+        changed |= self.hidden.read().filter(|e| is_known(*e)).count() > 0;
+        changed |= self.anchors.read().filter(|e| is_known(*e)).count() > 0;
+        changed |= self.springs.read().filter(|e| is_known(*e)).count() > 0;
+        changed |= self.dampers.read().filter(|e| is_known(*e)).count() > 0;
+        changed |= self.pairs.read().filter(|e| is_known(*e)).count() > 0;
+        let torsion = &mut self.torsion;
+        changed |= torsion.0.read().filter(|e| is_known(*e)).count() > 0;
+        changed |= torsion.1.read().filter(|e| is_known(*e)).count() > 0;
+        changed |= torsion.2.read().filter(|e| is_known(*e)).count() > 0;
         changed
     }
 }
