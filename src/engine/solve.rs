@@ -42,7 +42,8 @@ pub(super) type Loads<'w, 's> = Query<
     Allow<Disabled>,
 >;
 
-/// Elements in networks that are about to be solved, above which it is worth waking other threads.
+/// Elements in networks that are about to be solved, above which it is worth waking other threads, and the few
+/// allocations that this takes: the only ones of a warm step.
 const WORTH_SHARING: usize = 256;
 
 /// Computes and delivers every element's force for the coming engine step.

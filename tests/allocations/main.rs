@@ -1,6 +1,7 @@
 //! Does a step allocate memory, once everything has been seen? Every allocation of the process is counted
 //! while our systems run.
 
+use bevy::app::TaskPoolOptions;
 use bevy::ecs::schedule::SingleThreadedExecutor;
 use bevy::prelude::*;
 use bevy::time::TimeUpdateStrategy;
@@ -37,8 +38,12 @@ fn end(mut count: ResMut<Count>) {
 fn app() -> App {
     let tick = Duration::from_secs_f32(1.0 / 60.0);
     let mut app = App::new();
+    // Nor does anything go to other threads, which takes memory wherever there are some.
+    let one = TaskPoolPlugin {
+        task_pool_options: TaskPoolOptions::with_num_threads(1),
+    };
     app.add_plugins((
-        MinimalPlugins,
+        MinimalPlugins.set(one),
         TransformPlugin,
         RapierPhysicsPlugin::<NoUserData>::default().in_fixed_schedule(),
         CoiloverPlugin::default(),

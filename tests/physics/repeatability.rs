@@ -102,6 +102,35 @@ fn threads_change_nothing() {
 }
 
 #[test]
+fn networks_that_threads_share_move_as_each_does_alone() {
+    // Three springs each: above some hundred networks threads share the work.
+    let run = |networks: usize| {
+        let mut lab = Lab::new();
+        let mut first = Vec::new();
+        for n in 0..networks {
+            let mut last = lab.point(Vec3::new(0.0, 0.0, 5.0 * n as f32));
+            for i in 1..=3 {
+                let at = Vec3::new(i as f32, 0.1 * i as f32, 5.0 * n as f32);
+                let next = lab.spawn(brick(0.5, Vec3::new(0.02, 0.03, 0.04), at));
+                lab.spawn((
+                    SpringDamper::new(last, next)
+                        .with_stiffness(90.0)
+                        .with_damping(0.1),
+                    Anchors::new(Vec3::ZERO, Vec3::new(0.1, 0.05, 0.0)),
+                ));
+                last = next;
+                if n == 0 {
+                    first.push(next);
+                }
+            }
+        }
+        lab.run(1.0);
+        state(&lab, &first)
+    };
+    assert_eq!(run(1), run(200));
+}
+
+#[test]
 fn the_order_in_which_springs_are_spawned_changes_nothing() {
     let run = |reversed: bool| {
         let mut lab = Lab::new();
