@@ -1,5 +1,6 @@
 //! Does a network that is left alone, and so not read anew in every step, move as one that is?
 
+use crate::dice::Dice;
 use crate::harness::*;
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
@@ -115,21 +116,12 @@ fn a_network_left_alone_moves_as_one_that_is_read_anew_bit_for_bit() {
     }
 }
 
-/// Numbers that follow no pattern.
-struct Dice(u64);
-
-impl Dice {
-    fn roll(&mut self, most: usize) -> usize {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005) + 1;
-        (self.0 >> 33) as usize % most
-    }
-}
-
 impl Net {
     /// Something happens to a net whose springs and balls nobody need know about.
     fn surprise(&mut self, dice: &mut Dice) {
-        let (ball, spring) = (dice.roll(20), dice.roll(self.springs.len()));
-        let (kind, size) = (dice.roll(16), dice.roll(10) as f32);
+        let mut pick = |count: usize| dice.pick(count as u32) as usize;
+        let (ball, spring) = (pick(20), pick(self.springs.len()));
+        let (kind, size) = (pick(16), pick(10) as f32);
         let (ball, spring) = (self.balls[ball], self.springs[spring]);
         let mut at = self.lab.app.world_mut().entity_mut(ball);
         let push = ExternalImpulse {

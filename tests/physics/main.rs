@@ -11,6 +11,7 @@ mod car;
 mod carried;
 mod cloth;
 mod decay;
+mod dice;
 mod elastic_pendulum;
 mod ends;
 mod engine_settings;

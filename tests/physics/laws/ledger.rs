@@ -1,6 +1,6 @@
 //! Where the energy is: stored, moving, high up, turned to heat, or still to be accounted for.
 
-use super::random::Dice;
+use crate::dice::Dice;
 use crate::harness::*;
 use bevy::diagnostic::{DiagnosticPath, DiagnosticsStore};
 use bevy::prelude::*;

@@ -1,33 +1,10 @@
 //! Random networks of mixed laws: whatever is put together stays bounded.
 
+use crate::dice::Dice;
 use crate::harness::*;
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
-
-/// A small generator of our own, so that a scene is the same everywhere (SplitMix64).
-pub struct Dice(pub u64);
-
-impl Dice {
-    pub fn next(&mut self) -> f32 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let x = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((x ^ (x >> 31)) >> 40) as f32 / (1u64 << 24) as f32
-    }
-
-    pub fn between(&mut self, a: f32, b: f32) -> f32 {
-        a + (b - a) * self.next()
-    }
-
-    fn pick(&mut self, count: u32) -> u32 {
-        ((self.next() * count as f32) as u32).min(count - 1)
-    }
-
-    fn place(&mut self) -> Vec3 {
-        Vec3::new(self.next(), self.next(), self.next()) * 4.0
-    }
-}
 
 /// Companions by chance, for a stiffness, a stretch that is usual, and a rest length.
 pub fn furnish(lab: &mut Lab, element: Entity, [k, s, rest]: [f32; 3], dice: &mut Dice) {
