@@ -59,8 +59,8 @@ impl CoiloverPlugin {
         self
     }
 
-    /// Steps as finely as keeps the error of position that is added near `tolerance` metres per simulated
-    /// second, instead of by a fixed count. Zero, negative and NaN mean no tolerance.
+    /// Lets each network choose its micro-steps in every step so that the error of position grows by about
+    /// `tolerance` metres per simulated second. Zero, negative and NaN mean no tolerance.
     pub const fn with_tolerance(mut self, tolerance: f32) -> Self {
         self.settings.tolerance = Some(tolerance);
         self

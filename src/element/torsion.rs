@@ -12,10 +12,10 @@ use bevy::prelude::*;
 #[reflect(Component, Debug, PartialEq, Clone)]
 #[require(SpringReadout)]
 pub struct TorsionSpring {
-    /// The body whose axis it is.
+    /// The rigid body whose axis it is; a fixed one will do.
     #[entities]
     pub body_a: Entity,
-    /// The body that turns against it.
+    /// The rigid body that turns against it.
     #[entities]
     pub body_b: Entity,
     /// In body A's frame; any length but zero.
@@ -59,10 +59,10 @@ impl TorsionSpring {
 #[reflect(Component, Debug, PartialEq, Clone)]
 #[require(SpringReadout)]
 pub struct TorsionDamper {
-    /// The body whose axis it is.
+    /// The rigid body whose axis it is; a fixed one will do.
     #[entities]
     pub body_a: Entity,
-    /// The body that turns against it.
+    /// The rigid body that turns against it.
     #[entities]
     pub body_b: Entity,
     /// In body A's frame; any length but zero.
@@ -96,10 +96,10 @@ impl TorsionDamper {
 #[reflect(Component, Debug, PartialEq, Clone)]
 #[require(SpringReadout)]
 pub struct TorsionSpringDamper {
-    /// The body whose axis it is.
+    /// The rigid body whose axis it is; a fixed one will do.
     #[entities]
     pub body_a: Entity,
-    /// The body that turns against it.
+    /// The rigid body that turns against it.
     #[entities]
     pub body_b: Entity,
     /// In body A's frame; any length but zero.

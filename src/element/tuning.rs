@@ -4,6 +4,9 @@ use std::f32::consts::TAU;
 /// Stiffness and damping of an element by what one sees of them. At the first step the element acts they are
 /// worked out with the effective mass that its ends have then, written into its fields, and this component is
 /// removed: they stay what they are when masses change, as a real spring does.
+///
+/// Both ends count as free, whatever they stand on: for a chassis over a wheel on the ground, take
+/// [`SpringTuning::coefficients`] for the mass that the spring carries.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]

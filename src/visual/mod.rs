@@ -115,7 +115,7 @@ fn say_what_is_missing(
 ///
 /// A [`SpringDamper`] of 1000 N/m and 60 N s/m whose rest length is the length at the first step, with
 /// [`Coil`], [`Telescope`] and centred [`Anchors`]; give your own values by inserting those components
-/// after it.
+/// after it: in one bundle with it, Bevy panics at the second of a kind.
 pub fn coilover(body_a: Entity, body_b: Entity) -> impl Bundle {
     (
         SpringDamper::new(body_a, body_b)
