@@ -55,8 +55,9 @@ struct Wire {
 #[derive(Clone, Default)]
 pub(crate) struct Points {
     points: Vec<Point>,
-    /// As they were at the start of the step.
+    /// As they were at the start of the step, and the elements' sides then.
     start: Vec<Point>,
+    sides: Vec<DVec3>,
     /// So many of them are bodies; the others come after.
     bodies: usize,
     wires: Vec<Wire>,

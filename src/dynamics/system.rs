@@ -354,5 +354,9 @@ fn gather(from: &DVector<f64>, places: &[(usize, bool)], to: &mut Twists) {
                 to.angular[i][k] = from[at + 3 + k];
             }
         }
+        if let (false, Some(angular)) = (*turns, to.angular.get_mut(i)) {
+            // It may have turned before.
+            *angular = DVec3::ZERO;
+        }
     }
 }

@@ -64,6 +64,11 @@ impl Assembly {
         }
     }
 
+    /// Has everything about its elements read again in its next step, whenever that is.
+    pub(super) fn read_anew(&mut self) {
+        self.component.forget_points();
+    }
+
     /// Readies it for another component.
     pub(super) fn forget(&mut self) {
         self.ledger.clear();
@@ -92,6 +97,7 @@ impl Assembly {
         component.forget_points();
         component.elements.clear();
         self.start.clear();
+        self.carry.centers.clear();
         component.stepped = false;
         component.owed = 0.0;
         for (slot, b) in members.bodies.iter().enumerate() {
@@ -103,6 +109,7 @@ impl Assembly {
             if let Some(partner) = &mut row.partner {
                 partner.note(body, set);
             }
+            self.carry.centers.push(body.local_center_of_mass());
             let mut free = read(body, step.engine.gravity, &row.user, row.turns);
             if let Some(link) = row.link {
                 free.velocity = link.linear.as_dvec3();
@@ -248,6 +255,7 @@ impl Assembly {
             self.outcome = self.component.advance(time, accuracy);
             if !self.component.is_finite() {
                 self.state = State::Powerless;
+                self.component.forget_points();
             }
             if carried && !self.component.carried {
                 self.start.clone_from_slice(self.component.put_down_at());

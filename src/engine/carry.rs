@@ -6,6 +6,7 @@ use super::body::is_movable;
 use super::point::Point;
 use super::scene::{BodyRow, ElementRow};
 use super::step::Step;
+use bevy::math::Vec3;
 use bevy_rapier3d::rapier::dynamics::RigidBodySet;
 
 /// What is known of such a network.
@@ -15,6 +16,8 @@ pub(super) struct Carry {
     pub ends: Vec<(usize, usize)>,
     /// Natural frequency of the stiffest element.
     pub omega: f32,
+    /// Where each body's centre of mass is in its own frame.
+    pub centers: Vec<Vec3>,
     points: Vec<Point>,
     /// Some body has not rested for long.
     restless: bool,
@@ -34,7 +37,7 @@ impl Assembly {
     ) -> bool {
         self.component.carried = false;
         let all_act = self.component.elements.len() == members.elements.len();
-        if !(step.unchanged && all_act && self.ledger.is_idle()) {
+        if !(all_act && self.ledger.is_idle()) {
             return false;
         }
         let mut disturbed = false;
@@ -73,7 +76,8 @@ impl Assembly {
         for (slot, b) in members.bodies.iter().enumerate() {
             let row = &mut bodies[*b];
             let body = set.get(row.handle)?;
-            if !is_movable(body) || body.is_sleeping() {
+            let center = body.local_center_of_mass();
+            if !is_movable(body) || body.is_sleeping() || carry.centers[slot] != center {
                 return None;
             }
             let point = Point::of(row, body, step).ok()?;

@@ -128,6 +128,7 @@ impl Groups {
             }
             group.assembly = Some(assemblies.len());
             let mut assembly = before.unwrap_or_default();
+            assembly.read_anew();
             assembly.signature = group.signature;
             assemblies.push(assembly);
         }

@@ -45,7 +45,7 @@ pub(crate) fn prepare(
             let row = &mut rows[*index];
             still_faulty(row, &companions, &mut finder, modified, &mut commands)
         });
-    scene.renewed = !same;
+    scene.renewed = !same || (scene.renewed && scene.time <= 0.0);
     if same {
         return;
     }
@@ -96,23 +96,28 @@ fn refresh(
         bodies,
         followed,
         changed: marked,
+        assemblies,
+        time,
         ..
     } = scene;
-    for index in marked.drain(..) {
-        rows[index].changed = false;
+    // What changes while nothing is stepped is kept for the step that comes.
+    if *time > 0.0 {
+        for index in marked.drain(..) {
+            rows[index].changed = false;
+        }
     }
     for entity in changed.iter().chain(companions.touched.iter().copied()) {
         // Anchors and companions can stand where no element is.
         let Ok(parts) = elements.get(entity) else {
             continue;
         };
-        let Some(row) = row_of.get(&entity).map(|index| {
-            marked.push(*index);
-            &mut rows[*index]
-        }) else {
+        let Some(index) = row_of.get(&entity) else {
             return false;
         };
-        row.changed = true;
+        let row = &mut rows[*index];
+        if !std::mem::replace(&mut row.changed, true) {
+            marked.push(*index);
+        }
         let Ok(new) = parts.parameters().and_then(|new| {
             new.check()?;
             Ok((companions.of(entity, &new)?, new))
@@ -130,6 +135,11 @@ fn refresh(
             row.parameters = parameters;
             row.companion = companion;
         });
+    }
+    if !marked.is_empty() {
+        for assembly in assemblies {
+            assembly.read_anew();
+        }
     }
     followed.iter().all(|(index, end)| {
         let row = &mut rows[*index];

@@ -78,7 +78,6 @@ pub(crate) fn solve(
             continue;
         }
         let parameters = &simulation.integration_parameters;
-        let unchanged = scene.changed.is_empty() && !scene.renewed;
         let step = Step {
             plan,
             engine: Engine {
@@ -93,8 +92,7 @@ pub(crate) fn solve(
             ground: &Ground::default(),
             accuracy: settings.accuracy(),
             links: joints.multibody_joints.multibodies().next().is_some(),
-            quiet: unchanged && !scene.loaded,
-            unchanged,
+            quiet: scene.changed.is_empty() && !scene.loaded && !scene.renewed,
             delivered: Cell::new(false),
         };
         scene.step(context, &step, &mut set.bodies, &mut spare);

@@ -28,8 +28,6 @@ pub(super) struct Step<'a> {
     pub links: bool,
     /// Nothing but their own bodies and moved ends can have woken what sleeps.
     pub quiet: bool,
-    /// No element has changed since the last step.
-    pub unchanged: bool,
     /// Something was given to some body.
     pub delivered: Cell<bool>,
 }

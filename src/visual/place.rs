@@ -126,7 +126,7 @@ impl Placement {
         let shows = self.shows;
         // Found out anew in this frame, unless all parts are laid whatever they show.
         self.shows &= has_turn || self.seen;
-        if !(has_turn || self.seen || shows) {
+        if !(has_turn || self.seen || shows || self.due == Due::Nowhere) {
             return Due::Hidden;
         }
         self.ends = ends;

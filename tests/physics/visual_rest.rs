@@ -238,6 +238,21 @@ fn out_of_sight_but_with_a_shadow_in_the_picture_it_is_laid_in_every_frame() {
 }
 
 #[test]
+fn what_is_made_out_of_sight_lies_where_it_should_from_its_first_frame() {
+    let mut rest = Rest::new();
+    let away = Transform::from_xyz(0.0, 0.5, 10.0).looking_to(Vec3::Z, Vec3::Y);
+    look(&mut rest.lab, away);
+    // In each frame other ones have their turn.
+    for _ in 0..8 {
+        let (a, b) = (rest.lab.point(Vec3::X), rest.lab.point(Vec3::ONE));
+        let other = rest.lab.spawn((Spring::new(a, b), Coil::default()));
+        rest.lab.tick();
+        rest.coil = rest.lab.get::<Children>(other)[0];
+        assert!(rest.goes(Vec3::X, Vec3::ONE));
+    }
+}
+
+#[test]
 fn a_resting_coil_gets_coarser_as_the_camera_goes_away_and_finer_as_it_comes_back() {
     let mut rest = Rest::new();
     let camera = look(&mut rest.lab, Transform::from_xyz(0.0, 0.5, 3.0));

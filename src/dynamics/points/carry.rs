@@ -23,6 +23,11 @@ impl Points {
         self.budget = budget;
         self.converged = true;
         self.start.clone_from(&self.points);
+        self.sides.clear();
+        for wire in &mut self.wires {
+            self.sides.push(wire.side);
+            (wire.heat, wire.work) = (0.0, 0.0);
+        }
     }
 
     /// Moves a body to where the engine has taken it. Says whether it is the same mass still, and there are
@@ -94,8 +99,9 @@ impl Points {
             body.acceleration = point.acceleration;
             body.given = (DVec3::ZERO, DVec3::ZERO);
         }
-        for (element, wire) in elements.iter_mut().zip(&self.wires) {
+        for ((element, wire), side) in elements.iter_mut().zip(&self.wires).zip(&self.sides) {
             self.restore_element(element, wire);
+            element.direction = side.try_normalize();
         }
     }
 
@@ -106,7 +112,6 @@ impl Points {
                 (path.position, path.velocity) = (start.position, start.velocity);
             }
         }
-        element.direction = wire.side.try_normalize();
         (element.heat, element.work) = (0.0, 0.0);
     }
 }

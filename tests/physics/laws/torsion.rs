@@ -150,3 +150,38 @@ fn a_turning_shaft_drags_a_wheel_along() {
     let balance = f64::from(seen.work - seen.dissipated_energy) - motion;
     assert!(balance.abs() < 1e-3 * motion, "{balance} {seen:?}");
 }
+
+#[test]
+fn a_wheel_that_is_blocked_between_two_springs_pulls_no_more_than_they_do() {
+    let mut lab = Lab::weightless();
+    let (wall, last) = wheel(&mut lab, 0.0);
+    let first = lab.moving(
+        brick(1.0, Vec3::splat(INERTIA), 2.0 * Vec3::X),
+        Velocity::angular(Vec3::Z * 2.0),
+    );
+    let (near, far) = (3.0, 5.0);
+    for (a, b, stiffness) in [(wall, last, near), (last, first, far)] {
+        lab.spawn(
+            TorsionSpringDamper::new(a, b, Vec3::Z)
+                .with_stiffness(stiffness)
+                .with_damping(0.3)
+                .with_rest_angle(0.0),
+        );
+    }
+    lab.run(0.3);
+    let about_z = |lab: &Lab, body: Entity| {
+        let turn = lab.get::<Transform>(body).rotation.to_scaled_axis();
+        turn.z
+    };
+    let world = lab.app.world_mut();
+    let blocked = (LockedAxes::ROTATION_LOCKED, Velocity::zero());
+    world.entity_mut(first).insert(blocked);
+    lab.run(10.0);
+    let (held, led) = (about_z(&lab, first), about_z(&lab, last));
+    assert!(held.abs() > 0.1, "turned by {held} rad");
+    let statics = held * far / (near + far);
+    assert!(
+        (led - statics).abs() < 1e-3 * held.abs(),
+        "{led} rad, not {statics}"
+    );
+}
