@@ -126,3 +126,51 @@ fn a_cap_that_bites_is_told() {
     let readout = springs.single(net.lab.app.world()).expect("one element");
     assert!(!readout.capped && readout.microsteps == 4, "{readout:?}");
 }
+
+/// A stiff ladder of points that swings and bounces on one soft spring.
+fn ladder(mut lab: Lab) -> (Lab, Vec<Entity>) {
+    let mut points = Vec::new();
+    let hook = lab.point(Vec3::ZERO);
+    let mut join = |lab: &mut Lab, a, b, stiffness: f32| {
+        lab.spawn(SpringDamper::new(a, b).with_stiffness(stiffness));
+    };
+    for i in 0..8 {
+        let (x, y) = (0.2 * (i % 2) as f32, 0.2 * (i / 2) as f32);
+        points.push(lab.body(0.1, Vec3::new(1.0 + x, y, 0.0)));
+    }
+    join(&mut lab, hook, points[0], 10.0);
+    for i in 0..8 {
+        for j in i + 1..8.min(i + 4) {
+            join(&mut lab, points[i], points[j], 400.0);
+        }
+    }
+    (lab, points)
+}
+
+#[test]
+fn a_soft_swing_of_a_stiff_thing_keeps_the_tolerance() {
+    let run = |plugin: CoiloverPlugin| {
+        let (mut lab, points) = ladder(Lab::with(plugin, Engine::default()));
+        let mut path = Vec::new();
+        let mut kicks = 0;
+        let mut springs = lab.app.world_mut().query::<&SpringReadout>();
+        for _ in 0..120 {
+            lab.tick();
+            path.extend(points.iter().map(|p| lab.position(*p)));
+            kicks += springs
+                .iter(lab.app.world())
+                .next()
+                .expect("one")
+                .microsteps;
+        }
+        (path, kicks)
+    };
+    let fine = run(CoiloverPlugin::default().with_microsteps(128)).0;
+    for tolerance in [1e-2, 1e-3, 1e-4] {
+        let (path, kicks) = run(CoiloverPlugin::default().with_tolerance(tolerance));
+        let apart = path.iter().zip(&fine).map(|(a, b)| a.distance(*b));
+        let worst = apart.fold(0.0, f32::max);
+        println!("ladder, tolerance {tolerance:e} m/s: error {worst:.2e} m in 2 s, {kicks} kicks");
+        assert!(worst <= 2.0 * 3.0 * tolerance, "{tolerance}: {worst}");
+    }
+}
