@@ -131,7 +131,7 @@ fn a_cap_that_bites_is_told() {
 fn ladder(mut lab: Lab) -> (Lab, Vec<Entity>) {
     let mut points = Vec::new();
     let hook = lab.point(Vec3::ZERO);
-    let mut join = |lab: &mut Lab, a, b, stiffness: f32| {
+    let join = |lab: &mut Lab, a, b, stiffness: f32| {
         lab.spawn(SpringDamper::new(a, b).with_stiffness(stiffness));
     };
     for i in 0..8 {
