@@ -55,9 +55,8 @@ struct Wire {
 #[derive(Clone, Default)]
 pub(crate) struct Points {
     points: Vec<Point>,
-    /// As they were at the start of the step, and the elements' sides then.
+    /// As they were at the start of the step.
     start: Vec<Point>,
-    sides: Vec<DVec3>,
     /// So many of them are bodies; the others come after.
     bodies: usize,
     wires: Vec<Wire>,

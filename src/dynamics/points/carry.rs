@@ -1,7 +1,7 @@
 //! From one step into the next without being taken apart: where only the engine has moved a network since,
 //! nothing but its points' places has to be read again.
 
-use super::{Point, Points, Wire};
+use super::{Point, Points, Wire, noise};
 use crate::dynamics::body::Body;
 use crate::dynamics::element::{Element, End};
 use bevy::math::DVec3;
@@ -23,11 +23,6 @@ impl Points {
         self.budget = budget;
         self.converged = true;
         self.start.clone_from(&self.points);
-        self.sides.clear();
-        for wire in &mut self.wires {
-            self.sides.push(wire.side);
-            (wire.heat, wire.work) = (0.0, 0.0);
-        }
     }
 
     /// Moves a body to where the engine has taken it. Says whether it is the same mass still, and there are
@@ -99,9 +94,8 @@ impl Points {
             body.acceleration = point.acceleration;
             body.given = (DVec3::ZERO, DVec3::ZERO);
         }
-        for ((element, wire), side) in elements.iter_mut().zip(&self.wires).zip(&self.sides) {
+        for (element, wire) in elements.iter_mut().zip(&self.wires) {
             self.restore_element(element, wire);
-            element.direction = side.try_normalize();
         }
     }
 
@@ -112,6 +106,15 @@ impl Points {
                 (path.position, path.velocity) = (start.position, start.velocity);
             }
         }
+        // As it was aimed when the step began.
+        let [a, b] = wire.of(&self.start);
+        let d = b.position - a.position;
+        let side = if d.length_squared() > noise(a, b) {
+            d
+        } else {
+            wire.side
+        };
+        element.direction = side.try_normalize();
         (element.heat, element.work) = (0.0, 0.0);
     }
 }
