@@ -148,6 +148,16 @@ fn body(world: &mut World, at: Vec3, velocity: Vec3) -> Entity {
         .id()
 }
 
+/// Gives a body mass and inertia.
+fn weigh(world: &mut World, body: Entity, mass: f32, principal_inertia: Vec3) {
+    let properties = AdditionalMassProperties::MassProperties(MassProperties {
+        mass,
+        principal_inertia,
+        ..default()
+    });
+    world.entity_mut(body).insert(properties);
+}
+
 fn join(world: &mut World, a: Entity, b: Entity, link: Link) {
     match link {
         Link::Nothing => {}
@@ -197,13 +207,7 @@ fn pairs(world: &mut World, count: u32, link: Link, moving: bool) {
         let b = body(world, at + Vec3::X * stretch, -across);
         if let Link::Turning = link {
             for body in [a, b] {
-                let brick = MassProperties {
-                    mass: 1.0,
-                    principal_inertia: Vec3::new(0.02, 0.03, 0.04),
-                    ..default()
-                };
-                let brick = AdditionalMassProperties::MassProperties(brick);
-                world.entity_mut(body).insert(brick);
+                weigh(world, body, 1.0, Vec3::new(0.02, 0.03, 0.04));
             }
         }
         join(world, a, b, link);
@@ -228,13 +232,7 @@ fn cars(world: &mut World, count: u32) {
     for i in 0..count / 4 {
         let at = Vec3::new((i % 30) as f32 * 5.0, 0.0, (i / 30) as f32 * 5.0);
         let chassis = body(world, at, Vec3::Y * 0.3);
-        let box_of = MassProperties {
-            mass: 10.0,
-            principal_inertia: Vec3::new(5.0, 8.0, 4.0),
-            ..default()
-        };
-        let box_of = AdditionalMassProperties::MassProperties(box_of);
-        world.entity_mut(chassis).insert(box_of);
+        weigh(world, chassis, 10.0, Vec3::new(5.0, 8.0, 4.0));
         for corner in [(1.0, 1.5), (1.0, -1.5), (-1.0, 1.5), (-1.0, -1.5)] {
             let corner = Vec3::new(corner.0, 0.0, corner.1);
             let wheel = body(world, at + corner - Vec3::Y * 0.9, Vec3::ZERO);

@@ -2,15 +2,16 @@
 //!
 //! What it does is what [`super::network`] does, to rounding; but here an end is a point mass instead of a
 //! rigid body, so that thousands of them stay in the processor's cache. [`kick`] has the step,
-//! [`solve`] its linear system, [`carry`] what a network needs that goes from one step into the next.
+//! [`solve`] its linear system, [`carry`] what a network needs that goes from one step into the next,
+//! [`survey`] its energy.
 
 mod carry;
 mod kick;
 mod solve;
+mod survey;
 
 use super::body::{Body, Spin};
 use super::element::{Element, End, rounding};
-use super::energy::Energy;
 use super::guide::Guide;
 use super::step::EXTRAPOLATION_LIMIT;
 use super::tolerance::{Motion, velocity_counts};
@@ -78,16 +79,6 @@ pub(crate) struct Points {
     saved: [(Vec<Point>, Vec<Wire>); 3],
 }
 
-/// What the energy bound asks of a network.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Survey {
-    pub energy: Energy,
-    /// What rounding a step's positions and velocities to f32 can add to it, J.
-    pub rounding: f64,
-    /// Power of ends that something else moves, at most, W.
-    pub power: f64,
-}
-
 /// Direction and length of a line; see [`Element::line`].
 #[derive(Clone, Copy)]
 struct Line {
@@ -141,6 +132,16 @@ impl Wire {
 
     fn of<'a>(&self, points: &'a [Point]) -> [&'a Point; 2] {
         self.ends.map(|end| &points[end as usize])
+    }
+
+    /// The side on which end B is when it is looked at there.
+    fn aimed(&self, [a, b]: [&Point; 2]) -> DVec3 {
+        let d = b.position - a.position;
+        if d.length_squared() > noise(a, b) {
+            d
+        } else {
+            self.side
+        }
     }
 
     fn line(&self, [a, b]: [&Point; 2]) -> Option<Line> {
@@ -245,41 +246,6 @@ impl Points {
         self.converged
     }
 
-    pub(super) fn survey(&self) -> Survey {
-        let unit = f64::from(f32::EPSILON);
-        let mut survey = Survey::default();
-        let energy = &mut survey.energy;
-        for point in &self.points[..self.bodies] {
-            let mass = point.inverse_mass.recip();
-            let motion = 0.5 * mass * point.velocity.length_squared();
-            energy.motion += motion;
-            energy.place -= mass * point.acceleration.dot(point.position);
-            survey.rounding += 2.0 * unit * motion;
-        }
-        for wire in &self.wires {
-            let ends = wire.of(&self.points);
-            let Some(line) = wire.line(ends) else {
-                // As one of no length.
-                energy.stored += 0.5 * wire.stiffness * wire.rest_length.powi(2);
-                continue;
-            };
-            let stretch = line.length.abs() - wire.rest_length;
-            energy.stored += 0.5 * wire.stiffness * stretch * stretch;
-            // Four substeps, two ends.
-            let reach = ends[0].position.abs().max(ends[1].position.abs());
-            let off = 8.0 * unit * reach.max_element();
-            let force = wire.stiffness * (line.length - wire.rest_length);
-            survey.rounding += off * (force.abs() + wire.stiffness * off);
-            for end in ends {
-                if end.inverse_mass == 0.0 && end.velocity != DVec3::ZERO {
-                    let rate = (ends[1].velocity - ends[0].velocity).dot(line.direction);
-                    survey.power += wire.tension(line.length, rate).abs() * end.velocity.length();
-                }
-            }
-        }
-        survey
-    }
-
     /// Stiffness and damping over mass of every point.
     fn add_up(&mut self) {
         for sums in [&mut self.stiffness, &mut self.damping] {
@@ -321,10 +287,7 @@ impl Points {
     fn aim(&mut self, step: f64) {
         for wire in &mut self.wires {
             let [a, b] = wire.of(&self.points);
-            let d = b.position - a.position;
-            if d.length_squared() > noise(a, b) {
-                wire.side = d;
-            }
+            wire.side = wire.aimed([a, b]);
             wire.stiff_damper = false;
             if wire.damping > 0.0 && wire.rest_length == 0.0 {
                 let along = wire.side.try_normalize().unwrap_or(DVec3::Y);

@@ -24,6 +24,16 @@ pub(super) struct Group {
     pub dozing: Option<[RigidBodyHandle; 2]>,
 }
 
+impl Group {
+    /// Has it assembled in this, all of it read anew.
+    fn take(&mut self, mut assembly: Assembly, assemblies: &mut Vec<Assembly>) {
+        self.assembly = Some(assemblies.len());
+        assembly.signature = self.signature;
+        assembly.read_anew();
+        assemblies.push(assembly);
+    }
+}
+
 /// All components, as runs of two flat arrays.
 #[derive(Default)]
 pub(super) struct Groups {
@@ -109,38 +119,27 @@ impl Groups {
     ) {
         let mut known: HashMap<u64, Assembly> =
             assemblies.drain(..).map(|a| (a.signature, a)).collect();
-        for group in &mut self.list {
-            let members = Members {
-                elements: &self.elements[group.elements.clone()],
-                bodies: &self.bodies[group.bodies.clone()],
-            };
+        for g in 0..self.list.len() {
+            let members = self.members(&self.list[g]);
             let entities = members.bodies.iter().map(|b| bodies[*b].entity);
             let entities = entities.chain(members.elements.iter().map(|e| elements[*e].entity));
-            group.signature = entities.fold(members.elements.len() as u64, |sum, entity| {
+            let signature = entities.fold(members.elements.len() as u64, |sum, entity| {
                 mix(sum ^ entity.to_bits())
             });
             let any = |is: fn(&BodyRow) -> bool| members.bodies.iter().any(|b| is(&bodies[*b]));
             let alone = members.elements.len() == 1 && !any(|body| body.turns);
             let is_plain = alone && !any(|body| body.support != Support::None);
-            let before = known.remove(&group.signature).filter(|_| !is_plain);
-            if alone && before.is_none() {
-                continue;
+            let before = known.remove(&signature).filter(|_| !is_plain);
+            self.list[g].signature = signature;
+            if !alone || before.is_some() {
+                self.list[g].take(before.unwrap_or_default(), assemblies);
             }
-            group.assembly = Some(assemblies.len());
-            let mut assembly = before.unwrap_or_default();
-            assembly.read_anew();
-            assembly.signature = group.signature;
-            assemblies.push(assembly);
         }
     }
 
     /// Gives a lone element's group an assembly of its own after all.
     pub(super) fn promote(&mut self, group: usize, assemblies: &mut Vec<Assembly>) {
-        let group = &mut self.list[group];
-        group.assembly = Some(assemblies.len());
-        let mut assembly = Assembly::default();
-        assembly.signature = group.signature;
-        assemblies.push(assembly);
+        self.list[group].take(Assembly::default(), assemblies);
     }
 
     pub(super) fn list(&self) -> &[Group] {

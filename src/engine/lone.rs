@@ -63,8 +63,7 @@ impl Step<'_> {
             };
         }
         let mut points = [Point::default(); 2];
-        let mut movable = [None; 2];
-        for (end, (point_at, held)) in points.iter_mut().zip(&row.held).enumerate() {
+        for (point_at, held) in points.iter_mut().zip(&row.held) {
             let found = match *held {
                 Held::Body {
                     movable: Some(index),
@@ -74,10 +73,7 @@ impl Step<'_> {
                     .flatten()
                     .find(|(b, _)| *b == index)
                     .ok_or(Handled::No)
-                    .and_then(|(_, body)| {
-                        movable[end] = Some(index);
-                        Point::of(&bodies[index], body, self)
-                    }),
+                    .and_then(|(_, body)| Point::of(&bodies[index], body, self)),
                 _ => {
                     let (from, to) = self.path(held, set);
                     Ok(Point {
@@ -166,6 +162,7 @@ impl Step<'_> {
         if damped {
             row.ledger.dissipated += before - row.energy_of(&pair, &end);
         }
+        let movable = row.held.each_ref().map(Held::movable);
         for ((point, movable), sign) in points.iter().zip(movable).zip([-1.0, 1.0]) {
             let Some(index) = movable else {
                 // What holds this end moves it against what the other end is given.

@@ -59,22 +59,26 @@ impl Watch<'_, '_> {
         self.mass_modified.extend(self.masses.read().map(|m| m.0));
         let mut changed = self.changed.iter().any(is_known);
         changed |= self.mass_modified.iter().any(|e| is_loaded(*e));
-        // Each has to be read to its end.
-        changed |= self.handles.read().filter(|e| is_known(*e)).count() > 0;
-        changed |= self.links.read().filter(|e| is_known(*e)).count() > 0;
-        changed |= self.disabled.read().filter(|e| is_known(*e)).count() > 0;
-        changed |= self.loads.read().filter(|e| is_loaded(*e)).count() > 0;
-        changed |= self.forces.read().filter(|e| is_loaded(*e)).count() > 0;
+        changed |= any_of(&mut self.handles, is_known);
+        changed |= any_of(&mut self.links, is_known);
+        changed |= any_of(&mut self.disabled, is_known);
+        changed |= any_of(&mut self.loads, is_loaded);
+        changed |= any_of(&mut self.forces, is_loaded);
         // One that was not known comes into the count of elements, or is looked for in every tick.
-        changed |= self.hidden.read().filter(|e| is_known(*e)).count() > 0;
-        changed |= self.anchors.read().filter(|e| is_known(*e)).count() > 0;
-        changed |= self.springs.read().filter(|e| is_known(*e)).count() > 0;
-        changed |= self.dampers.read().filter(|e| is_known(*e)).count() > 0;
-        changed |= self.pairs.read().filter(|e| is_known(*e)).count() > 0;
+        changed |= any_of(&mut self.hidden, is_known);
+        changed |= any_of(&mut self.anchors, is_known);
+        changed |= any_of(&mut self.springs, is_known);
+        changed |= any_of(&mut self.dampers, is_known);
+        changed |= any_of(&mut self.pairs, is_known);
         let torsion = &mut self.torsion;
-        changed |= torsion.0.read().filter(|e| is_known(*e)).count() > 0;
-        changed |= torsion.1.read().filter(|e| is_known(*e)).count() > 0;
-        changed |= torsion.2.read().filter(|e| is_known(*e)).count() > 0;
+        changed |= any_of(&mut torsion.0, is_known);
+        changed |= any_of(&mut torsion.1, is_known);
+        changed |= any_of(&mut torsion.2, is_known);
         changed
     }
+}
+
+/// Whether any of what lost a component is of a kind. Each has to be read to its end.
+fn any_of<C: Component>(lost: &mut RemovedComponents<C>, is_such: impl Fn(Entity) -> bool) -> bool {
+    lost.read().filter(|entity| is_such(*entity)).count() > 0
 }

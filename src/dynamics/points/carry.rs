@@ -1,7 +1,7 @@
 //! From one step into the next without being taken apart: where only the engine has moved a network since,
 //! nothing but its points' places has to be read again.
 
-use super::{Point, Points, Wire, noise};
+use super::{Point, Points, Wire};
 use crate::dynamics::body::Body;
 use crate::dynamics::element::{Element, End};
 use bevy::math::DVec3;
@@ -107,14 +107,7 @@ impl Points {
             }
         }
         // As it was aimed when the step began.
-        let [a, b] = wire.of(&self.start);
-        let d = b.position - a.position;
-        let side = if d.length_squared() > noise(a, b) {
-            d
-        } else {
-            wire.side
-        };
-        element.direction = side.try_normalize();
+        element.direction = wire.aimed(wire.of(&self.start)).try_normalize();
         (element.heat, element.work) = (0.0, 0.0);
     }
 }

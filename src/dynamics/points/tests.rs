@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::dynamics::element::Path;
+use crate::dynamics::energy::Energy;
 use crate::dynamics::step::Component;
 use crate::dynamics::tests;
 
