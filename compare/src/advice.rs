@@ -61,8 +61,8 @@ pub fn section(scenes: &[(&Scene, Vec<Row>)]) -> String {
         }
         text.push('\n');
     }
-    text.push('\n');
     text.push_str(&tolerance_prices(scenes));
+    text.push('\n');
     text
 }
 

@@ -16,7 +16,7 @@ use super::guide::Guide;
 use super::step::EXTRAPOLATION_LIMIT;
 use super::tolerance::{Motion, velocity_counts};
 use bevy::math::DVec3;
-pub(crate) use carry::Flight;
+pub(crate) use carry::{Flight, FreePoint};
 use kick::Bar;
 use solve::Solver;
 

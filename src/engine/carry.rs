@@ -3,7 +3,7 @@
 
 use super::assembly::{Assembly, Members, State};
 use super::body::is_movable;
-use super::point::Point;
+use super::point::FreePoint;
 use super::scene::{BodyRow, ElementRow};
 use super::step::Step;
 use bevy::math::Vec3;
@@ -18,7 +18,6 @@ pub(super) struct Carry {
     pub omega: f32,
     /// Where each body's centre of mass is in its own frame.
     pub centers: Vec<Vec3>,
-    points: Vec<Point>,
     /// Some body has not rested for long.
     restless: bool,
     /// Some body is not where the last step left it.
@@ -72,7 +71,6 @@ impl Assembly {
         let time = step.plan.time;
         let points = self.component.points_to_carry(time)?;
         (carry.restless, carry.displaced) = (false, false);
-        carry.points.clear();
         for (slot, b) in members.bodies.iter().enumerate() {
             let row = &mut bodies[*b];
             let body = set.get(row.handle)?;
@@ -80,15 +78,13 @@ impl Assembly {
             if !is_movable(body) || body.is_sleeping() || carry.centers[slot] != center {
                 return None;
             }
-            let point = Point::of(row, body, step).ok()?;
+            let point = FreePoint::of(row, body, step).ok()?;
             *disturbed |= std::mem::take(&mut row.disturbed);
             carry.restless |= step.is_restless(row, body, carry.omega);
             carry.displaced |= row.now.0 != point.position;
-            let state = [point.position, point.velocity, point.acceleration];
-            if !points.place(slot, state, point.inverse_mass) {
+            if !points.place(slot, &point) {
                 return None;
             }
-            carry.points.push(point);
         }
         for (index, (element, end)) in carry.ends.iter().enumerate() {
             let row = &elements[members.elements[*element]];
@@ -112,9 +108,9 @@ impl Assembly {
         self.ledger
             .go_on(&self.component, self.carry.displaced, time);
         let points = self.component.carried_points();
-        for (slot, (b, point)) in members.bodies.iter().zip(&self.carry.points).enumerate() {
-            let flight = points.flight(slot);
-            step.deliver_point(&mut bodies[*b], point, &flight, self.carry.restless, set);
+        for (slot, b) in members.bodies.iter().enumerate() {
+            let (origin, flight) = (points.origin(slot), points.flight(slot));
+            step.deliver_point(&mut bodies[*b], &origin, &flight, self.carry.restless, set);
         }
         for (e, (direction, heat, work)) in members.elements.iter().zip(points.take_results()) {
             let row = &mut elements[*e];

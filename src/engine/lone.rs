@@ -3,7 +3,7 @@
 //! Most elements of most scenes are of this kind. Whatever is out of the ordinary about one (contacts,
 //! joints, locked axes, ends that coincide, a sleeping end) is left to [`super::assembly`].
 
-use super::point::{Flight, Point};
+use super::point::{Flight, FreePoint};
 use super::scene::{BodyRow, ElementRow, Held};
 use super::step::Step;
 use crate::dynamics::element::rounding;
@@ -62,7 +62,7 @@ impl Step<'_> {
                 _ => Handled::Done,
             };
         }
-        let mut points = [Point::default(); 2];
+        let mut points = [FreePoint::default(); 2];
         for (point_at, held) in points.iter_mut().zip(&row.held) {
             let found = match *held {
                 Held::Body {
@@ -73,13 +73,13 @@ impl Step<'_> {
                     .flatten()
                     .find(|(b, _)| *b == index)
                     .ok_or(Handled::No)
-                    .and_then(|(_, body)| Point::of(&bodies[index], body, self)),
+                    .and_then(|(_, body)| FreePoint::of(&bodies[index], body, self)),
                 _ => {
                     let (from, to) = self.path(held, set);
-                    Ok(Point {
+                    Ok(FreePoint {
                         position: from,
                         velocity: (to - from) / time,
-                        ..Point::default()
+                        ..FreePoint::default()
                     })
                 }
             };

@@ -8,25 +8,14 @@ use super::lone::Handled;
 use super::scene::BodyRow;
 use super::sleep::keep_awake;
 use super::step::Step;
-pub(super) use crate::dynamics::points::Flight;
-use bevy::math::{DVec3, Vec3};
+pub(super) use crate::dynamics::points::{Flight, FreePoint};
+use bevy::math::Vec3;
 use bevy_rapier3d::prelude::ExternalForce;
 use bevy_rapier3d::rapier::dynamics::{LockedAxes, RigidBody as RapierBody, RigidBodySet};
 
-/// A centre of mass, or an end that nothing here moves.
-#[derive(Clone, Copy, Default)]
-pub(super) struct Point {
-    pub position: DVec3,
-    pub velocity: DVec3,
-    /// By everything but elements.
-    pub acceleration: DVec3,
-    /// 0 of one that elements cannot move.
-    pub inverse_mass: f64,
-}
-
 const LOCKED: LockedAxes = LockedAxes::TRANSLATION_LOCKED;
 
-impl Point {
+impl FreePoint {
     /// The centre of mass of an ordinary movable body.
     pub(super) fn of(row: &BodyRow, body: &RapierBody, step: &Step) -> Result<Self, Handled> {
         let properties = &body.mass_properties().local_mprops;
@@ -61,7 +50,7 @@ impl Step<'_> {
     pub(super) fn deliver_point(
         &self,
         row: &mut BodyRow,
-        point: &Point,
+        point: &FreePoint,
         flight: &Flight,
         restless: bool,
         set: &mut RigidBodySet,

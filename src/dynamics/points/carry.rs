@@ -6,6 +6,17 @@ use crate::dynamics::body::Body;
 use crate::dynamics::element::{Element, End};
 use bevy::math::DVec3;
 
+/// A body before a step, as the point that its centre of mass is; or an end that nothing here moves.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct FreePoint {
+    pub position: DVec3,
+    pub velocity: DVec3,
+    /// By everything but elements.
+    pub acceleration: DVec3,
+    /// 0 of one that elements cannot move.
+    pub inverse_mass: f64,
+}
+
 /// What a step made of a body.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Flight {
@@ -27,28 +38,32 @@ impl Points {
 
     /// Moves a body to where the engine has taken it. Says whether it is the same mass still, and there are
     /// no contacts to reckon with.
-    pub(crate) fn place(
-        &mut self,
-        body: usize,
-        [position, velocity, acceleration]: [DVec3; 3],
-        inverse_mass: f64,
-    ) -> bool {
+    pub(crate) fn place(&mut self, body: usize, at: &FreePoint) -> bool {
         let point = &mut self.points[body];
-        let is_same = point.inverse_mass == inverse_mass && !self.any_held;
+        let is_same = point.inverse_mass == at.inverse_mass && !self.any_held;
         *point = Point {
-            position,
-            velocity,
-            acceleration,
-            inverse_mass,
-            ..Point::prescribed(position, velocity)
+            acceleration: at.acceleration,
+            inverse_mass: at.inverse_mass,
+            ..Point::prescribed(at.position, at.velocity)
         };
-        is_same && (position + velocity + acceleration).is_finite()
+        is_same && (at.position + at.velocity + at.acceleration).is_finite()
     }
 
     /// The same of an end that elements cannot move, counted in the order of the elements.
     pub(crate) fn place_end(&mut self, end: usize, position: DVec3, velocity: DVec3) {
         let index = self.bodies + end;
         self.points[index] = Point::prescribed(position, velocity);
+    }
+
+    /// Where a body began the step.
+    pub(crate) fn origin(&self, body: usize) -> FreePoint {
+        let start = &self.start[body];
+        FreePoint {
+            position: start.position,
+            velocity: start.velocity,
+            acceleration: start.acceleration,
+            inverse_mass: start.inverse_mass,
+        }
     }
 
     /// What the step made of a body.
