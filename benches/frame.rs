@@ -70,6 +70,9 @@ fn isolated(c: &mut Criterion) {
         bench("awake", Scene::Isolated, Link::Ours, count, 1);
     }
     bench("asleep", Scene::Asleep, Link::Ours, 10_000, 1);
+    let beside = "asleep, another body flies";
+    bench(beside, Scene::AllButOne, Link::Ours, 10_000, 1);
+    bench("bare force", Scene::Isolated, Link::Bare, 10_000, 1);
     bench("with laws", Scene::Isolated, Link::Laws, 10_000, 1);
     bench("turning", Scene::Isolated, Link::Turning, 1_000, 1);
     bench("4 microsteps", Scene::Isolated, Link::Ours, 10_000, 4);

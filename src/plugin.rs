@@ -131,7 +131,7 @@ impl Plugin for CoiloverPlugin {
                 (engine::read_users, engine::solve)
                     .chain()
                     .in_set(CoiloverSystems::Solve),
-                (engine::measure, engine::break_overloaded)
+                (engine::mark, engine::measure, engine::break_overloaded)
                     .chain()
                     .in_set(CoiloverSystems::Readout),
             )

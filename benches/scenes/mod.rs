@@ -18,6 +18,46 @@ pub enum Link {
     /// Ours, held off the centres of the bodies, which they turn.
     Turning,
     Joint,
+    /// Hooke's law as a force and no more: two bodies read, two written, straight in the engine.
+    Bare,
+}
+
+/// What [`Link::Bare`] joins.
+#[derive(Resource, Default)]
+struct Bare(Vec<[Entity; 2]>);
+
+/// The least that any spring has to do.
+fn pull(
+    pairs: Res<Bare>,
+    handles: Query<&RapierRigidBodyHandle>,
+    mut sets: Query<&mut RapierRigidBodySet>,
+) {
+    let Ok(mut set) = sets.single_mut() else {
+        return;
+    };
+    if pairs.0.is_empty() {
+        // Not to touch the engine's bodies for nothing.
+        return;
+    }
+    let set = &mut set.bodies;
+    for pair in &pairs.0 {
+        let [Ok(a), Ok(b)] = pair.map(|body| handles.get(body).map(|handle| handle.0)) else {
+            continue;
+        };
+        let (Some(from), Some(to)) = (set.get(a), set.get(b)) else {
+            continue;
+        };
+        let d = to.translation() - from.translation();
+        let along = d.normalize_or_zero();
+        let rate = (to.linvel() - from.linvel()).dot(along);
+        let force = (40.0 * (d.length() - 1.0) + 0.1 * rate) * along;
+        for (handle, force) in [(a, force), (b, -force)] {
+            if let Some(body) = set.get_mut(handle) {
+                body.reset_forces(false);
+                body.add_force(force, true);
+            }
+        }
+    }
 }
 
 /// Which springs.
@@ -27,6 +67,8 @@ pub enum Scene {
     Isolated,
     /// The same pairs at rest, asleep.
     Asleep,
+    /// These, and one body that flies on.
+    AllButOne,
     /// One long chain, hung at both ends.
     Chain,
     /// A cubic lattice with springs along its edges.
@@ -93,7 +135,8 @@ impl Scene {
         })
         .insert_resource(Time::<Fixed>::from_hz(60.0))
         .insert_resource(Since(Instant::now()))
-        .init_resource::<Own>();
+        .init_resource::<Own>()
+        .init_resource::<Bare>();
         let before = (
             start
                 .after(PhysicsSet::SyncBackend)
@@ -107,7 +150,10 @@ impl Scene {
                 .before(PhysicsSet::StepSimulation),
             stop.after(CoiloverSystems::Readout),
         );
-        app.add_systems(FixedUpdate, (before, after));
+        app.add_systems(
+            FixedUpdate,
+            (before, after, pull.in_set(CoiloverSystems::Solve)),
+        );
         // So that nothing else runs within our time; the engine has threads of its own.
         app.edit_schedule(FixedUpdate, |schedule| {
             schedule.set_executor(SingleThreadedExecutor::new());
@@ -120,11 +166,15 @@ impl Scene {
         match self {
             Self::Isolated => pairs(app.world_mut(), count, link, true),
             Self::Asleep => pairs(app.world_mut(), count, link, false),
+            Self::AllButOne => {
+                pairs(app.world_mut(), count, link, false);
+                body(app.world_mut(), Vec3::NEG_Y * 10.0, Vec3::NEG_Y);
+            }
             Self::Chain => chain(app.world_mut(), count, link),
             Self::Cars => cars(app.world_mut(), count),
             Self::Lattice => lattice(app.world_mut(), count, link),
         }
-        let settle = if matches!(self, Self::Asleep) {
+        let settle = if matches!(self, Self::Asleep | Self::AllButOne) {
             200
         } else {
             20
@@ -192,6 +242,7 @@ fn join(world: &mut World, a: Entity, b: Entity, link: Link) {
             let joint = SpringJointBuilder::new(1.0, 40.0, 0.1);
             world.entity_mut(b).insert(ImpulseJoint::new(a, joint));
         }
+        Link::Bare => world.resource_mut::<Bare>().0.push([a, b]),
     }
 }
 

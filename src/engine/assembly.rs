@@ -64,6 +64,11 @@ impl Assembly {
         }
     }
 
+    /// Whether it was found asleep in this step.
+    pub(super) fn is_asleep(&self) -> bool {
+        self.asleep
+    }
+
     /// Has everything about its elements read again in its next step, whenever that is.
     pub(super) fn read_anew(&mut self) {
         self.component.forget_points();

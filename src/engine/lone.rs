@@ -17,8 +17,8 @@ use bevy_rapier3d::rapier::dynamics::{RigidBodyHandle, RigidBodySet};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Handled {
     Done,
-    /// Asleep, and only these, its bodies, can wake it.
-    Asleep([RigidBodyHandle; 2]),
+    /// Asleep; and if so, only these, its bodies, can wake it.
+    Asleep(Option<[RigidBodyHandle; 2]>),
     /// Out of the ordinary in this step.
     No,
     /// Out of the ordinary for as long as can be seen.
@@ -55,12 +55,12 @@ impl Step<'_> {
                 return Handled::No;
             }
             row.active = false;
-            return match found {
+            return Handled::Asleep(match found {
                 [Some((a, _)), Some((b, _))] if row.watched == [false; 2] => {
-                    Handled::Asleep([bodies[a].handle, bodies[b].handle])
+                    Some([bodies[a].handle, bodies[b].handle])
                 }
-                _ => Handled::Done,
-            };
+                _ => None,
+            });
         }
         let mut points = [FreePoint::default(); 2];
         for (point_at, held) in points.iter_mut().zip(&row.held) {

@@ -3,7 +3,7 @@
 //! One step runs [`prepare::prepare`] → [`forces::read_users`] → [`solve::solve`] → (Rapier steps) → [`measure::measure`].
 //! [`scene`] holds what is kept between; [`find`] fills it where [`watch`] or an element says that it
 //! changed. A lone element goes through [`lone`], everything else through [`assembly`], where [`carry`] takes
-//! networks of points past most of the work.
+//! networks of points past most of the work, and [`still`] a world asleep past all of it.
 
 mod assembly;
 mod body;
@@ -31,6 +31,7 @@ mod setup;
 mod sleep;
 mod solve;
 mod step;
+mod still;
 mod timestep;
 mod touch;
 mod tune;
@@ -44,3 +45,4 @@ pub(crate) use prepare::prepare;
 pub(crate) use scene::Scene;
 pub(crate) use setup::{Watched, check_schedule, check_timestep, in_place};
 pub(crate) use solve::solve;
+pub(crate) use still::mark;

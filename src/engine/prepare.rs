@@ -6,7 +6,7 @@ use super::ends::{Ends, Place};
 use super::find::Finder;
 use super::forces::SpringLoad;
 use super::parts::{ChangedParts, IsElement, Parts};
-use super::scene::{ElementRow, Held, Scene};
+use super::scene::{BodyRow, ElementRow, Held, Scene};
 use super::watch::Watch;
 use crate::element::SpringFault;
 use bevy::ecs::entity::EntityHashSet;
@@ -98,6 +98,7 @@ fn refresh(
         changed: marked,
         assemblies,
         time,
+        shifted,
         ..
     } = scene;
     // What changes while nothing is stepped is kept for the step that comes.
@@ -105,6 +106,7 @@ fn refresh(
         for index in marked.drain(..) {
             rows[index].changed = false;
         }
+        *shifted = false;
     }
     for entity in changed.iter().chain(companions.touched.iter().copied()) {
         // Anchors and companions can stand where no element is.
@@ -143,12 +145,18 @@ fn refresh(
     }
     followed.iter().all(|(index, end)| {
         let row = &mut rows[*index];
-        row.fault.is_some() || follow(row, *end, ends, bodies)
+        row.fault.is_some() || follow(row, *end, ends, bodies, shifted)
     })
 }
 
-/// Looks for an end again; says whether it is still the same kind of end.
-fn follow(row: &mut ElementRow, end: usize, ends: &Ends, bodies: &[super::scene::BodyRow]) -> bool {
+/// Looks for an end again; says whether it is still the same kind of end, and if it has moved.
+fn follow(
+    row: &mut ElementRow,
+    end: usize,
+    ends: &Ends,
+    bodies: &[BodyRow],
+    shifted: &mut bool,
+) -> bool {
     let p = &row.parameters;
     let found = ends.find(
         p.ends[end],
@@ -177,6 +185,7 @@ fn follow(row: &mut ElementRow, end: usize, ends: &Ends, bodies: &[super::scene:
                     return false;
                 }
                 *local = now_at;
+                *shifted = true;
             }
             true
         }
@@ -184,6 +193,7 @@ fn follow(row: &mut ElementRow, end: usize, ends: &Ends, bodies: &[super::scene:
             // Where it was after the last step.
             *from = row.memory.places[end].unwrap_or(now);
             *to = now;
+            *shifted |= from != to;
             true
         }
         _ => false,

@@ -9,6 +9,7 @@ use super::forces::Share;
 use super::group::Groups;
 use super::held::{Expected, Support, Twist};
 use super::sleep::Rest;
+use super::still::Still;
 use super::touch::Partner;
 use crate::dynamics::kick::Memo;
 use crate::dynamics::tolerance::{Controller, Outcome};
@@ -206,6 +207,9 @@ pub struct Scene {
     pub(super) loaded: bool,
     /// Some body was given something in this tick.
     pub(super) delivered: bool,
+    /// An end that the game can move was not where it had been.
+    pub(super) shifted: bool,
+    pub(super) still: Still,
     /// Some element has no end that elements can move.
     pub(super) immovable: bool,
     /// The readouts stand in another order than the rows even when these have just been made.

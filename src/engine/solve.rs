@@ -74,7 +74,8 @@ pub(crate) fn solve(
         let Ok(mut set) = sets.get_mut(context) else {
             continue;
         };
-        if !here {
+        let quiet = scene.changed.is_empty() && !scene.loaded && !scene.renewed;
+        if !here || (quiet && !scene.shifted && scene.still.holds(context, simulation, &set)) {
             continue;
         }
         let parameters = &simulation.integration_parameters;
@@ -92,18 +93,25 @@ pub(crate) fn solve(
             ground: &Ground::default(),
             accuracy: settings.accuracy(),
             links: joints.multibody_joints.multibodies().next().is_some(),
-            quiet: scene.changed.is_empty() && !scene.loaded && !scene.renewed,
+            quiet,
             delivered: Cell::new(false),
         };
-        scene.step(context, &step, &mut set.bodies, &mut spare);
+        let all_asleep = scene.step(context, &step, &mut set.bodies, &mut spare);
+        scene.still.note(context, all_asleep);
         scene.delivered |= step.delivered.get();
     }
     forces::show(scene, &mut loads);
 }
 
 impl Scene {
-    /// Takes every component of a context through the step.
-    fn step(&mut self, context: Entity, step: &Step, set: &mut RigidBodySet, spare: &mut Assembly) {
+    /// Takes every component of a context through the step; says whether all of them are asleep.
+    fn step(
+        &mut self,
+        context: Entity,
+        step: &Step,
+        set: &mut RigidBodySet,
+        spare: &mut Assembly,
+    ) -> bool {
         let Self {
             elements,
             bodies,
@@ -113,6 +121,7 @@ impl Scene {
             ..
         } = self;
         let mut special = Vec::new();
+        let mut all_asleep = true;
         for g in 0..groups.list().len() {
             let group = &groups.list()[g];
             if group.context != context {
@@ -128,6 +137,7 @@ impl Scene {
             let members = groups.members(group);
             if let Some(index) = group.assembly {
                 assemblies[index].gather(step, &members, elements, bodies, set, stale);
+                all_asleep &= assemblies[index].is_asleep();
                 continue;
             }
             let Some(element) = members.elements.first() else {
@@ -135,8 +145,11 @@ impl Scene {
             };
             let handled = step.lone(&mut elements[*element], bodies, members.bodies, set, stale);
             let dozing = match handled {
-                Handled::Asleep(handles) => Some(handles),
-                _ => None,
+                Handled::Asleep(handles) => handles,
+                _ => {
+                    all_asleep = false;
+                    None
+                }
             };
             if matches!(handled, Handled::No | Handled::Never) {
                 spare.gather(step, &members, elements, bodies, set, stale);
@@ -158,6 +171,7 @@ impl Scene {
         for group in special {
             groups.promote(group, assemblies);
         }
+        all_asleep
     }
 }
 

@@ -30,6 +30,7 @@ mod sleeping;
 mod spinning_pair;
 mod stability;
 mod static_sag;
+mod still;
 mod tolerance;
 mod user_force;
 #[cfg(feature = "visual")]
