@@ -3,12 +3,13 @@
 //! Read in the order in which a step runs. [`tolerance`] decides how finely to step, [`step`] holds what has
 //! to be solved together. [`body`] drifts, [`element`] has the [`line`] between its ends (or
 //! what [`guide`] gives instead), [`poles`] gives
-//! the exact coefficients; [`kick`] acts for a lone element, [`pair`] for one on bodies that do not turn,
+//! the exact coefficients; [`kick`] acts for a lone element, [`pair`] for one on bodies that do not turn, four of them [`abreast`],
 //! [`shock`] for one of those with a force [`law`] of its own, [`network`] for elements that share bodies,
 //! with the linear algebra in [`system`] and [`strut`], and [`points`] for those that turn none. [`guard`] keeps strong
 //! damping honest, and [`bound`] a network, by their [`energy`]. [`delivery`] says which impulse and force
 //! make the engine arrive there.
 
+pub(crate) mod abreast;
 pub(crate) mod body;
 mod bound;
 pub(crate) mod delivery;

@@ -148,13 +148,28 @@ impl Pair {
         self.stiffness * self.inverse_mass * step * step
     }
 
+    pub(super) fn poles(&self, step: f64, memo: &mut Memo) -> Poles {
+        let damping = self.damping * self.inverse_mass * step;
+        memo.poles(self.stiffness_number(step), damping / 2.0)
+    }
+
+    /// Whether a step's energy is watched.
+    fn is_watched(&self, step: f64) -> bool {
+        self.damping * self.inverse_mass * step >= STRONG
+            || !is_resolved(self.stiffness_number(step))
+    }
+
+    /// Whether micro-steps of so long are kicks along the line and nothing else: then it can go
+    /// [`super::abreast`] with others.
+    pub(crate) fn is_plain(&self, step: f64) -> bool {
+        self.rest_length > 0.0 && !self.is_watched(step)
+    }
+
     fn microsteps(&self, state: &mut Separation, time: f64, count: u32, memo: &mut Memo) {
         let step = time / f64::from(count);
-        let z = self.stiffness_number(step);
-        let poles = memo.poles(z, self.damping * self.inverse_mass * step / 2.0);
+        let poles = self.poles(step, memo);
         let mut aimed = self.aim(state, step);
-        let watched = self.damping * self.inverse_mass * step >= STRONG || !is_resolved(z);
-        let before = watched.then(|| (self.energy(state), *state));
+        let before = self.is_watched(step).then(|| (self.energy(state), *state));
         self.map(state, aimed, &poles, step, |axial, offset, speed| {
             ((axial - offset) / poles.speed, 1.0 / speed)
         });

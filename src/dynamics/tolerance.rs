@@ -16,6 +16,21 @@ pub(crate) struct Accuracy {
     pub max_iterations: u32,
 }
 
+impl Accuracy {
+    /// Micro-steps of every step that needs so many at least, and whether the cap keeps it from more.
+    fn count(&self, least: u32) -> (u32, bool) {
+        let asked = self.microsteps.max(least);
+        let count = asked.min(self.max_microsteps.max(1));
+        (count, count < asked)
+    }
+
+    /// Micro-steps of every step alike, if that is all that is asked.
+    pub(crate) fn plain(&self) -> Option<u32> {
+        let plain = self.tolerance.is_none() && !self.extrapolate;
+        plain.then(|| self.count(1).0)
+    }
+}
+
 /// How a component was solved.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Method {
@@ -36,6 +51,18 @@ pub(crate) struct Outcome {
     pub error: Option<f64>,
     /// A cap kept the step from being as fine or as exact as was asked.
     pub capped: bool,
+}
+
+impl Outcome {
+    /// Of plain micro-steps.
+    pub(crate) fn plain(accuracy: &Accuracy) -> Self {
+        let (microsteps, capped) = accuracy.count(1);
+        Self {
+            microsteps,
+            capped,
+            ..Self::default()
+        }
+    }
 }
 
 /// A motion that can be run over the step again and again, from copies of its state.
@@ -196,8 +223,7 @@ impl Controller {
 
 /// As many micro-steps as are asked for.
 fn fixed(motion: &mut impl Motion, time: f64, accuracy: Accuracy) -> Outcome {
-    let asked = accuracy.microsteps.max(motion.least(time));
-    let count = asked.min(accuracy.max_microsteps.max(1));
+    let (count, capped) = accuracy.count(motion.least(time));
     let plan = if !accuracy.extrapolate {
         Plan::Plain(count)
     } else if motion.is_resolved(time / f64::from(count)) {
@@ -208,7 +234,7 @@ fn fixed(motion: &mut impl Motion, time: f64, accuracy: Accuracy) -> Outcome {
     };
     Outcome {
         microsteps: take(motion, time, plan),
-        capped: count < asked,
+        capped,
         ..Outcome::default()
     }
 }

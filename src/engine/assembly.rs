@@ -3,8 +3,9 @@
 use super::body::{deliver, read};
 use super::carry::Carry;
 use super::element::element;
+use super::expected::Expected;
 use super::forces::Share;
-use super::held::{self, Expected, Support};
+use super::held::{self, Support};
 use super::passive::Ledger;
 use super::scene::{BodyRow, ElementRow};
 use super::sleep::omega_of;
@@ -13,8 +14,7 @@ use super::touch::Partners;
 use crate::dynamics::body::Body;
 use crate::dynamics::step::Component;
 use crate::dynamics::tolerance::{Accuracy, Outcome};
-use bevy::math::DVec3;
-use bevy_rapier3d::prelude::*;
+use bevy::math::{DVec3, Vec3};
 use bevy_rapier3d::rapier::dynamics::RigidBodySet;
 
 /// A component with its bodies and elements, kept from tick to tick.
@@ -136,8 +136,7 @@ impl Assembly {
         for (index, e) in members.elements.iter().enumerate() {
             let row = &mut elements[*e];
             disturbed |= row.changed || step.has_moved(row, set);
-            let guide = row.companion.guide;
-            let ends = row.held.map(|held| step.end(held, guide, bodies, set));
+            let ends = [0, 1].map(|end| step.end(row, end, bodies, set));
             if let Some(element) = element(row, ends, &self.start) {
                 omega = omega.max(omega_of(row));
                 for (end, _) in ends.iter().enumerate().filter(|(_, end)| end.is_path()) {
@@ -298,34 +297,29 @@ impl Assembly {
             let Some(body) = set.get_mut(row.handle).filter(|body| !body.is_sleeping()) else {
                 continue;
             };
-            let mut share = ExternalForce::default();
+            let mut share = [Vec3::ZERO; 2];
             let mut raised_iterations = false;
             if ready {
                 let (start, end) = (&self.start[slot], &self.component.bodies[slot]);
                 let terms = step.terms(row.handle, body);
                 raised_iterations = terms.raised_iterations;
-                let expected = Expected::new(start, end, step.plan.time);
-                row.expected = Some(if terms.takes_impulses {
-                    expected
-                } else {
-                    expected.of_link(&terms)
-                });
+                let (expected, spun) = Expected::new(start, end, &terms);
+                row.expected = Some(expected);
+                row.spun = spun;
                 share = if end.mobility < 1.0 {
                     held::deliver(body, start, end.given, row.support, &terms)
                 } else {
                     deliver(body, start, end, &terms, &step.engine)
                 };
             }
-            let mut share = Share::act(share, &row.user, body);
-            share.raised_iterations = raised_iterations;
-            row.share = Some(share);
+            row.share = Some(Share::act(share, &row.user, body, raised_iterations));
             step.delivered.set(true);
         }
         let mut solved = self.component.elements.iter();
         for e in members.elements {
             let row = &mut elements[*e];
             row.outcome = Outcome::default();
-            if row.passing.is_none()
+            if row.trouble.passing().is_none()
                 && let Some(element) = solved.next()
             {
                 row.memory.direction = element.direction;

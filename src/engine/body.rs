@@ -147,6 +147,7 @@ pub(super) fn read(body: &RapierBody, gravity: Vec3, user: &ExternalForce, turns
 
 /// Sets the body's velocity for the start of the step, and returns the acceleration that it must have
 /// over it to move so far and reach such a velocity.
+#[inline(always)]
 pub(super) fn deliver_straight(
     body: &mut RapierBody,
     velocity: DVec3,
@@ -177,7 +178,7 @@ pub(super) fn deliver(
     end: &Body,
     terms: &Terms,
     engine: &Engine,
-) -> ExternalForce {
+) -> [Vec3; 2] {
     let time = terms.schedule.time;
     let linear = deliver_straight(
         body,
@@ -219,8 +220,5 @@ pub(super) fn deliver(
             }
         }
     }
-    ExternalForce {
-        force: force.as_vec3(),
-        torque: torque.as_vec3(),
-    }
+    [force.as_vec3(), torque.as_vec3()]
 }

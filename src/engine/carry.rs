@@ -110,7 +110,8 @@ impl Assembly {
         let points = self.component.carried_points();
         for (slot, b) in members.bodies.iter().enumerate() {
             let (origin, flight) = (points.origin(slot), points.flight(slot));
-            step.deliver_point(&mut bodies[*b], &origin, &flight, self.carry.restless, set);
+            let row = &mut bodies[*b];
+            step.deliver_point(row, &origin, &flight, [self.carry.restless, true], set);
         }
         for (e, (direction, heat, work)) in members.elements.iter().zip(points.take_results()) {
             let row = &mut elements[*e];

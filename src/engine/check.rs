@@ -17,19 +17,70 @@ impl Fault {
     }
 }
 
-/// The numbers of an element, whichever component they came from.
+/// What is wrong with an element: mostly nothing, and then it takes no room among what every step reads.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Trouble(Option<Box<Faults>>);
+
+#[derive(Clone, Debug, Default)]
+struct Faults {
+    /// Why it takes no part at all, found before the step.
+    lasting: Option<Fault>,
+    /// Why it does not act in this step, found within it.
+    passing: Option<Fault>,
+    /// What was said of it last, so that each message comes once.
+    said: Option<Fault>,
+}
+
+impl Trouble {
+    /// Why the element takes no part at all.
+    pub(super) fn lasting(&self) -> Option<Fault> {
+        self.0.as_ref()?.lasting
+    }
+
+    /// Why it does not act in this step.
+    pub(super) fn passing(&self) -> Option<Fault> {
+        self.0.as_ref()?.passing
+    }
+
+    pub(super) fn set_lasting(&mut self, fault: Option<Fault>) {
+        self.set(fault, |faults| &mut faults.lasting);
+    }
+
+    pub(super) fn set_passing(&mut self, fault: Option<Fault>) {
+        self.set(fault, |faults| &mut faults.passing);
+    }
+
+    fn set(&mut self, fault: Option<Fault>, which: fn(&mut Faults) -> &mut Option<Fault>) {
+        if fault.is_some() || self.0.is_some() {
+            *which(self.0.get_or_insert_default()) = fault;
+        }
+    }
+
+    /// What there is to say that was not said before: a fault, or that there is none any more.
+    pub(super) fn news(&mut self) -> Option<Option<Fault>> {
+        let faults = self.0.as_mut()?;
+        let fault = faults.lasting.or(faults.passing);
+        (faults.said != fault).then(|| {
+            faults.said = fault;
+            fault
+        })
+    }
+}
+
+/// The numbers of an element, whichever component they came from; last what every step needs.
 #[derive(Clone, Copy, Debug)]
+#[repr(C)]
 pub(super) struct Parameters {
     pub ends: [Entity; 2],
-    pub stiffness: f32,
-    pub damping: f32,
-    /// `None` until captured; a damper's is irrelevant.
-    pub rest_length: Option<f32>,
     pub anchors: [Vec3; 2],
     /// Of a torsion element, in body A's frame.
     pub twist: Option<Vec3>,
     /// Component name and its fields, for messages.
     pub names: &'static Names,
+    pub stiffness: f32,
+    pub damping: f32,
+    /// `None` until captured; a damper's is irrelevant.
+    pub rest_length: Option<f32>,
 }
 
 /// Fields as messages name them.

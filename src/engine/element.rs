@@ -13,17 +13,13 @@ impl Step<'_> {
     /// An end as the integrator sees it.
     pub(super) fn end(
         &self,
-        held: Held,
-        guide: Guide,
+        row: &ElementRow,
+        end: usize,
         bodies: &[BodyRow],
         set: &RigidBodySet,
     ) -> End {
-        if let Held::Body {
-            handle,
-            local,
-            movable: Some(index),
-            ..
-        } = held
+        let held = row.held[end];
+        if let (Held::Body { handle, local, .. }, Some(index)) = (held, row.movable(end))
             && let Some(body) = set.get(handle)
         {
             return End::Body {
@@ -34,7 +30,7 @@ impl Step<'_> {
         let (from, to) = self.path(&held, set);
         let mut path = Path::straight(from, (to - from) / self.plan.time);
         if let Held::Body { handle, .. } = held
-            && guide.turns()
+            && row.companion.guide.turns()
             && let Some(body) = set.get(handle)
         {
             (path.rotation, path.turning) = turning_of(body, self.plan.time);
@@ -45,7 +41,7 @@ impl Step<'_> {
 
 /// The integrator's element, its rest length captured if need be; or none, with the fault noted.
 pub(super) fn element(row: &mut ElementRow, ends: [End; 2], bodies: &[Body]) -> Option<Element> {
-    row.passing = None;
+    row.trouble.set_passing(None);
     let p = &mut row.parameters;
     let mut element = Element {
         ends,
@@ -82,12 +78,14 @@ pub(super) fn element(row: &mut ElementRow, ends: [End; 2], bodies: &[Body]) -> 
         } else {
             "coincides with body_a, so nothing says which way to push; move one or set Anchors"
         };
-        row.passing = Some(Fault::new(p.names.ends[1], reason));
+        let fault = Fault::new(p.names.ends[1], reason);
+        row.trouble.set_passing(Some(fault));
         return None;
     };
     let rate = line.motion(&element, bodies, 0.0).axial;
     if !element.is_sound(line.distance(), rate) {
-        row.passing = Some(Fault::new("ForceLaw", "gives NaN or infinity"));
+        let fault = Fault::new("ForceLaw", "gives NaN or infinity");
+        row.trouble.set_passing(Some(fault));
         return None;
     }
     row.inverse_mass = line.inverse_mass;

@@ -65,9 +65,9 @@ impl ElementRow {
     }
 
     /// Energy of a lone element's motion about the common centre of mass, in the outside forces, and stored.
-    pub(super) fn energy_of(&self, pair: &Pair, state: &Separation) -> f64 {
+    pub(super) fn energy_of(&self, pair: &Pair, state: &Separation, length: f64) -> f64 {
         let motion = 0.5 * state.v.length_squared() - pair.outside.dot(state.d);
-        self.elastic(state.d.length()).energy + motion / pair.inverse_mass
+        self.elastic(length).energy + motion / pair.inverse_mass
     }
 
     /// Whether a law of a user's own gives numbers, for ends that are and move apart like this.

@@ -1,7 +1,7 @@
 //! Elements to rows: ends found, bodies entered, what was known of both carried over.
 
 use super::body::is_movable;
-use super::check::{Fault, Parameters};
+use super::check::{Fault, Parameters, Trouble};
 use super::companions::{Companion, Companions};
 use super::ends::{Ends, Place};
 use super::parts::{IsElement, Parts};
@@ -210,14 +210,14 @@ impl Scene {
                 Ok(found)
             });
             row.changed |= parts.is_changed() || companions.touched.contains(&entity);
-            row.fault = found.as_ref().err().copied();
+            row.trouble.set_lasting(found.as_ref().err().copied());
             report(&mut row, commands);
             let index = self.elements.len();
             self.row_of.insert(entity, index);
             if row.changed {
                 self.changed.push(index);
             }
-            if row.fault.is_some() {
+            if found.is_err() {
                 self.faulty.push(index);
             }
             self.elements.push(row);
@@ -231,14 +231,12 @@ impl Scene {
                 if row.watched[end] {
                     self.followed.push((index, end));
                 }
-                if let (Place::OnBody { entity, .. }, None) =
-                    (found.places[end], row.held[end].movable())
-                {
+                if let (Place::OnBody { entity, .. }, None) = (found.places[end], row.on[end]) {
                     self.walls.insert(entity);
                 }
             }
-            for body in row.held.iter().filter_map(Held::movable) {
-                let body = &mut self.bodies[body];
+            for body in row.on.iter().flatten() {
+                let body = &mut self.bodies[*body as usize];
                 body.elements += 1;
                 body.signature = body.signature.wrapping_add(mix(row.entity.to_bits()));
             }
@@ -250,7 +248,7 @@ impl Scene {
         self.immovable = self
             .elements
             .iter()
-            .any(|row| row.fault.is_none() && row.held.iter().all(|held| held.movable().is_none()));
+            .any(|row| row.trouble.lasting().is_none() && row.moves() == 0);
         self.groups.find(&self.elements, &self.bodies);
         self.groups
             .furnish(&mut self.assemblies, &self.elements, &self.bodies);
@@ -309,9 +307,9 @@ impl ElementRow {
             ledger: default(),
             held: [Held::NOWHERE; 2],
             watched: [true; 2],
-            fault: None,
-            passing: None,
-            said: None,
+            on: [None; 2],
+            placed: false,
+            trouble: Trouble::default(),
             changed: true,
             captured: false,
             tuned: false,
@@ -324,11 +322,10 @@ impl ElementRow {
             row.parameters = known.parameters;
             row.companion = known.companion.clone();
             row.ledger = known.ledger;
-            row.said = known.said;
-            row.passing = known.passing;
+            row.trouble = known.trouble.clone();
             row.memory = known.memory;
             row.changed = false;
-            if known.fault.is_some() {
+            if known.trouble.lasting().is_some() {
                 // Where its ends were when it last acted would make a leap of today's place.
                 row.memory.places = [None; 2];
             }
@@ -347,11 +344,12 @@ impl ElementRow {
             } => {
                 let direct = entity == self.parameters.ends[end];
                 self.watched[end] = !direct || self.parameters.anchors[end] != Vec3::ZERO;
+                self.on[end] = index.get(&entity).map(|index| *index as u32);
                 Held::Body {
                     handle,
                     context,
                     local,
-                    movable: index.get(&entity).copied(),
+                    movable: self.on[end].is_some(),
                 }
             }
             Place::Point(to) => Held::Path {

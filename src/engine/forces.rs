@@ -33,42 +33,48 @@ pub struct SpringLoad {
     raised_iterations: bool,
 }
 
-/// What a body is given over a step, and the sum that stands in the engine for it.
+/// What a body is given over a step.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Share {
     elements: ExternalForce,
-    sum: ExternalForce,
     /// With a second solver iteration, which has to be given back.
     pub raised_iterations: bool,
 }
 
 impl Share {
-    /// Adds the elements' share to the user's and puts the sum into the engine.
+    /// Adds the elements' share, force and torque, to the user's and puts the sum into the engine.
+    #[inline(always)]
     pub(super) fn act(
-        elements: ExternalForce,
+        [force, torque]: [Vec3; 2],
         user: &ExternalForce,
         body: &mut RapierBody,
+        raised_iterations: bool,
     ) -> Self {
-        let finite = elements.force.is_finite() && elements.torque.is_finite();
-        let elements = if finite {
-            elements
-        } else {
-            ExternalForce::default()
+        let finite = force.is_finite() && torque.is_finite();
+        let kept = |v: Vec3| if finite { v } else { Vec3::ZERO };
+        let elements = ExternalForce {
+            force: kept(force),
+            torque: kept(torque),
         };
-        let sum = ExternalForce {
-            force: told_apart(user.force + elements.force, user.force),
-            torque: told_apart(user.torque + elements.torque, user.torque),
-        };
+        let pushed = told_apart(user.force + elements.force, user.force);
+        let turned = told_apart(user.torque + elements.torque, user.torque);
         body.reset_forces(false);
-        body.add_force(sum.force, false);
-        if sum.torque != Vec3::ZERO || body.user_torque() != Vec3::ZERO {
+        body.add_force(pushed, false);
+        if turned != Vec3::ZERO || body.user_torque() != Vec3::ZERO {
             body.reset_torques(false);
-            body.add_torque(sum.torque, false);
+            body.add_torque(turned, false);
         }
         Self {
             elements,
-            sum,
-            raised_iterations: false,
+            raised_iterations,
+        }
+    }
+
+    /// With the user's share: what stands in the engine for it.
+    fn sum(&self, user: &ExternalForce) -> ExternalForce {
+        ExternalForce {
+            force: told_apart(user.force + self.elements.force, user.force),
+            torque: told_apart(user.torque + self.elements.torque, user.torque),
         }
     }
 }
@@ -96,11 +102,12 @@ impl SpringLoad {
     /// Shows the shares, the sum without marking it changed: a change would make bevy_rapier write it
     /// again and keep the body awake for ever.
     fn show(&mut self, share: &Share, component: Option<&mut Mut<ExternalForce>>) {
+        let sum = share.sum(&self.user);
         self.elements = share.elements;
-        self.mirrored = share.sum;
+        self.mirrored = sum;
         self.raised_iterations |= share.raised_iterations;
         if let Some(component) = component {
-            *component.bypass_change_detection() = share.sum;
+            *component.bypass_change_detection() = sum;
         }
     }
 }
@@ -170,7 +177,7 @@ pub(super) fn release(
             && let Ok(mut set) = sets.get_mut(link.0)
             && let Some(body) = set.bodies.get_mut(handle.0)
         {
-            let share = Share::act(ExternalForce::default(), &load.user, body);
+            let share = Share::act([Vec3::ZERO; 2], &load.user, body, false);
             load.show(&share, component.as_mut());
             if load.raised_iterations && body.additional_solver_iterations() == 1 {
                 body.set_additional_solver_iterations(0);

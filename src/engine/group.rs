@@ -3,7 +3,7 @@
 use super::assembly::{Assembly, Members};
 use super::find::mix;
 use super::held::Support;
-use super::scene::{BodyRow, ElementRow, Held};
+use super::scene::{BodyRow, ElementRow};
 use bevy::platform::collections::HashMap;
 use bevy::prelude::Entity;
 use bevy_rapier3d::rapier::dynamics::RigidBodyHandle;
@@ -65,8 +65,8 @@ impl Groups {
     /// Finds the components of a scene, in the order of their first bodies.
     pub(super) fn find(&mut self, elements: &[ElementRow], bodies: &[BodyRow]) {
         let mut parent: Vec<usize> = (0..bodies.len()).collect();
-        let movable = |row: &ElementRow| row.held.each_ref().map(Held::movable);
-        let sound = |row: &&ElementRow| row.fault.is_none();
+        let movable = |row: &ElementRow| [0, 1].map(|end| row.movable(end));
+        let sound = |row: &&ElementRow| row.trouble.lasting().is_none();
         for row in elements.iter().filter(sound) {
             if let [Some(a), Some(b)] = movable(row) {
                 let (a, b) = (root(&mut parent, a), root(&mut parent, b));
@@ -82,7 +82,7 @@ impl Groups {
             count += usize::from(r == body);
         }
         let mut order: Vec<usize> = (0..elements.len())
-            .filter(|e| elements[*e].fault.is_none())
+            .filter(|e| elements[*e].trouble.lasting().is_none())
             .collect();
         order.sort_by_cached_key(|e| rank(&elements[*e]));
         let of_element = |e: usize| {

@@ -1,21 +1,28 @@
-//! A lone element on bodies that it does not turn: read, solve and deliver in one go.
+//! Lone elements on bodies that they do not turn: read, solved and delivered some at a time.
 //!
 //! Most elements of most scenes are of this kind. Whatever is out of the ordinary about one (contacts,
 //! joints, locked axes, ends that coincide, a sleeping end) is left to [`super::assembly`].
 
+use super::assembly::Members;
+use super::group::{Group, Groups};
 use super::point::{Flight, FreePoint};
-use super::scene::{BodyRow, ElementRow, Held};
+use super::scene::{BodyRow, ElementRow};
 use super::step::Step;
+use crate::dynamics::abreast::{ABREAST, Abreast};
 use crate::dynamics::element::rounding;
 use crate::dynamics::guide::Guide;
 use crate::dynamics::pair::{Moving, Pair, Separation};
 use crate::dynamics::shock::Shock;
 use crate::dynamics::tolerance::{Method, Outcome};
 use bevy_rapier3d::rapier::dynamics::{RigidBodyHandle, RigidBodySet};
+use std::hint::black_box;
 
 /// What became of a lone element.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Handled {
+    /// Read; to be solved with others.
+    Aloft,
+    /// There is nothing to do.
     Done,
     /// Asleep; and if so, only these, its bodies, can wake it.
     Asleep(Option<[RigidBodyHandle; 2]>),
@@ -25,79 +32,145 @@ pub(super) enum Handled {
     Never,
 }
 
+/// How many are read before they are solved: few enough to be in the first cache still when they are delivered.
+pub(super) const FLOCK: usize = 2 * ABREAST;
+
+/// An element between reading and delivery.
+struct Aloft {
+    group: usize,
+    element: usize,
+    points: [FreePoint; 2],
+    movable: [Option<usize>; 2],
+    pair: Pair,
+    start: Separation,
+    /// Energy at the start, where some is lost.
+    energy: Option<f64>,
+    restless: bool,
+    /// It is solved abreast with others.
+    plain: bool,
+}
+
+/// Elements between reading and delivery, in order, and those of them that are solved abreast.
+#[derive(Default)]
+pub(super) struct Flock {
+    aloft: Vec<Aloft>,
+    abreast: Vec<Abreast>,
+    plain: usize,
+}
+
+impl Flock {
+    pub(super) fn is_full(&self) -> bool {
+        self.aloft.len() >= FLOCK
+    }
+}
+
+/// Looks at what the next flock needs, in every line of memory where it lies, so that all of it comes at once:
+/// read one after the other, each would be waited for.
+pub(super) fn call_up(
+    groups: &Groups,
+    next: usize,
+    elements: &[ElementRow],
+    bodies: &[BodyRow],
+    set: &RigidBodySet,
+) {
+    let mut seen = 0;
+    let alone = |group: &&Group| group.assembly.is_none();
+    for group in groups.list()[next..].iter().take(FLOCK).filter(alone) {
+        let members = groups.members(group);
+        for row in members.bodies.iter().map(|b| &bodies[*b]) {
+            seen ^= row.user.force.x.to_bits() ^ u32::from(row.expected.is_some());
+            seen ^= row.now.1.x.to_bits();
+            if let Some(body) = set.get(row.handle) {
+                let properties = body.mass_properties();
+                seen ^= body.position().translation.x.to_bits() ^ body.linvel().x.to_bits();
+                seen ^= body.user_force().x.to_bits() ^ body.angvel().x.to_bits();
+                seen ^= properties.local_mprops.inv_mass.to_bits();
+                seen ^= u32::from(body.locked_axes().bits()) ^ u32::from(body.is_sleeping());
+                seen ^= body.additional_solver_iterations() as u32;
+            }
+        }
+        for row in members.elements.iter().map(|e| &elements[*e]) {
+            seen ^= row.parameters.stiffness.to_bits() ^ row.outcome.microsteps;
+            seen ^= (row.memory.length.to_bits() ^ row.memory.angle.to_bits()) as u32;
+        }
+    }
+    black_box(seen);
+}
+
 impl Step<'_> {
-    /// Takes the element through the step, if it is an ordinary one.
-    pub(super) fn lone(
+    /// Reads the element of a group, if it is an ordinary one.
+    pub(super) fn take_off(
         &self,
-        row: &mut ElementRow,
+        flock: &mut Flock,
+        group: usize,
+        members: &Members,
+        elements: &mut [ElementRow],
         bodies: &mut [BodyRow],
-        members: &[usize],
-        set: &mut RigidBodySet,
+        set: &RigidBodySet,
         stale: &mut bool,
     ) -> Handled {
+        let Some(&element) = members.elements.first() else {
+            return Handled::Done;
+        };
+        let row = &mut elements[element];
         if row.companion.guide != Guide::Centres {
             return Handled::Never;
         }
         let time = self.plan.time;
+        let movable = [0, 1].map(|end| row.movable(end));
+        // In the order in which they lie in memory, so that it sees what comes.
         let mut sleepers = 0;
         let mut found = [None; 2];
-        for (found, b) in found.iter_mut().zip(members) {
-            let Some(body) = self.movable(set, bodies[*b].handle, stale) else {
+        for (found, index) in found.iter_mut().zip(members.bodies) {
+            let Some(body) = self.movable(set, bodies[*index].handle, stale) else {
                 row.active = false;
                 return Handled::Done;
             };
             sleepers += usize::from(body.is_sleeping());
-            *found = Some((*b, body));
+            *found = Some((*index, body));
         }
         if sleepers > 0 {
-            let disturbed = row.changed || members.iter().any(|b| bodies[*b].disturbed);
-            if sleepers < members.len() || disturbed || self.has_moved(row, set) {
+            let disturbed = row.changed || members.bodies.iter().any(|b| bodies[*b].disturbed);
+            if sleepers < members.bodies.len() || disturbed || self.has_moved(row, set) {
                 return Handled::No;
             }
             row.active = false;
-            return Handled::Asleep(match found {
-                [Some((a, _)), Some((b, _))] if row.watched == [false; 2] => {
+            return Handled::Asleep(match movable {
+                [Some(a), Some(b)] if row.watched == [false; 2] => {
                     Some([bodies[a].handle, bodies[b].handle])
                 }
                 _ => None,
             });
         }
         let mut points = [FreePoint::default(); 2];
-        for (point_at, held) in points.iter_mut().zip(&row.held) {
-            let found = match *held {
-                Held::Body {
-                    movable: Some(index),
-                    ..
-                } => found
-                    .iter()
-                    .flatten()
-                    .find(|(b, _)| *b == index)
-                    .ok_or(Handled::No)
-                    .and_then(|(_, body)| FreePoint::of(&bodies[index], body, self)),
-                _ => {
-                    let (from, to) = self.path(held, set);
-                    Ok(FreePoint {
+        for end in 0..2 {
+            let body = |index| found.iter().flatten().find(|(b, _)| *b == index);
+            points[end] = match movable[end].and_then(body) {
+                Some(&(index, body)) => match FreePoint::of(&bodies[index], body, self) {
+                    Ok(point) => point,
+                    Err(reason) => return reason,
+                },
+                None => {
+                    let (from, to) = self.path(&row.held[end], set);
+                    FreePoint {
                         position: from,
                         velocity: (to - from) / time,
                         ..FreePoint::default()
-                    })
+                    }
                 }
             };
-            match found {
-                Ok(point) => *point_at = point,
-                Err(reason) => return reason,
-            }
         }
-        let [a, b] = points;
-        let d = b.position - a.position;
+        let [a, b] = &points;
+        let (d, v) = (b.position - a.position, b.velocity - a.velocity);
         let rounding = rounding(a.position, b.position);
         let rest_length = row.parameters.rest_length.map(f64::from);
         let coincide = d.length_squared() <= rounding * rounding;
         if coincide && row.memory.direction.is_none() && rest_length != Some(0.0) {
             return Handled::No;
         }
-        row.memory.length = d.length();
-        if !row.is_sound(b.velocity - a.velocity, d) {
+        let length = d.length();
+        row.memory.length = length;
+        if !row.is_sound(v, d) {
             return Handled::No;
         }
         let inverse_mass = a.inverse_mass + b.inverse_mass;
@@ -108,13 +181,12 @@ impl Step<'_> {
             restless |= self.is_restless(&mut bodies[b], body, omega as f32);
         }
         row.active = true;
-        row.passing = None;
+        row.trouble.set_passing(None);
         row.inverse_mass = inverse_mass;
         let rest_length = rest_length.unwrap_or_else(|| {
-            let length = d.length() as f32;
-            row.parameters.rest_length = Some(length);
+            row.parameters.rest_length = Some(length as f32);
             row.captured = true;
-            f64::from(length)
+            f64::from(length as f32)
         });
         let pair = Pair {
             stiffness: f64::from(row.parameters.stiffness),
@@ -124,60 +196,141 @@ impl Step<'_> {
             outside: b.acceleration - a.acceleration,
             rounding,
         };
-        let start = Separation::new(d, b.velocity - a.velocity, row.memory.direction);
+        let start = Separation::new(d, v, row.memory.direction);
         // What is lost is what its damper took: exact for a linear one at any damping.
         let damped = match &row.companion.law {
             Some(law) => law.damps(),
             None => row.parameters.damping > 0.0,
         };
-        let before = if damped {
-            row.energy_of(&pair, &start)
-        } else {
-            0.0
-        };
-        let memory = &mut row.memory;
-        let (outcome, end) = match &row.companion.law {
+        let energy = damped.then(|| row.energy_of(&pair, &start, length));
+        let count = self
+            .accuracy
+            .plain()
+            .filter(|_| row.companion.law.is_none());
+        let step = count.map_or(0.0, |count| time / f64::from(count));
+        let plain = count.is_some() && pair.is_plain(step);
+        if plain {
+            let (at, lane) = (flock.plain / ABREAST, flock.plain % ABREAST);
+            if flock.abreast.len() <= at {
+                flock.abreast.push(Abreast::default());
+            }
+            let memo = &mut row.memory.memo;
+            flock.abreast[at].take_in(lane, &pair, &start, step, memo);
+            flock.plain += 1;
+        }
+        flock.aloft.push(Aloft {
+            group,
+            element,
+            points,
+            movable,
+            pair,
+            start,
+            energy,
+            restless,
+            plain,
+        });
+        Handled::Aloft
+    }
+
+    /// Takes what has been read through the step; the groups of those that are out of the ordinary after all
+    /// are added to a list.
+    pub(super) fn land(
+        &self,
+        flock: &mut Flock,
+        elements: &mut [ElementRow],
+        bodies: &mut [BodyRow],
+        set: &mut RigidBodySet,
+        failed: &mut Vec<usize>,
+    ) {
+        let time = self.plan.time;
+        let count = self.accuracy.plain();
+        if let Some(count) = count {
+            for abreast in &mut flock.abreast[..flock.plain.div_ceil(ABREAST)] {
+                abreast.run(time, count);
+            }
+        }
+        let mut plain = 0;
+        let Flock { aloft, abreast, .. } = flock;
+        for aloft in aloft.iter() {
+            let row = &mut elements[aloft.element];
+            let together = aloft.plain.then(|| {
+                let (at, lane) = (plain / ABREAST, plain % ABREAST);
+                plain += 1;
+                abreast[at].state(lane)
+            });
+            let (outcome, end, length) = match together.flatten() {
+                Some((end, length)) => (Outcome::plain(&self.accuracy), end, length),
+                None => {
+                    let (outcome, end) = self.alone(row, aloft);
+                    (outcome, end, end.d.length())
+                }
+            };
+            if !(end.d.is_finite() && end.v.is_finite()) {
+                failed.push(aloft.group);
+                continue;
+            }
+            row.memory.direction = end.direction;
+            row.outcome = Outcome {
+                method: Method::ClosedForm,
+                ..outcome
+            };
+            if let Some(before) = aloft.energy {
+                row.ledger.dissipated += before - row.energy_of(&aloft.pair, &end, length);
+            }
+            self.arrive(row, aloft, &end, bodies, set);
+        }
+        flock.aloft.clear();
+        flock.plain = 0;
+    }
+
+    /// Solves one by itself.
+    fn alone(&self, row: &mut ElementRow, aloft: &Aloft) -> (Outcome, Separation) {
+        let (time, memory) = (self.plan.time, &mut row.memory);
+        let Aloft { pair, start, .. } = aloft;
+        match &row.companion.law {
             None => {
-                let mut moving = Moving::new(&pair, start, &mut memory.memo);
+                let mut moving = Moving::new(pair, *start, &mut memory.memo);
                 let outcome = memory.controller.drive(&mut moving, time, self.accuracy);
                 (outcome, moving.state)
             }
             Some(law) => {
-                let mut moving = Shock::new(&pair, law, start, &mut memory.memo);
+                let mut moving = Shock::new(pair, law, *start, &mut memory.memo);
                 let outcome = memory.controller.drive(&mut moving, time, self.accuracy);
                 (outcome, moving.state)
             }
-        };
-        if !(end.d.is_finite() && end.v.is_finite()) {
-            return Handled::No;
         }
-        row.memory.direction = end.direction;
-        row.outcome = Outcome {
-            method: Method::ClosedForm,
-            ..outcome
-        };
+    }
+
+    /// Gives the engine what takes both bodies where the element takes them.
+    fn arrive(
+        &self,
+        row: &mut ElementRow,
+        aloft: &Aloft,
+        end: &Separation,
+        bodies: &mut [BodyRow],
+        set: &mut RigidBodySet,
+    ) {
+        let time = self.plan.time;
+        let Aloft { pair, start, .. } = aloft;
         // What the element adds to the free motion of the separation.
         let moved = end.d - start.d - time * (start.v + 0.5 * time * pair.outside);
         let sped = end.v - start.v - time * pair.outside;
-        if damped {
-            row.ledger.dissipated += before - row.energy_of(&pair, &end);
-        }
-        let movable = row.held.each_ref().map(Held::movable);
-        for ((point, movable), sign) in points.iter().zip(movable).zip([-1.0, 1.0]) {
-            let Some(index) = movable else {
+        for end in 0..2 {
+            let (point, sign) = (&aloft.points[end], if end == 0 { -1.0 } else { 1.0 });
+            let Some(index) = aloft.movable[end] else {
                 // What holds this end moves it against what the other end is given.
-                row.ledger.work -= sign / inverse_mass * sped.dot(point.velocity);
+                row.ledger.work -= sign / pair.inverse_mass * sped.dot(point.velocity);
                 continue;
             };
-            let share = sign * point.inverse_mass / inverse_mass;
+            let share = sign * point.inverse_mass / pair.inverse_mass;
             let pulled = time * point.acceleration;
             let flight = Flight {
                 moved: time * (point.velocity + 0.5 * pulled) + share * moved,
                 velocity: point.velocity + pulled + share * sped,
-                given: sign / inverse_mass * sped,
+                given: sign / pair.inverse_mass * sped,
             };
-            self.deliver_point(&mut bodies[index], point, &flight, restless, set);
+            let row = &mut bodies[index];
+            self.deliver_point(row, point, &flight, [aloft.restless, false], set);
         }
-        Handled::Done
     }
 }

@@ -48,18 +48,18 @@ pub(crate) fn measure(
     look(scene, &sets, &contexts);
     let time = scene.time;
     let mut show = |row: &mut ElementRow, readout: &mut Mut<SpringReadout>| {
-        let acted = row.memory.places[0].is_some();
+        let led = row.moves() == 0 && row.memory.places[0].is_some();
         if let Some(points) = row.see(time, &scene.bodies, &sets) {
             report(row, &mut commands);
             let tuned = std::mem::take(&mut row.tuned);
-            if (std::mem::take(&mut row.captured) && row.passing.is_none()) || tuned {
+            if (std::mem::take(&mut row.captured) && row.trouble.passing().is_none()) || tuned {
                 write_back(row, tuned, &mut springs);
             }
             if tuned {
                 commands.entity(row.entity).try_remove::<SpringTuning>();
             }
-            let seen = row.extent(points, time, &scene.bodies, &sets);
-            if acted && row.held.iter().all(|held| held.movable().is_none()) {
+            let seen = row.extent(points, time, &sets);
+            if led {
                 row.account_for_moved(seen, time);
             }
             row.memory.length = seen.0;
@@ -154,7 +154,7 @@ fn look(scene: &mut Scene, sets: &Query<&RapierRigidBodySet>, contexts: &Query<C
         match context.bodies.get(row.handle) {
             Some(body) => {
                 observe(row, body, context);
-                row.now = (center_of(body), body.linvel().as_dvec3());
+                row.now = (center_of(body), body.linvel());
                 // The engine takes bodies out that it cannot step.
                 scene.stale |= !is_movable(body);
             }
@@ -172,20 +172,20 @@ impl ElementRow {
         bodies: &[BodyRow],
         sets: &Query<&RapierRigidBodySet>,
     ) -> Option<[(DVec3, DVec3); 2]> {
-        let held = || self.held.iter().all(|held| held.movable().is_none());
-        if self.fault.is_some() || !(self.active || held()) {
+        if self.trouble.lasting().is_some() || !(self.active || self.moves() == 0) {
             return None;
         }
-        let points = self
-            .held
-            .each_ref()
-            .map(|held| point(held, time, bodies, sets));
+        let points = [0, 1].map(|end| self.point(end, time, bodies, sets));
         if self.parameters.rest_length.is_none() {
             // No movable body: it took no part in the solve.
-            let length = self.extent(points, time, bodies, sets).0;
+            let length = self.extent(points, time, sets).0;
             self.parameters.rest_length = Some(length as f32);
             self.captured = true;
         }
+        if self.placed {
+            return Some(points);
+        }
+        self.placed = self.watched == [false; 2] && self.moves() == 2;
         for (place, (held, point)) in self
             .memory
             .places
@@ -196,7 +196,7 @@ impl ElementRow {
                 Held::Path { to, .. } => to,
                 Held::Body {
                     local,
-                    movable: Some(_),
+                    movable: true,
                     ..
                 } => local,
                 Held::Body { .. } => point.0,
@@ -205,18 +205,45 @@ impl ElementRow {
         Some(points)
     }
 
+    /// Position and velocity of an end after the step.
+    fn point(
+        &self,
+        end: usize,
+        time: f64,
+        bodies: &[BodyRow],
+        sets: &Query<&RapierRigidBodySet>,
+    ) -> (DVec3, DVec3) {
+        if let Some(body) = self.movable(end).map(|index| &bodies[index])
+            && !body.turns
+        {
+            return body.place();
+        }
+        match self.held[end] {
+            Held::Path { from, to } => (to, (to - from) / time),
+            Held::Body {
+                handle,
+                context,
+                local,
+                ..
+            } => sets
+                .get(context)
+                .ok()
+                .and_then(|set| set.bodies.get(handle))
+                .map_or((DVec3::ZERO, DVec3::ZERO), |body| point_of(body, local)),
+        }
+    }
+
     /// Length and its rate; of a guided element the distance along its axis, or its twist.
     fn extent(
         &self,
         [a, b]: [(DVec3, DVec3); 2],
         time: f64,
-        bodies: &[BodyRow],
         sets: &Query<&RapierRigidBodySet>,
     ) -> (f64, f64) {
         if self.companion.guide != Guide::Centres {
             let ends = [(0, a), (1, b)].map(|(end, (position, velocity))| {
                 let mut path = Path::straight(position, velocity);
-                (path.rotation, path.turning) = frame(&self.held[end], time, bodies, sets);
+                (path.rotation, path.turning) = frame(&self.held[end], time, sets);
                 End::Path(path)
             });
             return self.guided_extent(ends);
@@ -239,7 +266,7 @@ impl ElementRow {
             work: self.ledger.work as f32,
             ..default()
         };
-        if self.passing.is_none() {
+        if self.trouble.passing().is_none() {
             let (elastic, drag) = (self.elastic(length), self.drag(length, rate));
             readout.spring_force = elastic.force as f32;
             readout.damper_force = drag as f32;
@@ -254,22 +281,13 @@ impl ElementRow {
 }
 
 /// Rotation and angular velocity of what holds an end, after the step.
-fn frame(
-    held: &Held,
-    time: f64,
-    bodies: &[BodyRow],
-    sets: &Query<&RapierRigidBodySet>,
-) -> (DQuat, DVec3) {
+fn frame(held: &Held, time: f64, sets: &Query<&RapierRigidBodySet>) -> (DQuat, DVec3) {
     let Held::Body {
-        handle,
-        context,
-        movable,
-        ..
+        handle, context, ..
     } = *held
     else {
         return (DQuat::IDENTITY, DVec3::ZERO);
     };
-    let context = movable.map_or(context, |index| bodies[index].context);
     sets.get(context)
         .ok()
         .and_then(|set| set.bodies.get(handle))
@@ -277,30 +295,4 @@ fn frame(
             let (rotation, _) = turning_of(body, time);
             (rotation, body.angvel().as_dvec3())
         })
-}
-
-/// Position and velocity of an end after the step.
-fn point(
-    held: &Held,
-    time: f64,
-    bodies: &[BodyRow],
-    sets: &Query<&RapierRigidBodySet>,
-) -> (DVec3, DVec3) {
-    match *held {
-        Held::Path { from, to } => (to, (to - from) / time),
-        Held::Body {
-            movable: Some(index),
-            ..
-        } if !bodies[index].turns => bodies[index].now,
-        Held::Body {
-            handle,
-            context,
-            local,
-            ..
-        } => sets
-            .get(context)
-            .ok()
-            .and_then(|set| set.bodies.get(handle))
-            .map_or((DVec3::ZERO, DVec3::ZERO), |body| point_of(body, local)),
-    }
 }

@@ -14,6 +14,7 @@ mod companions;
 mod element;
 mod ends;
 mod energy;
+mod expected;
 mod find;
 mod forces;
 mod ground;

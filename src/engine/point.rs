@@ -2,21 +2,22 @@
 //! takes it on.
 
 use super::body::deliver_straight;
+use super::expected::Expected;
 use super::forces::Share;
-use super::held::{Expected, Support};
+use super::held::Support;
 use super::lone::Handled;
 use super::scene::BodyRow;
 use super::sleep::keep_awake;
 use super::step::Step;
 pub(super) use crate::dynamics::points::{Flight, FreePoint};
 use bevy::math::Vec3;
-use bevy_rapier3d::prelude::ExternalForce;
 use bevy_rapier3d::rapier::dynamics::{LockedAxes, RigidBody as RapierBody, RigidBodySet};
 
 const LOCKED: LockedAxes = LockedAxes::TRANSLATION_LOCKED;
 
 impl FreePoint {
     /// The centre of mass of an ordinary movable body.
+    #[inline(always)]
     pub(super) fn of(row: &BodyRow, body: &RapierBody, step: &Step) -> Result<Self, Handled> {
         let properties = &body.mass_properties().local_mprops;
         if step.lag(row.handle, body) > 0.0 || body.locked_axes().intersects(LOCKED) {
@@ -46,13 +47,15 @@ impl FreePoint {
 }
 
 impl Step<'_> {
-    /// Gives the engine what takes a body where its elements do.
+    /// Gives the engine what takes a body where its elements do; says whether it has to be kept awake, and whether
+    /// somebody asks for the work that is done on it.
+    #[inline(always)]
     pub(super) fn deliver_point(
         &self,
         row: &mut BodyRow,
         point: &FreePoint,
         flight: &Flight,
-        restless: bool,
+        [restless, accounts]: [bool; 2],
         set: &mut RigidBodySet,
     ) {
         let Some(body) = set.get_mut(row.handle) else {
@@ -69,6 +72,7 @@ impl Step<'_> {
             point.inverse_mass * flight.given,
             time * point.acceleration,
             flight.given,
+            accounts,
             time,
         ));
         let rate = deliver_straight(
@@ -80,12 +84,7 @@ impl Step<'_> {
             &self.engine,
         );
         let force = ((rate - point.acceleration) / point.inverse_mass).as_vec3();
-        let share = ExternalForce {
-            force,
-            ..ExternalForce::default()
-        };
-        let mut share = Share::act(share, &row.user, body);
-        share.raised_iterations = terms.raised_iterations;
-        row.share = Some(share);
+        let share = [force, Vec3::ZERO];
+        row.share = Some(Share::act(share, &row.user, body, terms.raised_iterations));
     }
 }

@@ -1,6 +1,6 @@
 //! Before the step: is the scene still the one we know? Mostly it is, and only what can move is read.
 
-use super::check::{Fault, Parameters};
+use super::check::Parameters;
 use super::companions::Companions;
 use super::ends::{Ends, Place};
 use super::find::Finder;
@@ -145,7 +145,7 @@ fn refresh(
     }
     followed.iter().all(|(index, end)| {
         let row = &mut rows[*index];
-        row.fault.is_some() || follow(row, *end, ends, bodies, shifted)
+        row.trouble.lasting().is_some() || follow(row, *end, ends, bodies, shifted)
     })
 }
 
@@ -164,6 +164,7 @@ fn follow(
         p.names.ends[end],
         &mut row.memory.scales[end],
     );
+    let on = row.movable(end);
     match (&mut row.held[end], found) {
         (
             Held::Body {
@@ -181,7 +182,7 @@ fn follow(
         ) if *handle == now_on && *context == now_in => {
             if *local != now_at {
                 // Whether it turns the body may have changed.
-                if movable.is_some_and(|b| !bodies[b].turns) {
+                if *movable && on.is_some_and(|b| !bodies[b].turns) {
                     return false;
                 }
                 *local = now_at;
@@ -208,7 +209,7 @@ fn still_faulty(
     modified: &EntityHashSet,
     commands: &mut Commands,
 ) -> bool {
-    if row.fault.is_none() || row.parameters.ends == Parameters::NONE.ends {
+    if row.trouble.lasting().is_none() || row.parameters.ends == Parameters::NONE.ends {
         return true;
     }
     let found = companions
@@ -216,7 +217,7 @@ fn still_faulty(
         .and_then(|c| finder.find(&row.parameters, c.guide, &mut row.memory.scales, modified));
     match found {
         Err(fault) => {
-            row.fault = Some(fault);
+            row.trouble.set_lasting(Some(fault));
             report(row, commands);
             true
         }
@@ -226,12 +227,10 @@ fn still_faulty(
 
 /// Says once what is wrong with an element, and takes it back once it is mended.
 pub(super) fn report(row: &mut ElementRow, commands: &mut Commands) {
-    let fault: Option<Fault> = row.fault.or(row.passing);
-    if row.said == fault {
+    let Some(news) = row.trouble.news() else {
         return;
-    }
-    row.said = fault;
-    match fault {
+    };
+    match news {
         Some(fault) => {
             let fault = SpringFault {
                 entity: row.entity,

@@ -1,20 +1,21 @@
 //! Elements and the bodies they act on, as flat arrays kept from tick to tick.
 
 use super::assembly::Assembly;
-use super::check::{Fault, Parameters};
+use super::check::{Parameters, Trouble};
 use super::companions::Companion;
 use super::energy::EnergyLedger;
+use super::expected::{Expected, Spun, Twist};
 use super::find::Known;
 use super::forces::Share;
 use super::group::Groups;
-use super::held::{Expected, Support, Twist};
+use super::held::Support;
 use super::sleep::Rest;
 use super::still::Still;
 use super::touch::Partner;
 use crate::dynamics::kick::Memo;
 use crate::dynamics::tolerance::{Controller, Outcome};
 use bevy::ecs::entity::{EntityHashMap, EntityHashSet};
-use bevy::math::DVec3;
+use bevy::math::{DVec3, Vec3};
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::ExternalForce;
 use bevy_rapier3d::rapier::dynamics::RigidBodyHandle;
@@ -27,8 +28,8 @@ pub(super) enum Held {
         handle: RigidBodyHandle,
         context: Entity,
         local: DVec3,
-        /// Index into [`Scene::bodies`] if elements can move it.
-        movable: Option<usize>,
+        /// Elements can move it.
+        movable: bool,
     },
     /// A plain entity's path over the coming step: it goes where the game has just put it.
     Path { from: DVec3, to: DVec3 },
@@ -39,21 +40,14 @@ impl Held {
         from: DVec3::ZERO,
         to: DVec3::ZERO,
     };
-
-    /// Index of the body that elements can move.
-    pub(super) fn movable(&self) -> Option<usize> {
-        match self {
-            Self::Body { movable, .. } => *movable,
-            Self::Path { .. } => None,
-        }
-    }
 }
 
-/// One element. What every step needs stands first: thousands of rows do not fit into the processor's
+/// One element. What every step needs stands together: thousands of rows do not fit into the processor's
 /// cache, and what is not read need not come.
 #[derive(Clone, Debug)]
-#[repr(C)]
+#[repr(C, align(64))]
 pub(super) struct ElementRow {
+    pub parameters: Parameters,
     /// A parameter or an end changed since the last tick.
     pub changed: bool,
     /// The rest length was found in this tick and has to be written back.
@@ -64,23 +58,33 @@ pub(super) struct ElementRow {
     pub active: bool,
     /// Which ends have to be looked for in every tick: what is not a body itself can be moved by the game.
     pub watched: [bool; 2],
+    /// Where its ends are is known for good: on two bodies, at the same points of them.
+    pub placed: bool,
     pub entity: Entity,
     /// What stands beside it makes of it.
     pub companion: Companion,
-    pub held: [Held; 2],
-    /// Why it does not act in this step, found within it.
-    pub passing: Option<Fault>,
-    pub parameters: Parameters,
+    pub trouble: Trouble,
     /// Inverse of the effective mass of its ends along the line in the last step, 1/kg.
     pub inverse_mass: f64,
     /// How it was solved.
     pub outcome: Outcome,
     pub ledger: EnergyLedger,
+    /// The bodies that it moves, as indices into [`Scene::bodies`].
+    pub on: [Option<u32>; 2],
     pub memory: Memory,
-    /// Why it takes no part at all, found before the step.
-    pub fault: Option<Fault>,
-    /// What was said of it last, so that each message comes once.
-    pub said: Option<Fault>,
+    pub held: [Held; 2],
+}
+
+impl ElementRow {
+    /// Index of the body that it moves at an end.
+    pub(super) fn movable(&self, end: usize) -> Option<usize> {
+        self.on[end].map(|index| index as usize)
+    }
+
+    /// Whether it moves both of its ends, one, or none.
+    pub(super) fn moves(&self) -> usize {
+        self.on.iter().flatten().count()
+    }
 }
 
 /// What an element remembers from step to step.
@@ -91,21 +95,21 @@ pub(super) struct Memory {
     pub direction: Option<DVec3>,
     /// Last length or twist.
     pub length: f64,
-    /// Where its ends were after the last step: a body's own point if elements can move it, else a point
-    /// of the world.
-    pub places: [Option<DVec3>; 2],
     /// The last coefficients, and how exact they were.
     pub memo: Memo,
     pub controller: Controller,
+    /// Where its ends were after the last step: a body's own point if elements can move it, else a point
+    /// of the world.
+    pub places: [Option<DVec3>; 2],
     /// Last twist, full turns counted.
     pub angle: f64,
     /// The bodies' scales, held against the rounding noise of their transforms.
     pub scales: [Option<DVec3>; 2],
 }
 
-/// One movable body that elements act on; what every step needs stands first.
+/// One movable body that elements act on. What every step needs stands first: see [`ElementRow`].
 #[derive(Clone, Copy, Debug)]
-#[repr(C)]
+#[repr(C, align(64))]
 pub(super) struct BodyRow {
     pub entity: Entity,
     pub handle: RigidBodyHandle,
@@ -113,25 +117,31 @@ pub(super) struct BodyRow {
     pub turns: bool,
     /// Its mass, its elements or the user's share changed since the last step.
     pub disturbed: bool,
-    /// What keeps it from moving freely.
-    pub support: Support,
+    /// It has been at rest since some time.
+    pub rests: bool,
+    /// Nothing has held it since the rows were made, or [`Self::let_go`].
+    pub untouched: bool,
     pub user: ExternalForce,
-    /// Since when and where it has been at rest.
-    pub rest: Option<Rest>,
     /// What we give it over the coming step; `None` where it is not stepped by us.
     pub share: Option<Share>,
     /// What the coming step is to do.
     pub expected: Option<Expected>,
-    /// Centre of mass and its velocity after the last step.
-    pub now: (DVec3, DVec3),
+    /// Centre of mass after the last step, and its velocity.
+    pub now: (DVec3, Vec3),
+    /// What keeps it from moving freely.
+    pub support: Support,
+    /// Since when and where it has been at rest, if it is.
+    pub rest: Rest,
     pub context: Entity,
+    /// What the coming step is to do to the rotation of a body that turns.
+    pub spun: Spun,
     /// How much of a free body's motion contacts and joints leave it; see [`super::held`].
     pub mobility: f64,
     /// Velocities of a link of a multibody, which the engine shows too late.
     pub link: Option<Twist>,
     /// The body that pushed it most in the last step.
     pub partner: Option<Partner>,
-    /// Work that elements did on it over the last step, J.
+    /// Work that elements did on it over the last step, J, where anybody asks.
     pub given_work: f64,
     /// Work that a contact with a moving body seems to have created, J.
     pub contact_work: f64,
@@ -159,22 +169,40 @@ impl BodyRow {
             elements: 0,
             signature: 0,
             disturbed: true,
+            untouched: true,
             slot: 0,
             lag: 0.0,
             displaced: false,
             user: ExternalForce::default(),
             share: None,
-            rest: None,
+            rests: false,
+            rest: Rest::default(),
             mobility: 1.0,
             held: None,
             support: Support::Unknown,
             expected: None,
+            spun: Spun::default(),
             link: None,
             given_work: 0.0,
             contact_work: 0.0,
             partner: None,
-            now: (DVec3::ZERO, DVec3::ZERO),
+            now: (DVec3::ZERO, Vec3::ZERO),
         }
+    }
+
+    /// Position and velocity of its centre of mass after the last step.
+    pub(super) fn place(&self) -> (DVec3, DVec3) {
+        (self.now.0, self.now.1.as_dvec3())
+    }
+
+    /// Forgets what held it.
+    pub(super) fn let_go(&mut self) {
+        self.mobility = 1.0;
+        self.link = None;
+        self.partner = None;
+        self.given_work = 0.0;
+        self.contact_work = 0.0;
+        self.untouched = true;
     }
 }
 

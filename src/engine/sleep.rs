@@ -25,7 +25,7 @@ const QUIET: f32 = 2.0;
 const ROUNDING: f32 = 4.0;
 
 /// A body at rest: since when, and where that was.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Rest {
     position: Vec3,
     rotation: Quat,
@@ -46,16 +46,24 @@ fn is_restless(
     let noise = ROUNDING * omega;
     let slow = body.linvel().length() < REST * length_unit + noise * place
         && body.angvel().length() < REST + noise * f32::EPSILON;
-    let rest = row.rest.get_or_insert(Rest {
-        position,
-        rotation,
-        seconds: 0.0,
-    });
+    if !slow {
+        row.rests = false;
+        return true;
+    }
+    if !row.rests {
+        row.rests = true;
+        row.rest = Rest {
+            position,
+            rotation,
+            seconds: 0.0,
+        };
+    }
+    let rest = &mut row.rest;
     // Trembling may be rounding; going somewhere is not.
     let strayed = rest.position.distance(position) > REST * QUIET * length_unit + ROUNDING * place
         || (rest.rotation.inverse() * rotation).xyz().length() > 0.5 * REST * QUIET;
-    if !slow || strayed {
-        row.rest = None;
+    if strayed {
+        row.rests = false;
         return true;
     }
     rest.seconds += time;

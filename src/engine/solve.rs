@@ -4,7 +4,7 @@ use super::assembly::Assembly;
 use super::body::{Engine, FARTHEST_TURN};
 use super::forces::{self, SpringLoad};
 use super::ground::Ground;
-use super::lone::Handled;
+use super::lone::{FLOCK, Flock, Handled, call_up};
 use super::scene::Scene;
 use super::step::Step;
 use super::timestep::Plan;
@@ -46,6 +46,18 @@ pub(super) type Loads<'w, 's> = Query<
 /// allocations that this takes: the only ones of a warm step.
 const WORTH_SHARING: usize = 256;
 
+/// Room for the work of a step.
+#[derive(Default)]
+pub(crate) struct Spare {
+    flock: Flock,
+    /// What lone elements are assembled in that are out of the ordinary.
+    assembly: Assembly,
+    /// The groups of those that are so in this step,
+    odd: Vec<usize>,
+    /// and for longer.
+    special: Vec<usize>,
+}
+
 /// Computes and delivers every element's force for the coming engine step.
 pub(crate) fn solve(
     mut scene: ResMut<Scene>,
@@ -55,7 +67,7 @@ pub(crate) fn solve(
     contexts: Query<ContextParts>,
     mut sets: Query<&mut RapierRigidBodySet>,
     mut loads: Loads,
-    mut spare: Local<Assembly>,
+    mut spare: Local<Spare>,
     mut commands: Commands,
 ) {
     let scene = &mut *scene;
@@ -110,7 +122,7 @@ impl Scene {
         context: Entity,
         step: &Step,
         set: &mut RigidBodySet,
-        spare: &mut Assembly,
+        spare: &mut Spare,
     ) -> bool {
         let Self {
             elements,
@@ -120,9 +132,11 @@ impl Scene {
             stale,
             ..
         } = self;
-        let mut special = Vec::new();
         let mut all_asleep = true;
         for g in 0..groups.list().len() {
+            if g % FLOCK == 0 {
+                call_up(groups, g, elements, bodies, set);
+            }
             let group = &groups.list()[g];
             if group.context != context {
                 continue;
@@ -140,10 +154,8 @@ impl Scene {
                 all_asleep &= assemblies[index].is_asleep();
                 continue;
             }
-            let Some(element) = members.elements.first() else {
-                continue;
-            };
-            let handled = step.lone(&mut elements[*element], bodies, members.bodies, set, stale);
+            let flock = &mut spare.flock;
+            let handled = step.take_off(flock, g, &members, elements, bodies, set, stale);
             let dozing = match handled {
                 Handled::Asleep(handles) => handles,
                 _ => {
@@ -151,16 +163,23 @@ impl Scene {
                     None
                 }
             };
-            if matches!(handled, Handled::No | Handled::Never) {
-                spare.gather(step, &members, elements, bodies, set, stale);
-                spare.advance(step.plan.time, step.accuracy);
-                spare.deliver(step, &members, elements, bodies, set);
-                spare.forget();
-            }
-            if handled == Handled::Never {
-                special.push(g);
+            match handled {
+                Handled::No => spare.odd.push(g),
+                Handled::Never => spare.special.push(g),
+                Handled::Aloft | Handled::Done | Handled::Asleep(_) => {}
             }
             groups.at(g).dozing = dozing;
+            if spare.flock.is_full() {
+                step.land(&mut spare.flock, elements, bodies, set, &mut spare.odd);
+            }
+        }
+        step.land(&mut spare.flock, elements, bodies, set, &mut spare.odd);
+        for g in spare.odd.drain(..).chain(spare.special.iter().copied()) {
+            let (members, assembly) = (groups.members(&groups.list()[g]), &mut spare.assembly);
+            assembly.gather(step, &members, elements, bodies, set, stale);
+            assembly.advance(step.plan.time, step.accuracy);
+            assembly.deliver(step, &members, elements, bodies, set);
+            assembly.forget();
         }
         advance(assemblies, step.plan.time, step.accuracy);
         for group in groups.list().iter().filter(|g| g.context == context) {
@@ -168,7 +187,7 @@ impl Scene {
                 assemblies[index].deliver(step, &groups.members(group), elements, bodies, set);
             }
         }
-        for group in special {
+        for group in spare.special.drain(..) {
             groups.promote(group, assemblies);
         }
         all_asleep

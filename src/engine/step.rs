@@ -70,7 +70,7 @@ impl Step<'_> {
 
     /// Whether an end moves, or is not where it was after the last step.
     pub(super) fn has_moved(&self, row: &ElementRow, bodies: &RigidBodySet) -> bool {
-        if row.watched == [false; 2] && row.held.iter().all(|held| held.movable().is_some()) {
+        if row.watched == [false; 2] && row.moves() == 2 {
             // Held by what elements move, and where it says.
             return false;
         }
@@ -78,7 +78,7 @@ impl Step<'_> {
             let now = match *held {
                 Held::Body {
                     local,
-                    movable: Some(_),
+                    movable: true,
                     ..
                 } => local,
                 _ => {
