@@ -21,6 +21,14 @@ pub(crate) struct Schedule {
     pub time: f64,
     /// Equal substeps, each one velocity and one position update.
     pub substeps: u32,
+    /// Seconds of each of them.
+    pub substep: f64,
+    /// Inverse of all seconds, 1/s.
+    pub per_time: f64,
+    /// β dt, s.
+    reach: f64,
+    /// 1/((1 − β) dt), 1/s.
+    per_rest: f64,
 }
 
 /// A jump at the start and a constant rate of change over the step, of a linear or angular velocity.
@@ -31,9 +39,18 @@ pub(crate) struct Delivery {
 }
 
 impl Schedule {
-    fn beta(&self) -> f64 {
-        let n = f64::from(self.substeps);
-        (n + 1.0) / (2.0 * n)
+    pub(crate) fn new(time: f64, substeps: u32) -> Self {
+        let n = f64::from(substeps);
+        let beta = (n + 1.0) / (2.0 * n);
+        let per_time = time.recip();
+        Self {
+            time,
+            substeps,
+            substep: time / n,
+            per_time,
+            reach: beta * time,
+            per_rest: per_time / (1.0 - beta),
+        }
     }
 
     /// Jump and rate for a wanted displacement beyond `time·velocity` and a wanted change of velocity.
@@ -42,15 +59,13 @@ impl Schedule {
             // One substep has one degree of freedom; the velocity is the one that lasts.
             return Delivery {
                 jump: DVec3::ZERO,
-                rate: change / self.time,
+                rate: change * self.per_time,
             };
         }
-        let beta = self.beta();
-        let per_time = self.time.recip();
-        let jump = (displacement - beta * self.time * change) * (per_time / (1.0 - beta));
+        let jump = (displacement - self.reach * change) * self.per_rest;
         Delivery {
             jump,
-            rate: (change - jump) * per_time,
+            rate: (change - jump) * self.per_time,
         }
     }
 
@@ -63,7 +78,7 @@ impl Schedule {
         displacement: DVec3,
         cap: f64,
     ) -> Delivery {
-        let first = velocity + delivery.jump + self.time / f64::from(self.substeps) * delivery.rate;
+        let first = velocity + delivery.jump + self.substep * delivery.rate;
         let last = velocity + delivery.jump + self.time * delivery.rate;
         if first.length_squared().max(last.length_squared()) <= cap * cap {
             return delivery;
@@ -150,7 +165,7 @@ impl Rounded {
         let inertia = start.inertia.as_vec3();
         Self {
             substeps: schedule.substeps,
-            time: (schedule.time / f64::from(schedule.substeps)) as f32,
+            time: schedule.substep as f32,
             rotation: start.rotation.as_quat(),
             principal: start.principal.as_quat(),
             inertia,

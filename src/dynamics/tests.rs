@@ -222,12 +222,11 @@ fn spinning_pair_converges_at_second_order_and_fourth_when_extrapolated() {
 
 #[test]
 fn engine_substeps_reach_the_state_that_was_ordered() {
-    let schedule = |substeps| Schedule { time: DT, substeps };
     let mut pair = dumbbell(500.0);
     let before = pair.bodies.clone();
     pair.advance(DT, accuracy(4, false));
     for n in [2, 4, 7, 32] {
-        let s = schedule(n);
+        let s = Schedule::new(DT, n);
         for (start, end) in before.iter().zip(&pair.bodies) {
             let d = s.reach(
                 end.position - start.position - s.time * start.velocity,

@@ -158,7 +158,7 @@ pub(super) fn deliver_straight(
 ) -> DVec3 {
     let time = terms.schedule.time;
     if !terms.takes_impulses {
-        return (reached - velocity) / time;
+        return (reached - velocity) * terms.schedule.per_time;
     }
     let schedule = &terms.schedule;
     let wanted = schedule.reach(displacement - time * velocity, reached - velocity);
@@ -167,7 +167,7 @@ pub(super) fn deliver_straight(
     body.set_linvel(linvel, false);
     // The engine's velocity is rounded; the force makes up for it.
     let rounding = velocity + planned.jump - linvel.as_dvec3();
-    planned.rate + rounding / time
+    planned.rate + rounding * schedule.per_time
 }
 
 /// Sets the body's velocities for the start of the step, and returns the force and torque that

@@ -74,8 +74,8 @@ pub(super) fn call_up(
     set: &RigidBodySet,
 ) {
     let mut seen = 0;
-    let alone = |group: &&Group| group.assembly.is_none();
-    for group in groups.list()[next..].iter().take(FLOCK).filter(alone) {
+    let awake = |group: &&Group| group.assembly.is_none() && group.dozing.is_none();
+    for group in groups.list()[next..].iter().take(FLOCK).filter(awake) {
         let members = groups.members(group);
         for row in members.bodies.iter().map(|b| &bodies[*b]) {
             seen ^= row.user.force.x.to_bits() ^ u32::from(row.expected.is_some());

@@ -93,6 +93,7 @@ pub(crate) fn solve(
         let parameters = &simulation.integration_parameters;
         let step = Step {
             plan,
+            schedule: plan.schedule(parameters.num_solver_iterations),
             engine: Engine {
                 iterations: parameters.num_solver_iterations,
                 fastest: f64::from(parameters.max_linear_velocity()),

@@ -19,6 +19,8 @@ const LOADED: f64 = 0.85;
 /// A context about to step.
 pub(super) struct Step<'a> {
     pub plan: Plan,
+    /// The substeps of a body that asks for no more iterations than others.
+    pub schedule: Schedule,
     pub engine: Engine,
     pub joints: &'a RapierContextJoints,
     pub colliders: &'a ColliderSet,
@@ -95,8 +97,10 @@ impl Step<'_> {
 
     /// The engine's equal substeps of a body.
     fn substeps(&self, body: &RapierBody) -> Schedule {
-        let iterations = self.engine.iterations + body.additional_solver_iterations();
-        self.plan.schedule(iterations)
+        match body.additional_solver_iterations() {
+            0 => self.schedule,
+            more => self.plan.schedule(self.engine.iterations + more),
+        }
     }
 
     /// A link of a multibody does not keep velocities that are set.
@@ -131,7 +135,7 @@ impl Step<'_> {
 
     fn runs_ahead(&self, body: &RapierBody) -> f64 {
         let schedule = self.substeps(body);
-        schedule.time / (2.0 * f64::from(schedule.substeps))
+        0.5 * schedule.substep
     }
 
     /// Readies a body for delivery.

@@ -53,10 +53,8 @@ impl Plan {
     /// The substeps of a body that the engine solves with so many iterations a pipeline step.
     pub(super) fn schedule(&self, iterations: usize) -> Schedule {
         let iterations = u32::try_from(iterations.max(1)).unwrap_or(u32::MAX);
-        Schedule {
-            time: self.time,
-            substeps: iterations.saturating_mul(self.pipeline_steps.max(1)),
-        }
+        let substeps = iterations.saturating_mul(self.pipeline_steps.max(1));
+        Schedule::new(self.time, substeps)
     }
 }
 
