@@ -4,7 +4,6 @@ use super::body::{deliver, read};
 use super::carry::Carry;
 use super::element::element;
 use super::expected::Expected;
-use super::forces::Share;
 use super::held::{self, Support};
 use super::passive::Ledger;
 use super::scene::{BodyRow, ElementRow};
@@ -303,16 +302,16 @@ impl Assembly {
                 let (start, end) = (&self.start[slot], &self.component.bodies[slot]);
                 let terms = step.terms(row.handle, body);
                 raised_iterations = terms.raised_iterations;
-                let (expected, spun) = Expected::new(start, end, &terms);
+                let (expected, whole) = Expected::new(start, end, &terms);
                 row.expected = Some(expected);
-                row.spun = spun;
+                row.whole = whole;
                 share = if end.mobility < 1.0 {
                     held::deliver(body, start, end.given, row.support, &terms)
                 } else {
                     deliver(body, start, end, &terms, &step.engine)
                 };
             }
-            row.share = Some(Share::act(share, &row.user, body, raised_iterations));
+            row.give(share, body, raised_iterations);
             step.delivered.set(true);
         }
         let mut solved = self.component.elements.iter();

@@ -20,14 +20,10 @@ pub(super) struct Twist {
 #[derive(Clone, Copy, Debug, Default)]
 struct Part {
     start: Vec3,
-    /// Where the delivery was to lead, if the body is free.
-    ordered: Vec3,
-    /// What the same load does to a free body.
+    /// What the load does to a free body.
     free_change: Vec3,
     /// The elements' impulse.
     given: Vec3,
-    /// What this does alone to a free body.
-    own_change: Vec3,
 }
 
 /// What a step was to do to a body.
@@ -35,18 +31,20 @@ struct Part {
 pub(super) struct Expected {
     linear: Part,
     time: f32,
-    /// The body was taken for free.
-    is_free: bool,
-    /// It has an angular part, which stands elsewhere.
-    pub turns: bool,
+    /// More of it stands elsewhere.
+    pub is_whole: bool,
     /// It asks for the work that elements do on it.
     pub accounts: bool,
 }
 
-/// What is expected of the turning of a body; apart from the rest, since most have none.
+/// What else is expected of a body that turns, or that something holds; apart, since most need none.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Spun {
+pub(super) struct Whole {
     angular: Part,
+    /// The change of velocities that was ordered of a body taken for free.
+    ordered: Option<Twist>,
+    /// What the elements' impulse does alone to a free body.
+    own_change: Twist,
     /// Substeps of a link of a multibody, whose velocity the engine shows one substep late.
     link: Option<u32>,
 }
@@ -54,9 +52,7 @@ pub(super) struct Spun {
 /// Both together.
 pub(super) struct Orders {
     linear: Part,
-    angular: Part,
-    link: Option<u32>,
-    is_free: bool,
+    whole: Whole,
     pub time: f32,
 }
 
@@ -70,19 +66,19 @@ fn undamped(velocity: Vec3, damping: f32, time: f32) -> Vec3 {
 }
 
 impl Part {
-    /// Whether it went where it was to go: then nothing held it.
-    fn was_met(&self, change: Vec3) -> bool {
+    /// Whether it changed as was ordered: then nothing held it.
+    fn was_met(&self, change: Vec3, ordered: Vec3) -> bool {
         let size = |v: Vec3| v.abs().max_element();
-        let rounding = 1e-5 * (size(self.start) + size(self.ordered)) + 1e-6;
-        size(change - (self.ordered - self.start)) <= 1e-3 * size(self.free_change) + rounding
+        let rounding = 1e-5 * (size(self.start) + size(self.start + ordered)) + 1e-6;
+        size(change - ordered) <= 1e-3 * size(self.free_change) + rounding
     }
 }
 
 impl Expected {
-    /// A free body that does not turn: from one velocity to another, given an impulse that changes it by
-    /// its `own`, while outside forces change it by `pulled`.
+    /// A free body that does not turn, given an impulse that changes its velocity by its `own`, while outside
+    /// forces change it by `pulled`.
     pub(super) fn straight(
-        [from, to]: [DVec3; 2],
+        start: DVec3,
         own: DVec3,
         pulled: DVec3,
         given: DVec3,
@@ -90,75 +86,81 @@ impl Expected {
         time: f64,
     ) -> Self {
         Self {
-            time: time as f32,
             linear: Part {
-                start: from.as_vec3(),
-                ordered: to.as_vec3(),
+                start: start.as_vec3(),
                 free_change: (own + pulled).as_vec3(),
                 given: given.as_vec3(),
-                own_change: own.as_vec3(),
             },
-            is_free: true,
-            turns: false,
+            time: time as f32,
+            is_whole: false,
             accounts,
         }
     }
 
     /// `free` is the body at the start of the step with its full mass, `end` after it.
-    pub(super) fn new(free: &Body, end: &Body, terms: &Terms) -> (Self, Spun) {
+    pub(super) fn new(free: &Body, end: &Body, terms: &Terms) -> (Self, Whole) {
         let time = terms.schedule.time;
         let inverse_inertia = free.inverse_inertia();
         let own = (
             free.inverse_mass * end.given.0,
             inverse_inertia * end.given.1,
         );
-        let part = |start: DVec3, ordered: DVec3, own: DVec3, pulled: DVec3, given: DVec3| Part {
+        let part = |start: DVec3, own: DVec3, pulled: DVec3, given: DVec3| Part {
             start: start.as_vec3(),
-            ordered: ordered.as_vec3(),
             free_change: (own + time * pulled).as_vec3(),
             given: given.as_vec3(),
-            own_change: own.as_vec3(),
         };
-        let spun = Spun {
-            angular: part(
-                free.angular_velocity(),
-                end.angular_velocity(),
-                own.1,
-                inverse_inertia * free.torque,
-                end.given.1,
-            ),
+        let spin = free.angular_velocity();
+        let pulled = inverse_inertia * free.torque;
+        let ordered = Twist {
+            linear: (end.velocity - free.velocity).as_vec3(),
+            angular: (end.angular_velocity() - spin).as_vec3(),
+        };
+        let whole = Whole {
+            angular: part(spin, own.1, pulled, end.given.1),
+            ordered: (end.mobility == 1.0).then_some(ordered),
+            own_change: Twist {
+                linear: own.0.as_vec3(),
+                angular: own.1.as_vec3(),
+            },
             link: Some(terms.schedule.substeps).filter(|n| !terms.takes_impulses && *n > 1),
         };
-        let linear = part(
-            free.velocity,
-            end.velocity,
-            own.0,
-            free.acceleration,
-            end.given.0,
-        );
         let expected = Self {
-            linear,
+            linear: part(free.velocity, own.0, free.acceleration, end.given.0),
             time: time as f32,
-            is_free: end.mobility == 1.0,
-            turns: true,
+            is_whole: true,
             accounts: true,
         };
-        (expected, spun)
+        (expected, whole)
     }
 
     /// Whether a free body that does not turn went where it was to go.
     pub(super) fn was_met(&self, body: &RapierBody) -> bool {
+        let Part {
+            start, free_change, ..
+        } = self.linear;
         let now = undamped(body.linvel(), body.linear_damping(), self.time);
-        self.is_free && self.linear.was_met(now - self.linear.start)
+        self.linear.was_met(now - start, free_change)
     }
 
-    /// With what is expected of the turning.
-    pub(super) fn with(&self, spun: &Spun) -> Orders {
+    /// With what else is expected of the body, which has such an inverse mass.
+    pub(super) fn with(&self, whole: &Whole, inverse_mass: f32) -> Orders {
+        let whole = if self.is_whole {
+            *whole
+        } else {
+            let straight = |linear: Vec3| Twist {
+                linear,
+                angular: Vec3::ZERO,
+            };
+            Whole {
+                ordered: Some(straight(self.linear.free_change)),
+                own_change: straight(inverse_mass * self.linear.given),
+                ..Whole::default()
+            }
+        };
         Orders {
             linear: self.linear,
-            angular: spun.angular,
-            link: spun.link,
-            is_free: self.is_free,
+            whole,
             time: self.time,
         }
     }
@@ -178,11 +180,11 @@ impl Orders {
     /// Velocities that a link really has, told from those that the engine shows: what it had at the
     /// start, and all of the change of which one substep is not shown yet.
     pub(super) fn of_late(&self, shown: Twist) -> Option<Twist> {
-        let n = self.link? as f32;
+        let n = self.whole.link? as f32;
         let whole = |from: Vec3, to: Vec3| from + (to - from) * (n / (n - 1.0));
         Some(Twist {
             linear: whole(self.linear.start, shown.linear),
-            angular: whole(self.angular.start, shown.angular),
+            angular: whole(self.whole.angular.start, shown.angular),
         })
     }
 
@@ -192,7 +194,7 @@ impl Orders {
         let angular = undamped(now.angular, body.angular_damping(), self.time);
         Twist {
             linear: linear - self.linear.start,
-            angular: angular - self.angular.start,
+            angular: angular - self.whole.angular.start,
         }
     }
 
@@ -200,20 +202,22 @@ impl Orders {
     pub(super) fn mean(&self, now: Twist) -> Twist {
         Twist {
             linear: 0.5 * (self.linear.start + now.linear),
-            angular: 0.5 * (self.angular.start + now.angular),
+            angular: 0.5 * (self.whole.angular.start + now.angular),
         }
     }
 
     /// Work of the elements' impulses at mean velocities, J.
     pub(super) fn work(&self, mean: &Twist) -> f64 {
-        dot(mean.linear, self.linear.given) + dot(mean.angular, self.angular.given)
+        dot(mean.linear, self.linear.given) + dot(mean.angular, self.whole.angular.given)
     }
 
     /// Whether the body went where it was to go: then nothing held it.
     pub(super) fn was_met(&self, change: &Twist) -> bool {
-        self.is_free
-            && self.linear.was_met(change.linear)
-            && (self.angular.given == Vec3::ZERO || self.angular.was_met(change.angular))
+        let angular = &self.whole.angular;
+        self.whole.ordered.is_some_and(|ordered| {
+            self.linear.was_met(change.linear, ordered.linear)
+                && (angular.given == Vec3::ZERO || angular.was_met(change.angular, ordered.angular))
+        })
     }
 
     /// The direction in which a contact answered the load, and the share of the free motion that it left
@@ -230,9 +234,8 @@ impl Orders {
     /// Share of the free motion along the elements' load that was left; none if the load was too small
     /// to tell.
     pub(super) fn share(&self, change: &Twist, support: Support) -> Option<f64> {
-        let Self {
-            linear, angular, ..
-        } = self;
+        let (linear, angular) = (&self.linear, &self.whole.angular);
+        let own = &self.whole.own_change;
         let length = |v: Vec3| v.as_dvec3().length();
         let along = |v: Vec3, w: Vec3| dot(v, linear.given) + dot(w, angular.given);
         let free = along(linear.free_change, angular.free_change);
@@ -240,7 +243,7 @@ impl Orders {
             + length(angular.given) * length(angular.free_change);
         // Where elements and weight balance, what is left is the noise of the engine's joints.
         let noise = match support {
-            Support::Joint => BALANCE * along(linear.own_change, angular.own_change),
+            Support::Joint => BALANCE * along(own.linear, own.angular),
             _ => 0.0,
         };
         let tells = free.abs() > (0.05 * scale).max(noise);

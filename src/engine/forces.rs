@@ -1,6 +1,6 @@
 //! One `ExternalForce` per body, two owners: the user's share and ours, kept apart.
 
-use super::scene::Scene;
+use super::scene::{BodyRow, Scene};
 use super::solve::Loads;
 use bevy::ecs::entity_disabling::Disabled;
 use bevy::ecs::query::Allow;
@@ -22,9 +22,6 @@ pub struct SpringLoad {
     pub elements: ExternalForce,
     /// Force and torque that the user wrote.
     pub user: ExternalForce,
-    /// What we left in the component.
-    #[reflect(ignore)]
-    mirrored: ExternalForce,
     /// Index of the body's row in the scene, if that row says so too.
     #[reflect(ignore)]
     pub(super) slot: usize,
@@ -36,46 +33,69 @@ pub struct SpringLoad {
 /// What a body is given over a step.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Share {
-    elements: ExternalForce,
+    force: Vec3,
+    /// A torque too, which stands elsewhere.
+    turns: bool,
     /// With a second solver iteration, which has to be given back.
-    pub raised_iterations: bool,
+    raised_iterations: bool,
 }
 
-impl Share {
-    /// Adds the elements' share, force and torque, to the user's and puts the sum into the engine.
+/// Adds the elements' share to the user's and puts the sum into the engine.
+#[inline(always)]
+fn act(elements: &ExternalForce, user: &ExternalForce, body: &mut RapierBody) {
+    let sum = sum(elements, user);
+    body.reset_forces(false);
+    body.add_force(sum.force, false);
+    if sum.torque != Vec3::ZERO || body.user_torque() != Vec3::ZERO {
+        body.reset_torques(false);
+        body.add_torque(sum.torque, false);
+    }
+}
+
+/// The elements' share and the user's: what stands in the engine for them.
+fn sum(elements: &ExternalForce, user: &ExternalForce) -> ExternalForce {
+    ExternalForce {
+        force: told_apart(user.force + elements.force, user.force),
+        torque: told_apart(user.torque + elements.torque, user.torque),
+    }
+}
+
+impl BodyRow {
+    /// Gives the body the elements' force and torque over the coming step, if they are numbers.
     #[inline(always)]
-    pub(super) fn act(
+    pub(super) fn give(
+        &mut self,
         [force, torque]: [Vec3; 2],
-        user: &ExternalForce,
         body: &mut RapierBody,
         raised_iterations: bool,
-    ) -> Self {
+    ) {
         let finite = force.is_finite() && torque.is_finite();
         let kept = |v: Vec3| if finite { v } else { Vec3::ZERO };
         let elements = ExternalForce {
             force: kept(force),
             torque: kept(torque),
         };
-        let pushed = told_apart(user.force + elements.force, user.force);
-        let turned = told_apart(user.torque + elements.torque, user.torque);
-        body.reset_forces(false);
-        body.add_force(pushed, false);
-        if turned != Vec3::ZERO || body.user_torque() != Vec3::ZERO {
-            body.reset_torques(false);
-            body.add_torque(turned, false);
+        act(&elements, &self.user, body);
+        let turns = elements.torque != Vec3::ZERO;
+        if turns {
+            self.torque = elements.torque;
         }
-        Self {
-            elements,
+        self.share = Some(Share {
+            force: elements.force,
+            turns,
             raised_iterations,
-        }
+        });
     }
 
-    /// With the user's share: what stands in the engine for it.
-    fn sum(&self, user: &ExternalForce) -> ExternalForce {
-        ExternalForce {
-            force: told_apart(user.force + self.elements.force, user.force),
-            torque: told_apart(user.torque + self.elements.torque, user.torque),
-        }
+    /// Takes out what it was given.
+    fn take_share(&mut self) -> Option<(ExternalForce, bool)> {
+        let share = self.share.take()?;
+        let torque = if share.turns { self.torque } else { Vec3::ZERO };
+        let elements = ExternalForce {
+            force: share.force,
+            torque,
+        };
+        Some((elements, share.raised_iterations))
     }
 }
 
@@ -84,7 +104,6 @@ impl SpringLoad {
         Self {
             elements: ExternalForce::default(),
             user,
-            mirrored: user,
             slot,
             raised_iterations: false,
         }
@@ -94,20 +113,19 @@ impl SpringLoad {
     /// that is new.
     fn read_user(&mut self, now: &ExternalForce) -> bool {
         let before = self.user;
-        take_in(&mut self.user.force, now.force, self.mirrored.force);
-        take_in(&mut self.user.torque, now.torque, self.mirrored.torque);
+        // What we left in the component.
+        let left = sum(&self.elements, &self.user);
+        take_in(&mut self.user.force, now.force, left.force);
+        take_in(&mut self.user.torque, now.torque, left.torque);
         self.user != before
     }
 
     /// Shows the shares, the sum without marking it changed: a change would make bevy_rapier write it
     /// again and keep the body awake for ever.
-    fn show(&mut self, share: &Share, component: Option<&mut Mut<ExternalForce>>) {
-        let sum = share.sum(&self.user);
-        self.elements = share.elements;
-        self.mirrored = sum;
-        self.raised_iterations |= share.raised_iterations;
+    fn show(&mut self, elements: ExternalForce, component: Option<&mut Mut<ExternalForce>>) {
+        self.elements = elements;
         if let Some(component) = component {
-            *component.bypass_change_detection() = sum;
+            *component.bypass_change_detection() = sum(&elements, &self.user);
         }
     }
 }
@@ -140,8 +158,10 @@ pub(super) fn show(scene: &mut Scene, loads: &mut Loads) {
     }
     for (entity, mut load, mut component, ..) in loads {
         let slot = load.slot;
-        if let Some(share) = scene.body(slot, entity).and_then(|row| row.share.take()) {
-            load.show(&share, component.as_mut());
+        let share = scene.body(slot, entity).and_then(BodyRow::take_share);
+        if let Some((elements, raised_iterations)) = share {
+            load.show(elements, component.as_mut());
+            load.raised_iterations |= raised_iterations;
         }
     }
 }
@@ -177,8 +197,9 @@ pub(super) fn release(
             && let Ok(mut set) = sets.get_mut(link.0)
             && let Some(body) = set.bodies.get_mut(handle.0)
         {
-            let share = Share::act([Vec3::ZERO; 2], &load.user, body, false);
-            load.show(&share, component.as_mut());
+            let nothing = ExternalForce::default();
+            act(&nothing, &load.user, body);
+            load.show(nothing, component.as_mut());
             if load.raised_iterations && body.additional_solver_iterations() == 1 {
                 body.set_additional_solver_iterations(0);
             }

@@ -6,7 +6,7 @@
 //! by which its inverse mass is scaled in the next step. Bodies that touch nothing and have no joint are
 //! free by definition, and are never measured.
 
-use super::expected::{Spun, Twist};
+use super::expected::Twist;
 use super::scene::BodyRow;
 use super::step::Terms;
 use super::touch::{created, support};
@@ -77,7 +77,7 @@ pub(super) fn observe(row: &mut BodyRow, body: &RapierBody, context: &Context) {
     let Some(expected) = row.expected.take() else {
         return;
     };
-    if !(expected.turns || expected.accounts) && expected.was_met(body) {
+    if !(expected.is_whole || expected.accounts) && expected.was_met(body) {
         row.support = Support::None;
         if !row.untouched {
             row.let_go();
@@ -85,13 +85,11 @@ pub(super) fn observe(row: &mut BodyRow, body: &RapierBody, context: &Context) {
         return;
     }
     row.untouched = false;
-    let spun = if expected.turns {
-        row.spun
-    } else {
+    if !expected.is_whole {
         row.lag = 0.0;
-        Spun::default()
-    };
-    let orders = expected.with(&spun);
+    }
+    let inverse_mass = body.mass_properties().local_mprops.inv_mass;
+    let orders = expected.with(&row.whole, inverse_mass);
     let shown = Twist {
         linear: body.linvel(),
         angular: body.angvel(),

@@ -3,7 +3,6 @@
 
 use super::body::deliver_straight;
 use super::expected::Expected;
-use super::forces::Share;
 use super::held::Support;
 use super::lone::Handled;
 use super::scene::BodyRow;
@@ -68,7 +67,7 @@ impl Step<'_> {
         let time = self.plan.time;
         let terms = self.terms(row.handle, body);
         row.expected = Some(Expected::straight(
-            [point.velocity, flight.velocity],
+            point.velocity,
             point.inverse_mass * flight.given,
             time * point.acceleration,
             flight.given,
@@ -84,7 +83,6 @@ impl Step<'_> {
             &self.engine,
         );
         let force = ((rate - point.acceleration) / point.inverse_mass).as_vec3();
-        let share = [force, Vec3::ZERO];
-        row.share = Some(Share::act(share, &row.user, body, terms.raised_iterations));
+        row.give([force, Vec3::ZERO], body, terms.raised_iterations);
     }
 }

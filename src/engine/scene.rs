@@ -4,7 +4,7 @@ use super::assembly::Assembly;
 use super::check::{Parameters, Trouble};
 use super::companions::Companion;
 use super::energy::EnergyLedger;
-use super::expected::{Expected, Spun, Twist};
+use super::expected::{Expected, Twist, Whole};
 use super::find::Known;
 use super::forces::Share;
 use super::group::Groups;
@@ -126,15 +126,16 @@ pub(super) struct BodyRow {
     pub share: Option<Share>,
     /// What the coming step is to do.
     pub expected: Option<Expected>,
-    /// Centre of mass after the last step, and its velocity.
-    pub now: (DVec3, Vec3),
+    pub context: Entity,
     /// What keeps it from moving freely.
     pub support: Support,
+    /// Centre of mass after the last step, and its velocity.
+    pub now: (DVec3, Vec3),
     /// Since when and where it has been at rest, if it is.
     pub rest: Rest,
-    pub context: Entity,
-    /// What the coming step is to do to the rotation of a body that turns.
-    pub spun: Spun,
+    pub whole: Whole,
+    /// The torque of its share.
+    pub torque: Vec3,
     /// How much of a free body's motion contacts and joints leave it; see [`super::held`].
     pub mobility: f64,
     /// Velocities of a link of a multibody, which the engine shows too late.
@@ -181,7 +182,8 @@ impl BodyRow {
             held: None,
             support: Support::Unknown,
             expected: None,
-            spun: Spun::default(),
+            whole: Whole::default(),
+            torque: Vec3::ZERO,
             link: None,
             given_work: 0.0,
             contact_work: 0.0,
