@@ -119,7 +119,7 @@ impl Assembly {
                 free.velocity = link.linear.as_dvec3();
                 free.set_angular_velocity(link.angular.as_dvec3());
             }
-            row.displaced = row.now.0 != free.position;
+            row.displaced = !row.is_noted || row.now.0 != free.position;
             row.lag = step.lag_of_held(row, body);
             if row.lag > 0.0 {
                 free.drift(-row.lag);

@@ -81,7 +81,7 @@ impl Assembly {
             let point = FreePoint::of(row, body, step).ok()?;
             *disturbed |= std::mem::take(&mut row.disturbed);
             carry.restless |= step.is_restless(row, body, carry.omega);
-            carry.displaced |= row.now.0 != point.position;
+            carry.displaced |= !row.is_noted || row.now.0 != point.position;
             if !points.place(slot, &point) {
                 return None;
             }

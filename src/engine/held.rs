@@ -77,7 +77,8 @@ pub(super) fn observe(row: &mut BodyRow, body: &RapierBody, context: &Context) {
     let Some(expected) = row.expected.take() else {
         return;
     };
-    if !(expected.is_whole || expected.accounts) && expected.was_met(body) {
+    row.is_alone = !(expected.is_whole || expected.accounts) && expected.was_met(body);
+    if row.is_alone {
         row.support = Support::None;
         if !row.untouched {
             row.let_go();

@@ -31,10 +31,10 @@ type Springs<'a> = (
 /// Writes readouts, captured rest lengths, and faults found while solving.
 pub(crate) fn measure(
     mut scene: ResMut<Scene>,
-    sets: Query<&RapierRigidBodySet>,
+    sets: Query<&'static RapierRigidBodySet>,
     mut readouts: Query<(Entity, &mut SpringReadout), IsElement>,
     mut springs: Query<Springs, IsElement>,
-    contexts: Query<ContextParts>,
+    contexts: Query<ContextParts<'static>>,
     mut commands: Commands,
 ) {
     let scene = &mut *scene;
@@ -45,11 +45,16 @@ pub(crate) fn measure(
         // All asleep.
         return;
     }
-    look(scene, &sets, &contexts);
     let time = scene.time;
+    let mut look = Look {
+        sets: &sets,
+        contexts: &contexts,
+        known: None,
+        stale: false,
+    };
     let mut show = |row: &mut ElementRow, readout: &mut Mut<SpringReadout>| {
         let led = row.moves() == 0 && row.memory.places[0].is_some();
-        if let Some(points) = row.see(time, &scene.bodies, &sets) {
+        if let Some(points) = row.see(time, &mut scene.bodies, &mut look) {
             report(row, &mut commands);
             let tuned = std::mem::take(&mut row.tuned);
             if (std::mem::take(&mut row.captured) && row.trouble.passing().is_none()) || tuned {
@@ -91,7 +96,7 @@ pub(crate) fn measure(
     if scene.renewed {
         scene.unordered = unordered;
     }
-    scene.stale |= unordered && !scene.unordered;
+    scene.stale |= look.stale || (unordered && !scene.unordered);
 }
 
 /// Writes a captured rest length into the element's component, and coefficients that were worked out.
@@ -127,39 +132,57 @@ fn write_back(row: &ElementRow, tuned: bool, springs: &mut Query<Springs, IsElem
     }
 }
 
-/// Sees where the stepped bodies are, and what the step did to them.
-fn look(scene: &mut Scene, sets: &Query<&RapierRigidBodySet>, contexts: &Query<ContextParts>) {
-    let mut known: Option<(Entity, Context)> = None;
-    for row in &mut scene.bodies {
-        if row.expected.is_none() {
-            continue;
-        }
-        if known.as_ref().is_none_or(|known| known.0 != row.context) {
-            known = match (sets.get(row.context), contexts.get(row.context)) {
-                (Ok(set), Ok((simulation, joints, colliders))) => Some((
-                    row.context,
-                    Context {
+/// What is needed to see where stepped bodies are, and what the step did to them.
+struct Look<'a, 'w, 's> {
+    sets: &'a Query<'w, 's, &'static RapierRigidBodySet>,
+    contexts: &'a Query<'w, 's, ContextParts<'static>>,
+    known: Option<(Entity, Context<'a>)>,
+    /// The scene is not what it was thought to be.
+    stale: bool,
+}
+
+impl<'a> Look<'a, '_, '_> {
+    /// What a Rapier context is after its step.
+    fn context(&mut self, entity: Entity) -> Option<&Context<'a>> {
+        if self.known.as_ref().is_none_or(|known| known.0 != entity) {
+            let (set, parts) = (self.sets.get(entity).ok(), self.contexts.get(entity).ok());
+            self.known = set
+                .zip(parts)
+                .map(|(set, (simulation, joints, colliders))| {
+                    let context = Context {
                         simulation,
                         joints,
                         colliders: &colliders.colliders,
                         bodies: &set.bodies,
-                    },
-                )),
-                _ => None,
-            };
+                    };
+                    (entity, context)
+                });
         }
-        let Some((_, context)) = &known else {
-            continue;
+        Some(&self.known.as_ref()?.1)
+    }
+
+    /// Position and velocity of a body's centre of mass, after what the step did to it has been taken in.
+    fn at(&mut self, row: &mut BodyRow) -> (DVec3, DVec3) {
+        if row.expected.is_none() && row.is_noted {
+            return row.place();
+        }
+        let Some(context) = self.context(row.context) else {
+            return row.place();
         };
-        match context.bodies.get(row.handle) {
-            Some(body) => {
-                observe(row, body, context);
-                row.now = (center_of(body), body.linvel());
-                // The engine takes bodies out that it cannot step.
-                scene.stale |= !is_movable(body);
-            }
-            None => scene.stale = true,
+        let Some(body) = context.bodies.get(row.handle) else {
+            self.stale = true;
+            return row.place();
+        };
+        observe(row, body, context);
+        // The engine takes bodies out that it cannot step.
+        let is_out = !is_movable(body);
+        let now = (center_of(body), body.linvel());
+        row.is_noted = !row.is_alone;
+        if row.is_noted {
+            row.now = now;
         }
+        self.stale |= is_out;
+        (now.0, now.1.as_dvec3())
     }
 }
 
@@ -169,16 +192,16 @@ impl ElementRow {
     fn see(
         &mut self,
         time: f64,
-        bodies: &[BodyRow],
-        sets: &Query<&RapierRigidBodySet>,
+        bodies: &mut [BodyRow],
+        look: &mut Look,
     ) -> Option<[(DVec3, DVec3); 2]> {
         if self.trouble.lasting().is_some() || !(self.active || self.moves() == 0) {
             return None;
         }
-        let points = [0, 1].map(|end| self.point(end, time, bodies, sets));
+        let points = [0, 1].map(|end| self.point(end, time, bodies, look));
         if self.parameters.rest_length.is_none() {
             // No movable body: it took no part in the solve.
-            let length = self.extent(points, time, sets).0;
+            let length = self.extent(points, time, look.sets).0;
             self.parameters.rest_length = Some(length as f32);
             self.captured = true;
         }
@@ -210,13 +233,15 @@ impl ElementRow {
         &self,
         end: usize,
         time: f64,
-        bodies: &[BodyRow],
-        sets: &Query<&RapierRigidBodySet>,
+        bodies: &mut [BodyRow],
+        look: &mut Look,
     ) -> (DVec3, DVec3) {
-        if let Some(body) = self.movable(end).map(|index| &bodies[index])
-            && !body.turns
-        {
-            return body.place();
+        if let Some(index) = self.movable(end) {
+            let body = &mut bodies[index];
+            let center = look.at(body);
+            if !body.turns {
+                return center;
+            }
         }
         match self.held[end] {
             Held::Path { from, to } => (to, (to - from) / time),
@@ -225,10 +250,9 @@ impl ElementRow {
                 context,
                 local,
                 ..
-            } => sets
-                .get(context)
-                .ok()
-                .and_then(|set| set.bodies.get(handle))
+            } => look
+                .context(context)
+                .and_then(|context| context.bodies.get(handle))
                 .map_or((DVec3::ZERO, DVec3::ZERO), |body| point_of(body, local)),
         }
     }

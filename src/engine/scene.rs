@@ -93,10 +93,10 @@ impl ElementRow {
 pub(super) struct Memory {
     /// Last well-defined direction from end A to end B.
     pub direction: Option<DVec3>,
-    /// Last length or twist.
-    pub length: f64,
     /// The last coefficients, and how exact they were.
     pub memo: Memo,
+    /// Last length or twist.
+    pub length: f64,
     pub controller: Controller,
     /// Where its ends were after the last step: a body's own point if elements can move it, else a point
     /// of the world.
@@ -119,6 +119,10 @@ pub(super) struct BodyRow {
     pub disturbed: bool,
     /// It has been at rest since some time.
     pub rests: bool,
+    /// Its only element goes through the step without an assembly, and nothing holds it.
+    pub is_alone: bool,
+    /// [`Self::now`] is so.
+    pub is_noted: bool,
     /// Nothing has held it since the rows were made, or [`Self::let_go`].
     pub untouched: bool,
     pub user: ExternalForce,
@@ -177,6 +181,8 @@ impl BodyRow {
             user: ExternalForce::default(),
             share: None,
             rests: false,
+            is_alone: false,
+            is_noted: true,
             rest: Rest::default(),
             mobility: 1.0,
             held: None,
