@@ -1,8 +1,8 @@
 //! Which elements have to be solved together.
 
 use super::assembly::{Assembly, Members};
-use super::find::mix;
 use super::held::Support;
+use super::renew::mix;
 use super::scene::{BodyRow, ElementRow};
 use bevy::platform::collections::HashMap;
 use bevy::prelude::Entity;

@@ -1,7 +1,7 @@
 //! The only room that knows Rapier: bodies and elements into flat arrays, forces back.
 //!
 //! One step runs [`prepare::prepare`] → [`forces::read_users`] → [`solve::solve`] → (Rapier steps) → [`measure::measure`].
-//! [`scene`] holds what is kept between; [`find`] fills it where [`watch`] or an element says that it
+//! [`scene`] holds what is kept between; [`renew`] fills it where [`watch`] or an element says that it
 //! changed. A lone element goes through [`lone`], everything else through [`assembly`], where [`carry`] takes
 //! networks of points past most of the work, and [`still`] a world asleep past all of it.
 
@@ -27,6 +27,7 @@ mod parts;
 mod passive;
 mod point;
 mod prepare;
+mod renew;
 mod scene;
 mod setup;
 mod sleep;

@@ -1,0 +1,246 @@
+//! All rows anew: elements and bodies entered, what was known of both carried over.
+
+use super::check::{Parameters, Trouble};
+use super::companions::{Companion, Companions};
+use super::ends::Place;
+use super::find::{Finder, Found, Wanted};
+use super::parts::{IsElement, Parts};
+use super::prepare::report;
+use super::scene::{BodyRow, ElementRow, Held, Memory, Scene};
+use bevy::ecs::entity::{EntityHashMap, EntityHashSet};
+use bevy::prelude::*;
+use std::mem::{swap, take};
+
+/// The rows before they were made anew. Kept between, for their memory alone.
+#[derive(Default)]
+pub(super) struct Known {
+    elements: Vec<ElementRow>,
+    row_of: EntityHashMap<usize>,
+    bodies: Vec<BodyRow>,
+    /// The bodies that there are to be, in the order of their entities.
+    wanted: Vec<Wanted>,
+}
+
+impl Known {
+    /// What is known of an element, which probably stood at `place`.
+    fn element(&self, entity: Entity, place: usize) -> Option<&ElementRow> {
+        let there = self.elements.get(place).filter(|row| row.entity == entity);
+        there.or_else(|| Some(&self.elements[*self.row_of.get(&entity)?]))
+    }
+
+    fn clear(&mut self) {
+        self.elements.clear();
+        self.row_of.clear();
+        self.bodies.clear();
+        self.wanted.clear();
+    }
+}
+
+impl Scene {
+    /// Makes all rows anew. Bodies stand in the order of their entities, and within a component elements
+    /// in an order of their own, so that the order in which elements were spawned changes nothing.
+    pub(super) fn renew(
+        &mut self,
+        elements: &Query<Parts, IsElement>,
+        companions: &Companions,
+        finder: &mut Finder,
+        modified: &EntityHashSet,
+        commands: &mut Commands,
+    ) {
+        let mut known = take(&mut self.known);
+        swap(&mut self.elements, &mut known.elements);
+        swap(&mut self.row_of, &mut known.row_of);
+        self.changed.clear();
+        self.faulty.clear();
+        self.followed.clear();
+        self.walls.clear();
+        let mut found_all = Vec::with_capacity(known.elements.len());
+        for parts in elements {
+            let entity = parts.entity;
+            let index = self.elements.len();
+            let mut row = ElementRow::fresh(entity, known.element(entity, index));
+            let parameters = parts.parameters();
+            if parameters.is_err() {
+                row.parameters = Parameters::NONE;
+            }
+            let found = parameters.and_then(|parameters| {
+                if !parameters.is_held_like(&row.parameters) {
+                    // What is remembered belongs to other ends.
+                    row.memory.places = [None; 2];
+                    row.memory.scales = [None; 2];
+                }
+                row.change(|row| row.parameters = parameters);
+                parameters.check()?;
+                let mut companion = companions.of(entity, &parameters)?;
+                if companion.guide != row.companion.guide {
+                    row.memory.places = [None; 2];
+                }
+                let guide = companion.guide;
+                let found = finder.find(&parameters, guide, &mut row.memory.scales, modified)?;
+                if let Some(tuning) = companions.tuning(entity) {
+                    let mut tuned = parameters;
+                    finder.tune(tuning, guide, &found.places, &mut tuned)?;
+                    tuned.check()?;
+                    companion = companions.of(entity, &tuned)?;
+                    row.parameters = tuned;
+                    row.tuned = true;
+                }
+                row.change(|row| row.companion = companion);
+                Ok(found)
+            });
+            row.changed |= parts.is_changed() || companions.touched.contains(&entity);
+            row.trouble.set_lasting(found.as_ref().err().copied());
+            report(&mut row, commands);
+            self.row_of.insert(entity, index);
+            if row.changed {
+                self.changed.push(index);
+            }
+            if found.is_err() {
+                self.faulty.push(index);
+            }
+            self.elements.push(row);
+            found_all.push(found.ok());
+        }
+        self.enter_bodies(&found_all, &mut known, modified);
+        for (index, (row, found)) in self.elements.iter_mut().zip(&found_all).enumerate() {
+            let Some(found) = found else { continue };
+            for end in 0..2 {
+                row.hold(end, &found.places[end], &self.index);
+                if row.watched[end] {
+                    self.followed.push((index, end));
+                }
+                if let (Place::OnBody { entity, .. }, None) = (found.places[end], row.on[end]) {
+                    self.walls.insert(entity);
+                }
+            }
+            for body in row.on.iter().flatten() {
+                let body = &mut self.bodies[*body as usize];
+                body.elements += 1;
+                body.signature = body.signature.wrapping_add(mix(row.entity.to_bits()));
+            }
+        }
+        for (body, wanted) in self.bodies.iter_mut().zip(&known.wanted) {
+            body.disturbed |= wanted.signature != body.signature;
+        }
+        self.immovable = self
+            .elements
+            .iter()
+            .any(|row| row.trouble.lasting().is_none() && row.moves() == 0);
+        self.groups.find(&self.elements, &self.bodies);
+        self.groups
+            .furnish(&mut self.assemblies, &self.elements, &self.bodies);
+        known.clear();
+        self.known = known;
+    }
+
+    /// Rows of all movable bodies: those that there are, if they are still the same.
+    fn enter_bodies(
+        &mut self,
+        found: &[Option<Found>],
+        known: &mut Known,
+        modified: &EntityHashSet,
+    ) {
+        let Known { bodies, wanted, .. } = known;
+        for found in found.iter().flatten() {
+            wanted.extend(found.movable());
+        }
+        wanted.sort_unstable_by_key(|body| body.entity);
+        wanted.dedup_by(|again, first| {
+            first.turns |= again.turns;
+            again.entity == first.entity
+        });
+        let is_same = |(row, body): (&BodyRow, &Wanted)| {
+            row.entity == body.entity && row.handle == body.handle
+        };
+        if wanted.len() != self.bodies.len() || !self.bodies.iter().zip(&*wanted).all(is_same) {
+            swap(&mut self.bodies, bodies);
+            self.index.clear();
+            let mut before = bodies.iter().peekable();
+            for (slot, body) in wanted.iter().enumerate() {
+                while before.next_if(|row| row.entity < body.entity).is_some() {}
+                let row = before.next_if(|row| row.entity == body.entity);
+                let fresh = BodyRow::new(body.entity, body.handle, body.context);
+                let same = row.filter(|row| row.handle == body.handle);
+                self.bodies.push(same.copied().unwrap_or(fresh));
+                self.index.insert(body.entity, slot);
+            }
+        }
+        for (row, body) in self.bodies.iter_mut().zip(wanted) {
+            // A new one is disturbed anyway.
+            body.signature = take(&mut row.signature);
+            row.turns = body.turns;
+            row.elements = 0;
+            row.context = body.context;
+            row.disturbed |= modified.contains(&row.entity);
+        }
+    }
+}
+
+impl ElementRow {
+    /// An inert row, with what is known of the element.
+    fn fresh(entity: Entity, known: Option<&Self>) -> Self {
+        let mut row = Self {
+            entity,
+            parameters: Parameters::NONE,
+            companion: Companion::default(),
+            ledger: default(),
+            held: [Held::NOWHERE; 2],
+            watched: [true; 2],
+            on: [None; 2],
+            placed: false,
+            trouble: Trouble::default(),
+            changed: true,
+            captured: false,
+            tuned: false,
+            active: false,
+            memory: Memory::default(),
+            inverse_mass: 0.0,
+            outcome: default(),
+        };
+        if let Some(known) = known {
+            row.parameters = known.parameters;
+            row.companion = known.companion.clone();
+            row.ledger = known.ledger;
+            row.trouble = known.trouble.clone();
+            row.memory = known.memory;
+            row.changed = false;
+            if known.trouble.lasting().is_some() {
+                // Where its ends were when it last acted would make a leap of today's place.
+                row.memory.places = [None; 2];
+            }
+        }
+        row
+    }
+
+    /// Holds an end where it was found.
+    fn hold(&mut self, end: usize, place: &Place, index: &EntityHashMap<usize>) {
+        self.held[end] = match *place {
+            Place::OnBody {
+                entity,
+                handle,
+                context,
+                local,
+            } => {
+                let direct = entity == self.parameters.ends[end];
+                self.watched[end] = !direct || self.parameters.anchors[end] != Vec3::ZERO;
+                self.on[end] = index.get(&entity).map(|index| *index as u32);
+                Held::Body {
+                    handle,
+                    context,
+                    local,
+                    movable: self.on[end].is_some(),
+                }
+            }
+            Place::Point(to) => Held::Path {
+                from: self.memory.places[end].unwrap_or(to),
+                to,
+            },
+        };
+    }
+}
+
+/// Spreads an entity's bits, so that sums of them tell sets apart.
+pub(super) fn mix(bits: u64) -> u64 {
+    let x = (bits ^ (bits >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb)
+}
