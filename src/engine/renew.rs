@@ -11,26 +11,20 @@ use bevy::ecs::entity::{EntityHashMap, EntityHashSet};
 use bevy::prelude::*;
 use std::mem::{swap, take};
 
-/// The rows before they were made anew. Kept between, for their memory alone.
+/// What is needed only while rows are made anew. Kept between, for its memory alone.
 #[derive(Default)]
-pub(super) struct Known {
-    elements: Vec<ElementRow>,
-    row_of: EntityHashMap<usize>,
+pub(super) struct Scratch {
+    /// The ends of every element, or none of an inert one.
+    found: Vec<Option<Found>>,
+    /// The rows of bodies as they were.
     bodies: Vec<BodyRow>,
     /// The bodies that there are to be, in the order of their entities.
     wanted: Vec<Wanted>,
 }
 
-impl Known {
-    /// What is known of an element, which probably stood at `place`.
-    fn element(&self, entity: Entity, place: usize) -> Option<&ElementRow> {
-        let there = self.elements.get(place).filter(|row| row.entity == entity);
-        there.or_else(|| Some(&self.elements[*self.row_of.get(&entity)?]))
-    }
-
+impl Scratch {
     fn clear(&mut self) {
-        self.elements.clear();
-        self.row_of.clear();
+        self.found.clear();
         self.bodies.clear();
         self.wanted.clear();
     }
@@ -47,18 +41,17 @@ impl Scene {
         modified: &EntityHashSet,
         commands: &mut Commands,
     ) {
-        let mut known = take(&mut self.known);
-        swap(&mut self.elements, &mut known.elements);
-        swap(&mut self.row_of, &mut known.row_of);
+        let mut scratch = take(&mut self.scratch);
         self.changed.clear();
         self.faulty.clear();
         self.followed.clear();
         self.walls.clear();
-        let mut found_all = Vec::with_capacity(known.elements.len());
-        for parts in elements {
+        for (index, parts) in elements.iter().enumerate() {
             let entity = parts.entity;
-            let index = self.elements.len();
-            let mut row = ElementRow::fresh(entity, known.element(entity, index));
+            let is_new = self.seat(entity, index);
+            let row = &mut self.elements[index];
+            row.reset();
+            row.changed = is_new;
             let parameters = parts.parameters();
             if parameters.is_err() {
                 row.parameters = Parameters::NONE;
@@ -90,19 +83,21 @@ impl Scene {
             });
             row.changed |= parts.is_changed() || companions.touched.contains(&entity);
             row.trouble.set_lasting(found.as_ref().err().copied());
-            report(&mut row, commands);
-            self.row_of.insert(entity, index);
+            report(row, commands);
             if row.changed {
                 self.changed.push(index);
             }
             if found.is_err() {
                 self.faulty.push(index);
             }
-            self.elements.push(row);
-            found_all.push(found.ok());
+            scratch.found.push(found.ok());
         }
-        self.enter_bodies(&found_all, &mut known, modified);
-        for (index, (row, found)) in self.elements.iter_mut().zip(&found_all).enumerate() {
+        for gone in self.elements.drain(scratch.found.len()..) {
+            self.row_of.remove(&gone.entity);
+        }
+        self.enter_bodies(&mut scratch, modified);
+        let found_all = self.elements.iter_mut().zip(&scratch.found);
+        for (index, (row, found)) in found_all.enumerate() {
             let Some(found) = found else { continue };
             for end in 0..2 {
                 row.hold(end, &found.places[end], &self.index);
@@ -119,7 +114,7 @@ impl Scene {
                 body.signature = body.signature.wrapping_add(mix(row.entity.to_bits()));
             }
         }
-        for (body, wanted) in self.bodies.iter_mut().zip(&known.wanted) {
+        for (body, wanted) in self.bodies.iter_mut().zip(&scratch.wanted) {
             body.disturbed |= wanted.signature != body.signature;
         }
         self.immovable = self
@@ -129,18 +124,34 @@ impl Scene {
         self.groups.find(&self.elements, &self.bodies);
         self.groups
             .furnish(&mut self.assemblies, &self.elements, &self.bodies);
-        known.clear();
-        self.known = known;
+        scratch.clear();
+        self.scratch = scratch;
+    }
+
+    /// Brings the row of an element to its place, after all those before it; says whether it is a new one.
+    fn seat(&mut self, entity: Entity, index: usize) -> bool {
+        let rows = &mut self.elements;
+        if rows.get(index).is_some_and(|row| row.entity == entity) {
+            return false;
+        }
+        let known = self.row_of.get(&entity).copied();
+        let from = known.unwrap_or_else(|| {
+            rows.push(ElementRow::new(entity));
+            rows.len() - 1
+        });
+        rows.swap(index, from);
+        self.row_of.insert(rows[from].entity, from);
+        self.row_of.insert(entity, index);
+        known.is_none()
     }
 
     /// Rows of all movable bodies: those that there are, if they are still the same.
-    fn enter_bodies(
-        &mut self,
-        found: &[Option<Found>],
-        known: &mut Known,
-        modified: &EntityHashSet,
-    ) {
-        let Known { bodies, wanted, .. } = known;
+    fn enter_bodies(&mut self, scratch: &mut Scratch, modified: &EntityHashSet) {
+        let Scratch {
+            found,
+            bodies,
+            wanted,
+        } = scratch;
         for found in found.iter().flatten() {
             wanted.extend(found.movable());
         }
@@ -177,9 +188,9 @@ impl Scene {
 }
 
 impl ElementRow {
-    /// An inert row, with what is known of the element.
-    fn fresh(entity: Entity, known: Option<&Self>) -> Self {
-        let mut row = Self {
+    /// An inert row.
+    fn new(entity: Entity) -> Self {
+        Self {
             entity,
             parameters: Parameters::NONE,
             companion: Companion::default(),
@@ -189,27 +200,31 @@ impl ElementRow {
             on: [None; 2],
             placed: false,
             trouble: Trouble::default(),
-            changed: true,
+            changed: false,
             captured: false,
             tuned: false,
             active: false,
             memory: Memory::default(),
             inverse_mass: 0.0,
             outcome: default(),
-        };
-        if let Some(known) = known {
-            row.parameters = known.parameters;
-            row.companion = known.companion.clone();
-            row.ledger = known.ledger;
-            row.trouble = known.trouble.clone();
-            row.memory = known.memory;
-            row.changed = false;
-            if known.trouble.lasting().is_some() {
-                // Where its ends were when it last acted would make a leap of today's place.
-                row.memory.places = [None; 2];
-            }
         }
-        row
+    }
+
+    /// Makes it an inert one but for what is known of the element.
+    fn reset(&mut self) {
+        if self.trouble.lasting().is_some() {
+            // Where its ends were when it last acted would make a leap of today's place.
+            self.memory.places = [None; 2];
+        }
+        self.held = [Held::NOWHERE; 2];
+        self.watched = [true; 2];
+        self.on = [None; 2];
+        self.placed = false;
+        self.captured = false;
+        self.tuned = false;
+        self.active = false;
+        self.inverse_mass = 0.0;
+        self.outcome = default();
     }
 
     /// Holds an end where it was found.

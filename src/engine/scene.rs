@@ -8,7 +8,7 @@ use super::expected::{Expected, Twist, Whole};
 use super::forces::Share;
 use super::group::Groups;
 use super::held::Support;
-use super::renew::Known;
+use super::renew::Scratch;
 use super::sleep::Rest;
 use super::still::Still;
 use super::touch::Partner;
@@ -230,7 +230,7 @@ pub struct Scene {
     /// In the order of their entities.
     pub(super) bodies: Vec<BodyRow>,
     pub(super) index: EntityHashMap<usize>,
-    pub(super) known: Known,
+    pub(super) scratch: Scratch,
     /// Bodies that hold elements, but that these cannot move.
     pub(super) walls: EntityHashSet,
     pub(super) groups: Groups,
