@@ -81,13 +81,9 @@ impl Groups {
             of_body.push(if r == body { count } else { of_body[r] });
             count += usize::from(r == body);
         }
-        let mut order: Vec<usize> = (0..elements.len())
-            .filter(|e| elements[*e].trouble.lasting().is_none())
-            .collect();
-        order.sort_by_cached_key(|e| rank(&elements[*e]));
-        let of_element = |e: usize| {
-            let body = movable(&elements[e]).into_iter().flatten().next()?;
-            Some((e, of_body[body]))
+        let of_element = |(e, row): (usize, &ElementRow)| {
+            let body = movable(row).into_iter().flatten().next()?;
+            sound(&row).then_some((e, of_body[body]))
         };
         let body_starts = sort(
             count,
@@ -96,9 +92,15 @@ impl Groups {
         );
         let element_starts = sort(
             count,
-            order.iter().filter_map(|e| of_element(*e)),
+            elements.iter().enumerate().filter_map(of_element),
             &mut self.elements,
         );
+        for group in element_starts
+            .windows(2)
+            .filter(|group| group[1] > group[0] + 1)
+        {
+            self.elements[group[0]..group[1]].sort_by_cached_key(|e| rank(&elements[*e]));
+        }
         self.list.clear();
         self.list.extend((0..count).map(|g| Group {
             elements: element_starts[g]..element_starts[g + 1],
