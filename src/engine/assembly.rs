@@ -278,7 +278,8 @@ impl Assembly {
         if self.state == State::Resting {
             return;
         }
-        let ready = self.state == State::Ready;
+        // Taken, so that the step of another context does not advance it again.
+        let ready = std::mem::take(&mut self.state) == State::Ready;
         if ready && self.component.carried {
             return self.deliver_carried(step, members, elements, bodies, set);
         }

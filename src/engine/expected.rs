@@ -49,7 +49,7 @@ pub(super) struct Whole {
     link: Option<u32>,
 }
 
-/// Both together.
+/// What is expected of a body, linear and angular.
 pub(super) struct Orders {
     linear: Part,
     whole: Whole,
@@ -144,7 +144,7 @@ impl Expected {
     }
 
     /// With what else is expected of the body, which has such an inverse mass.
-    pub(super) fn with(&self, whole: &Whole, inverse_mass: f32) -> Orders {
+    pub(super) fn orders(&self, whole: &Whole, inverse_mass: f32) -> Orders {
         let whole = if self.is_whole {
             *whole
         } else {

@@ -90,7 +90,7 @@ pub(super) fn observe(row: &mut BodyRow, body: &RapierBody, context: &Context) {
         row.lag = 0.0;
     }
     let inverse_mass = body.mass_properties().local_mprops.inv_mass;
-    let orders = expected.with(&row.whole, inverse_mass);
+    let orders = expected.orders(&row.whole, inverse_mass);
     let shown = Twist {
         linear: body.linvel(),
         angular: body.angvel(),

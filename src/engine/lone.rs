@@ -22,7 +22,7 @@ use std::hint::black_box;
 pub(super) enum Handled {
     /// Read; to be solved with others.
     Aloft,
-    /// There is nothing to do.
+    /// It has no body any more that it could move.
     Done,
     /// Asleep; and if so, only these, its bodies, can wake it.
     Asleep(Option<[RigidBodyHandle; 2]>),
@@ -64,8 +64,8 @@ impl Flock {
     }
 }
 
-/// Looks at what the next flock needs, in every line of memory where it lies, so that all of it comes at once:
-/// read one after the other, each would be waited for.
+/// Prefetches what the next flock needs: it is looked at in every line of memory where it lies, so that all of it
+/// comes at once. Read one after the other, each would be waited for.
 pub(super) fn call_up(
     groups: &Groups,
     next: usize,
@@ -93,6 +93,7 @@ pub(super) fn call_up(
             seen ^= row.memory.length.to_bits() as u32 ^ u32::from(row.on[0].is_some());
         }
     }
+    // Or else the compiler would see that nobody asks for it.
     black_box(seen);
 }
 

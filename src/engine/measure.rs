@@ -52,7 +52,7 @@ pub(crate) fn measure(
         known: None,
         stale: false,
     };
-    let mut show = |row: &mut ElementRow, readout: &mut Mut<SpringReadout>| {
+    let mut show = |row: &mut ElementRow, readout: Option<&mut Mut<SpringReadout>>| {
         let led = row.moves() == 0 && row.memory.places[0].is_some();
         if let Some(points) = row.see(time, &mut scene.bodies, &mut look) {
             report(row, &mut commands);
@@ -68,7 +68,9 @@ pub(crate) fn measure(
                 row.account_for_moved(seen, time);
             }
             row.memory.length = seen.0;
-            readout.set_if_neq(row.read_out(seen, time));
+            if let Some(readout) = readout {
+                readout.set_if_neq(row.read_out(seen, time));
+            }
         }
     };
     // The rows stand in the query's order; if something came, went or got other components since they were
@@ -85,13 +87,12 @@ pub(crate) fn measure(
             break;
         }
         if let Some(row) = rows.next() {
-            show(row, &mut readout);
+            show(row, Some(&mut readout));
         }
     }
     for row in rows {
-        if let Ok((_, mut readout)) = readouts.get_mut(row.entity) {
-            show(row, &mut readout);
-        }
+        let mut readout = readouts.get_mut(row.entity).ok();
+        show(row, readout.as_mut().map(|(_, readout)| readout));
     }
     if scene.renewed {
         scene.unordered = unordered;

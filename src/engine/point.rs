@@ -46,7 +46,7 @@ impl FreePoint {
 }
 
 impl Step<'_> {
-    /// Gives the engine what takes a body where its elements do; says whether it has to be kept awake, and whether
+    /// Gives the engine what takes a body where its elements do. `restless`: it has to be kept awake; `accounts`:
     /// somebody asks for the work that is done on it.
     #[inline(always)]
     pub(super) fn deliver_point(

@@ -97,15 +97,17 @@ fn refresh(
         followed,
         changed: marked,
         assemblies,
-        time,
+        stepped,
         shifted,
         ..
     } = scene;
     // What changes while nothing is stepped is kept for the step that comes.
-    if *time > 0.0 {
-        for index in marked.drain(..) {
-            rows[index].changed = false;
-        }
+    marked.retain(|index| {
+        let row = &mut rows[*index];
+        row.changed = !row.has_acted(bodies, stepped);
+        row.changed
+    });
+    if !stepped.is_empty() {
         *shifted = false;
     }
     for entity in changed.iter().chain(companions.touched.iter().copied()) {

@@ -50,8 +50,10 @@ impl Scene {
             let entity = parts.entity;
             let is_new = self.seat(entity, index);
             let row = &mut self.elements[index];
+            // What changed while nothing was stepped has yet to act.
+            row.changed &= !row.has_acted(&self.bodies, &self.stepped);
+            row.changed |= is_new;
             row.reset();
-            row.changed = is_new;
             let parameters = parts.parameters();
             if parameters.is_err() {
                 row.parameters = Parameters::NONE;
@@ -157,8 +159,9 @@ impl Scene {
         }
         wanted.sort_unstable_by_key(|body| body.entity);
         wanted.dedup_by(|again, first| {
-            first.turns |= again.turns;
-            again.entity == first.entity
+            let same = again.entity == first.entity;
+            first.turns |= same && again.turns;
+            same
         });
         let is_same = |(row, body): (&BodyRow, &Wanted)| {
             row.entity == body.entity && row.handle == body.handle

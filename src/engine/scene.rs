@@ -81,6 +81,14 @@ impl ElementRow {
         self.on[end].map(|index| index as usize)
     }
 
+    /// Whether its context is among those that were stepped.
+    pub(super) fn has_acted(&self, bodies: &[BodyRow], stepped: &[Entity]) -> bool {
+        match self.movable(0).or(self.movable(1)) {
+            Some(body) => stepped.contains(&bodies[body].context),
+            None => !stepped.is_empty(),
+        }
+    }
+
     /// Whether it moves both of its ends, one, or none.
     pub(super) fn moves(&self) -> usize {
         self.on.iter().flatten().count()
@@ -121,7 +129,7 @@ pub(super) struct BodyRow {
     pub rests: bool,
     /// Its only element goes through the step without an assembly, and nothing holds it.
     pub is_alone: bool,
-    /// [`Self::now`] is so.
+    /// [`Self::now`] is of the last step; nobody asks for that of a body that is alone.
     pub is_noted: bool,
     /// Nothing has held it since the rows were made, or [`Self::let_go`].
     pub untouched: bool,
@@ -133,7 +141,7 @@ pub(super) struct BodyRow {
     pub context: Entity,
     /// What keeps it from moving freely.
     pub support: Support,
-    /// Centre of mass after the last step, and its velocity.
+    /// Centre of mass after the last step that was noted, and its velocity.
     pub now: (DVec3, Vec3),
     /// Since when and where it has been at rest, if it is.
     pub rest: Rest,
@@ -198,7 +206,7 @@ impl BodyRow {
         }
     }
 
-    /// Position and velocity of its centre of mass after the last step.
+    /// Position and velocity of its centre of mass after the last step that was noted.
     pub(super) fn place(&self) -> (DVec3, DVec3) {
         (self.now.0, self.now.1.as_dvec3())
     }
@@ -219,13 +227,13 @@ impl BodyRow {
 pub struct Scene {
     /// In the order of the query that finds them, inert ones too.
     pub(super) elements: Vec<ElementRow>,
-    /// Their indices.
+    /// Indices of the elements.
     pub(super) row_of: EntityHashMap<usize>,
-    /// Those that changed in this tick,
+    /// Elements that changed since the last step.
     pub(super) changed: Vec<usize>,
-    /// that take no part,
+    /// Elements that take no part.
     pub(super) faulty: Vec<usize>,
-    /// and whose ends have to be looked for in every tick, with those ends.
+    /// Elements with an end that is watched, and that end.
     pub(super) followed: Vec<(usize, usize)>,
     /// In the order of their entities.
     pub(super) bodies: Vec<BodyRow>,
@@ -235,6 +243,8 @@ pub struct Scene {
     pub(super) walls: EntityHashSet,
     pub(super) groups: Groups,
     pub(super) assemblies: Vec<Assembly>,
+    /// The contexts that are stepped in this tick.
+    pub(super) stepped: Vec<Entity>,
     /// Seconds that the engine will step in this tick; 0 if it will not.
     pub(super) time: f64,
     /// Something was found amiss after the scene was prepared: look at everything again.
@@ -243,7 +253,7 @@ pub struct Scene {
     pub(super) loaded: bool,
     /// Some body was given something in this tick.
     pub(super) delivered: bool,
-    /// An end that the game can move was not where it had been.
+    /// Some followed end was not where it had been.
     pub(super) shifted: bool,
     pub(super) still: Still,
     /// Some element has no end that elements can move.

@@ -52,9 +52,9 @@ pub(crate) struct Spare {
     flock: Flock,
     /// What lone elements are assembled in that are out of the ordinary.
     assembly: Assembly,
-    /// The groups of those that are so in this step,
+    /// The groups of those that are so in this step.
     odd: Vec<usize>,
-    /// and for longer.
+    /// The groups of those that are so for as long as can be seen.
     special: Vec<usize>,
 }
 
@@ -75,13 +75,17 @@ pub(crate) fn solve(
         forces::release(scene, &mut loads, &mut sets, &mut commands);
     }
     scene.time = 0.0;
+    scene.stepped.clear();
     scene.delivered = false;
     for (context, simulation, colliders, joints, configuration, lag) in &contexts {
         let plan = Plan::new(*mode, time.delta_secs(), lag.diff);
         if plan.time <= 0.0 || !configuration.physics_pipeline_active {
+            // What is moved meanwhile is not to be taken for known.
+            scene.still.note(context, false);
             continue;
         }
         scene.time = plan.time;
+        scene.stepped.push(context);
         let here = scene.groups.list().iter().any(|g| g.context == context);
         let Ok(mut set) = sets.get_mut(context) else {
             continue;

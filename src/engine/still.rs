@@ -36,7 +36,7 @@ impl Still {
     }
 }
 
-/// After bevy_rapier has shown its bodies, for which it takes them as if to change them.
+/// After bevy_rapier's write-back, which marks every set as changed in every tick.
 pub(crate) fn mark(mut scene: ResMut<Scene>, sets: Query<Ref<RapierRigidBodySet>>) {
     for (context, changed) in &mut scene.still.0 {
         *changed = sets.get(*context).ok().map(|set| set.last_changed());

@@ -23,6 +23,7 @@ mod messages;
 mod natural_frequency;
 mod networks;
 mod passenger;
+mod paused;
 mod quarter_car;
 mod recommend;
 mod repeatability;
@@ -31,6 +32,7 @@ mod spinning_pair;
 mod stability;
 mod static_sag;
 mod still;
+mod strangers;
 mod tolerance;
 mod user_force;
 #[cfg(feature = "visual")]

@@ -1,0 +1,213 @@
+//! What happens while the engine rests (paused, or between the steps of an interpolated game) acts when it goes on.
+
+use crate::harness::*;
+use bevy::prelude::*;
+use bevy_coilover::prelude::*;
+use bevy_rapier3d::prelude::*;
+
+fn pause(lab: &mut Lab, active: bool) {
+    let world = lab.app.world_mut();
+    let mut engines = world.query::<&mut RapierConfiguration>();
+    for mut engine in engines.iter_mut(world) {
+        engine.physics_pipeline_active = active;
+    }
+}
+
+/// A weight asleep below a post, on a spring.
+struct Hung {
+    lab: Lab,
+    post: Entity,
+    weight: Entity,
+    spring: Entity,
+    slept_at: Vec3,
+}
+
+impl Hung {
+    /// `watched` by a body that flies by, which has the engine's bodies looked at in every tick.
+    fn new(mut lab: Lab, watched: bool) -> Self {
+        let post = lab.spawn((RigidBody::Fixed, Transform::default()));
+        let weight = lab.body(1.0, Vec3::NEG_Y);
+        let spring = SpringDamper::new(post, weight)
+            .with_stiffness(200.0)
+            .with_damping(25.0)
+            .with_rest_length(1.0);
+        let spring = lab.spawn(spring);
+        if watched {
+            let far = lab.body(1.0, Vec3::Z * 1e3);
+            let flies = (GravityScale(0.0), Velocity::linear(Vec3::Z));
+            lab.app.world_mut().entity_mut(far).insert(flies);
+        }
+        lab.run(12.0);
+        assert!(lab.is_sleeping(weight));
+        let slept_at = lab.position(weight);
+        Self {
+            lab,
+            post,
+            weight,
+            spring,
+            slept_at,
+        }
+    }
+
+    /// How far it rises within five seconds after a pause in which this happens.
+    fn rises(mut self, change: impl FnOnce(&mut Self)) -> f32 {
+        pause(&mut self.lab, false);
+        self.lab.tick();
+        change(&mut self);
+        self.lab.tick();
+        self.lab.tick();
+        pause(&mut self.lab, true);
+        self.lab.run(5.0);
+        self.lab.position(self.weight).y - self.slept_at.y
+    }
+}
+
+#[test]
+fn a_post_moved_while_the_engine_rests_lifts_what_hangs_from_it() {
+    for watched in [false, true] {
+        let rose = Hung::new(Lab::new(), watched).rises(|hung| {
+            hung.lab.get_mut::<Transform>(hung.post).translation.y += 0.5;
+        });
+        assert!((rose - 0.5).abs() < 0.01, "watched {watched}: {rose} m");
+    }
+}
+
+#[test]
+fn a_spring_shortened_while_the_engine_rests_pulls_even_if_others_come() {
+    let rose = Hung::new(Lab::new(), false).rises(|hung| {
+        hung.lab.get_mut::<SpringDamper>(hung.spring).rest_length = Some(0.5);
+        hung.lab.tick();
+        let far = hung.lab.body(1.0, Vec3::Z * 1e3);
+        let hook = hung.lab.point(Vec3::new(0.0, 1.0, 1e3));
+        hung.lab.spawn(Spring::new(hook, far));
+    });
+    assert!((rose - 0.5).abs() < 0.01, "{rose} m");
+}
+
+#[test]
+fn a_weight_moved_while_the_engine_rests_is_held_from_its_first_step() {
+    let motion = |watched| {
+        let mut hung = Hung::new(Lab::new(), watched);
+        pause(&mut hung.lab, false);
+        hung.lab.tick();
+        hung.lab.get_mut::<Transform>(hung.weight).translation.y -= 0.5;
+        hung.lab.tick();
+        hung.lab.tick();
+        pause(&mut hung.lab, true);
+        let ticks = 0..30;
+        ticks
+            .map(|_| {
+                hung.lab.tick();
+                hung.lab.position(hung.weight)
+            })
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(motion(true), motion(false));
+}
+
+#[test]
+fn a_post_moved_between_interpolated_steps_lifts_what_hangs_from_it() {
+    for phase in 0..3 {
+        let frame = DT / 3.0;
+        let mut lab = Lab::without_plugin(Engine {
+            dt: frame,
+            ..default()
+        });
+        lab.app.add_plugins(CoiloverPlugin::default());
+        let mode = TimestepMode::Interpolated {
+            dt: DT,
+            time_scale: 1.0,
+            substeps: 1,
+        };
+        lab.app.insert_resource(mode);
+        lab.prime();
+        // Twelve seconds of frames, not of steps.
+        let mut hung = Hung::new(lab, false);
+        for _ in 0..24 * 60 + phase {
+            hung.lab.tick();
+        }
+        let slept_at = hung.lab.position(hung.weight);
+        hung.lab.get_mut::<Transform>(hung.post).translation.y += 0.5;
+        for _ in 0..15 * 60 {
+            hung.lab.tick();
+        }
+        let rose = hung.lab.position(hung.weight).y - slept_at.y;
+        assert!((rose - 0.5).abs() < 0.01, "phase {phase}: {rose} m");
+    }
+}
+
+/// A world of its own beside the default one.
+fn second_world(lab: &mut Lab, gravity: Vec3) -> RapierContextEntityLink {
+    let engine = RapierConfiguration {
+        gravity,
+        ..RapierConfiguration::new(1.0)
+    };
+    let world = lab.spawn((RapierContextSimulation::default(), engine));
+    lab.tick();
+    RapierContextEntityLink(world)
+}
+
+#[test]
+fn what_changes_in_a_world_that_rests_while_another_runs_acts_when_it_goes_on() {
+    for change in 0..2 {
+        let mut lab = Lab::new();
+        let link = second_world(&mut lab, Vec3::NEG_Y * GRAVITY as f32);
+        let post = lab.spawn((RigidBody::Fixed, Transform::default(), link));
+        let arm = lab.spawn((Transform::default(), ChildOf(post)));
+        let weight = lab.body(1.0, Vec3::NEG_Y);
+        lab.app.world_mut().entity_mut(weight).insert(link);
+        let spring = SpringDamper::new(arm, weight)
+            .with_stiffness(200.0)
+            .with_damping(25.0)
+            .with_rest_length(1.0);
+        let spring = lab.spawn(spring);
+        lab.run(12.0);
+        assert!(lab.is_sleeping(weight));
+        let slept_at = lab.position(weight).y;
+        let runs = |lab: &mut Lab, runs: bool| {
+            lab.get_mut::<RapierConfiguration>(link.0)
+                .physics_pipeline_active = runs;
+        };
+        runs(&mut lab, false);
+        lab.tick();
+        match change {
+            0 => lab.get_mut::<Transform>(arm).translation.y += 0.5,
+            _ => lab.get_mut::<SpringDamper>(spring).rest_length = Some(0.5),
+        }
+        lab.run(0.1);
+        runs(&mut lab, true);
+        lab.run(5.0);
+        let rose = lab.position(weight).y - slept_at;
+        assert!((rose - 0.5).abs() < 0.01, "change {change}: {rose} m");
+    }
+}
+
+#[test]
+fn equal_networks_in_two_worlds_take_in_the_same_change() {
+    let mut lab = Lab::weightless();
+    let link = second_world(&mut lab, Vec3::ZERO);
+    let mut springs = Vec::new();
+    for second in [false, true] {
+        let bodies = [0.0, 1.2, 2.4].map(|x| lab.body(1.0, Vec3::X * x));
+        if second {
+            for body in bodies {
+                lab.app.world_mut().entity_mut(body).insert(link);
+            }
+        }
+        for pair in bodies.windows(2) {
+            let spring = SpringDamper::new(pair[0], pair[1])
+                .with_stiffness(40.0)
+                .with_damping(1.0)
+                .with_rest_length(1.0);
+            springs.push(lab.spawn(spring));
+        }
+    }
+    lab.run(1.0);
+    for spring in &springs {
+        lab.get_mut::<SpringDamper>(*spring).rest_length = Some(0.5);
+    }
+    lab.run(5.0);
+    let lengths: Vec<_> = springs.iter().map(|s| lab.readout(*s).length).collect();
+    assert!(lengths[0] < 0.6, "{lengths:?}");
+    assert!((lengths[0] - lengths[2]).abs() < 1e-5, "{lengths:?}");
+}
