@@ -138,12 +138,20 @@ impl Scene {
             ..
         } = self;
         let mut all_asleep = true;
+        // First, so that what touches them is read as the engine has left it, whatever lone elements there are.
+        for group in groups.list().iter().filter(|g| g.context == context) {
+            if let Some(index) = group.assembly {
+                let members = groups.members(group);
+                assemblies[index].gather(step, &members, elements, bodies, set, stale);
+                all_asleep &= assemblies[index].is_asleep();
+            }
+        }
         for g in 0..groups.list().len() {
             if g % FLOCK == 0 {
                 call_up(groups, g, elements, bodies, set);
             }
             let group = &groups.list()[g];
-            if group.context != context {
+            if group.context != context || group.assembly.is_some() {
                 continue;
             }
             if let (true, Some(handles)) = (step.quiet, &group.dozing)
@@ -154,11 +162,6 @@ impl Scene {
                 continue;
             }
             let members = groups.members(group);
-            if let Some(index) = group.assembly {
-                assemblies[index].gather(step, &members, elements, bodies, set, stale);
-                all_asleep &= assemblies[index].is_asleep();
-                continue;
-            }
             let flock = &mut spare.flock;
             let handled = step.take_off(flock, g, &members, elements, bodies, set, stale);
             let dozing = match handled {
