@@ -210,19 +210,10 @@ impl ElementRow {
             return Some(points);
         }
         self.placed = self.watched == [false; 2] && self.moves() == 2;
-        for (place, (held, point)) in self
-            .memory
-            .places
-            .iter_mut()
-            .zip(self.held.iter().zip(points))
-        {
-            *place = Some(match *held {
+        for (end, point) in points.iter().enumerate() {
+            self.memory.places[end] = Some(match self.held[end] {
                 Held::Path { to, .. } => to,
-                Held::Body {
-                    local,
-                    movable: true,
-                    ..
-                } => local,
+                Held::Body { local, .. } if self.on[end].is_some() => local,
                 Held::Body { .. } => point.0,
             });
         }

@@ -173,7 +173,6 @@ fn follow(
                 handle,
                 context,
                 local,
-                movable,
             },
             Ok(Place::OnBody {
                 handle: now_on,
@@ -184,7 +183,7 @@ fn follow(
         ) if *handle == now_on && *context == now_in => {
             if *local != now_at {
                 // Whether it turns the body may have changed.
-                if *movable && on.is_some_and(|b| !bodies[b].turns) {
+                if on.is_some_and(|b| !bodies[b].turns) {
                     return false;
                 }
                 *local = now_at;

@@ -246,7 +246,6 @@ impl ElementRow {
                     handle,
                     context,
                     local,
-                    movable: self.on[end].is_some(),
                 }
             }
             Place::Point(to) => Held::Path {

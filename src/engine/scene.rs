@@ -28,8 +28,6 @@ pub(super) enum Held {
         handle: RigidBodyHandle,
         context: Entity,
         local: DVec3,
-        /// Elements can move it.
-        movable: bool,
     },
     /// A plain entity's path over the coming step: it goes where the game has just put it.
     Path { from: DVec3, to: DVec3 },

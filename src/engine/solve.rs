@@ -164,17 +164,13 @@ impl Scene {
             let members = groups.members(group);
             let flock = &mut spare.flock;
             let handled = step.take_off(flock, g, &members, elements, bodies, set, stale);
-            let dozing = match handled {
-                Handled::Asleep(handles) => handles,
-                _ => {
-                    all_asleep = false;
-                    None
-                }
-            };
+            let mut dozing = None;
+            all_asleep &= matches!(handled, Handled::Asleep(_));
             match handled {
+                Handled::Asleep(handles) => dozing = handles,
                 Handled::No => spare.odd.push(g),
                 Handled::Never => spare.special.push(g),
-                Handled::Aloft | Handled::Done | Handled::Asleep(_) => {}
+                Handled::Aloft | Handled::Done => {}
             }
             groups.at(g).dozing = dozing;
             if spare.flock.is_full() {

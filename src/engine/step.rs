@@ -76,14 +76,10 @@ impl Step<'_> {
             // Held by what elements move, and where it says.
             return false;
         }
-        row.held.iter().zip(row.memory.places).any(|(held, last)| {
-            let now = match *held {
-                Held::Body {
-                    local,
-                    movable: true,
-                    ..
-                } => local,
-                _ => {
+        (0..2).any(|end| {
+            let now = match row.held[end] {
+                Held::Body { local, .. } if row.on[end].is_some() => local,
+                ref held => {
                     let (from, to) = self.path(held, bodies);
                     if from != to {
                         return true;
@@ -91,7 +87,7 @@ impl Step<'_> {
                     to
                 }
             };
-            last.is_some_and(|last| last != now)
+            row.memory.places[end].is_some_and(|last| last != now)
         })
     }
 
