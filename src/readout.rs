@@ -8,7 +8,8 @@ use bevy::prelude::*;
 /// Forces are the element's own, tension positive. On torsion elements angles stand for lengths (rad, full
 /// turns counted), moments for forces (N m), and a moment of inertia for the mass (kg m²). (The force that stands in a body's
 /// `ExternalForce` is what the engine must be given for the body to arrive where this force takes
-/// it; see [`SpringLoad`](crate::SpringLoad).) Zero on an element that has not acted yet.
+/// it; see [`SpringLoad`](crate::SpringLoad).) Zero on an element that has not acted yet,
+/// or is at fault.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
@@ -55,7 +56,7 @@ pub struct SpringReadout {
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Default, Debug, PartialEq, Clone, Hash)]
 pub enum SpringMethod {
-    /// It took no part: nothing it holds can move, or it is asleep or at fault.
+    /// It took no part: nothing it holds can move, or it is at fault. What is asleep shows its last step.
     #[default]
     None,
     /// Alone on its ends: solved in closed form.

@@ -14,12 +14,17 @@
 use super::body::{Body, Spin};
 use super::element::{Element, End};
 use super::kick;
-use super::law::Drag;
 use super::line::{Line, Motion};
-use super::poles::{RESOLVED_PHASE, UNRESOLVED_DECAY};
+use super::step::AHEAD;
 use super::strut::{NOBODY, Strut, Twists};
 use super::system::{Effort, System};
 use bevy::math::DVec3;
+
+mod bent;
+mod placement;
+
+use placement::steep;
+pub(super) use placement::{damper_placement, placement, settling};
 
 /// (ω h)² of the stiffest mode up to which it is placed exactly.
 const PLACED: f64 = 9.0;
@@ -58,6 +63,8 @@ struct Row {
     turning: f64,
     /// The turning itself, m/s².
     turns: f64,
+    /// Force of the spring in the load, N.
+    elastic: f64,
     /// Damping force before the solve, N, and what it gains per m/s².
     drag: f64,
     damping: f64,
@@ -79,7 +86,7 @@ impl Network {
                     Some(_) => line.motion(element, bodies, step).axial,
                     None => 0.0,
                 };
-                self.add_bounds(element, &line, rate, step);
+                self.add_bounds(element, &line, rate, AHEAD * step * rate);
             }
         }
         self.end_bounds(step)
@@ -98,6 +105,7 @@ impl Network {
                     load: DVec3::ZERO,
                     turning: 0.0,
                     turns: 0.0,
+                    elastic: 0.0,
                     drag: 0.0,
                     damping: 0.0,
                 })
@@ -108,7 +116,8 @@ impl Network {
         self.begin_bounds(bodies);
         let rows = std::mem::take(&mut self.rows);
         for row in &rows {
-            self.add_bounds(&elements[row.element], &row.line, row.before.axial, step);
+            let rate = row.before.axial;
+            self.add_bounds(&elements[row.element], &row.line, rate, step * rate);
         }
         self.rows = rows;
         self.end_bounds(step)
@@ -121,8 +130,8 @@ impl Network {
         }
     }
 
-    fn add_bounds(&mut self, element: &Element, line: &Line, rate: f64, step: f64) {
-        let stiffness = element.stiffness_ahead(line.length, step * rate);
+    fn add_bounds(&mut self, element: &Element, line: &Line, rate: f64, way: f64) {
+        let stiffness = element.stiffness_ahead(line.length, way);
         let damping = element.drag(line.length, rate).slope;
         let w = line
             .holds
@@ -145,13 +154,15 @@ impl Network {
         )
     }
 
-    /// The kick at the half drift: all elements and outside forces together.
+    /// The kick at the half drift: all elements and outside forces together. `bends` if it has to keep the energy of
+    /// laws that bend within the step.
     pub(crate) fn kick(
         &mut self,
         elements: &mut [Element],
         bodies: &mut [Body],
         step: f64,
         budget: u32,
+        bends: bool,
     ) {
         self.measure(elements, bodies, step);
         let (z_max, _) = self.bounds_of_rows(elements, bodies.len(), step);
@@ -174,6 +185,9 @@ impl Network {
         }
         self.trial = trial;
         self.solve(bodies, budget);
+        if bends {
+            self.keep_energy(elements, bodies, step, budget);
+        }
         self.act(bodies, step);
         self.account(elements, step);
         self.system.end();
@@ -281,6 +295,7 @@ impl Network {
             let settle_across = settling(2.0 * h2 * across * freest) * step;
             // The half drift counted h²/8 of the turning as stretch already.
             row.turning = (theta - 0.125) * h2 * k + damping;
+            row.elastic = elastic.force;
             row.drag = tension - elastic.force;
             row.damping = damping;
             row.load = tension * line.direction + settle_across * across * before.lateral;
@@ -344,24 +359,6 @@ impl Row {
     }
 }
 
-/// Damping time, in steps, of stiffness-proportional damping that takes the [`UNRESOLVED_DECAY`] of a lone
-/// element from a mode with z = (ω h)²; less from slower ones.
-pub(super) fn settling(z: f64) -> f64 {
-    if z <= RESOLVED_PHASE * RESOLVED_PHASE {
-        return 0.0;
-    }
-    2.0 * UNRESOLVED_DECAY * (1.0 - RESOLVED_PHASE * RESOLVED_PHASE / z) / z
-}
-
-/// The slope of a damping force, or where that is steeper the one from zero: a force that flattens out at
-/// speed must not be taken for weak.
-fn steep(drag: Drag, rate: f64) -> f64 {
-    if rate == 0.0 {
-        return drag.slope;
-    }
-    drag.slope.max(drag.force / rate)
-}
-
 /// Stiffness across the line: a spring in tension pulls a displaced end back.
 fn across(element: &Element, line: &Line, tension: f64) -> f64 {
     if line.isotropic {
@@ -370,27 +367,5 @@ fn across(element: &Element, line: &Line, tension: f64) -> f64 {
         tension / line.length
     } else {
         0.0
-    }
-}
-
-/// Share of the step at whose end a damper with x = c h/m acts: half, which is of second order, while it
-/// is resolved; beyond that the share with which a lone damper decays exactly, so that strong ones stop
-/// their ends instead of throwing them back and forth.
-pub(super) fn damper_placement(x: f64) -> f64 {
-    if x <= 1.0 {
-        0.5
-    } else {
-        -1.0 / (-x).exp_m1() - 1.0 / x
-    }
-}
-
-/// θ for a stiffest mode with z = (ω h)².
-pub(super) fn placement(z: f64) -> f64 {
-    if z <= 1e-3 {
-        1.0 / 12.0
-    } else if z < PLACED {
-        ((z / (2.0 * (1.0 - z.sqrt().cos())) - 1.0) / z).max(1.0 / 12.0)
-    } else {
-        0.25
     }
 }

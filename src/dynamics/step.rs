@@ -15,8 +15,12 @@ use super::tolerance::{
 };
 use bevy::math::DVec3;
 
+mod bends;
 mod carry;
 mod keep;
+
+pub(super) use bends::AHEAD;
+use bends::Bends;
 
 /// Phase per coarse step up to which the fourth-order combination converges.
 pub(super) const EXTRAPOLATION_LIMIT: f64 = 1.5;
@@ -52,6 +56,7 @@ pub(super) struct Memory {
     /// What they had at the start of the step.
     had: Energy,
     controller: Controller,
+    bends: Bends,
     bound: Bound,
     saved: [Saved; 3],
     max_iterations: u32,
@@ -209,9 +214,17 @@ impl Component {
             let Memory {
                 network,
                 max_iterations,
+                bends,
                 ..
             } = &mut self.memory;
-            network.kick(&mut self.elements, &mut self.bodies, step, *max_iterations);
+            let bends = bends.keep_energy();
+            network.kick(
+                &mut self.elements,
+                &mut self.bodies,
+                step,
+                *max_iterations,
+                bends,
+            );
             self.drift(step / 2.0);
             self.aim(step);
         }
@@ -288,16 +301,17 @@ impl Motion for Component {
         self.elements.clone_from(&saved.elements);
     }
 
-    /// As many as resolve a network's stiffest mode; one where that is out of reach.
+    /// As many as resolve a network's stiffest mode, and the blow where a law bends; one where that is out of
+    /// reach.
     fn least(&mut self, time: f64) -> u32 {
         if self.is_alone() {
             return 1;
         }
         let network = &mut self.memory.network;
         let (z, _) = network.bounds(&self.elements, &self.bodies, time);
-        let finer = finer(z);
-        self.memory.bound.see(z / f64::from(finer * finer));
-        finer
+        let steps = finer(z).max(self.steps_at_bends(z, time));
+        self.memory.bound.see(z / f64::from(steps * steps));
+        steps
     }
 
     fn run(&mut self, time: f64, count: u32) {
@@ -352,6 +366,7 @@ impl Motion for Component {
         }
         let network = &mut self.memory.network;
         let (z, g) = network.bounds(&self.elements, &self.bodies, step);
-        z < EXTRAPOLATION_LIMIT * EXTRAPOLATION_LIMIT && g < EXTRAPOLATION_LIMIT
+        let resolved = z < EXTRAPOLATION_LIMIT * EXTRAPOLATION_LIMIT && g < EXTRAPOLATION_LIMIT;
+        resolved && !self.memory.bends.are_near()
     }
 }

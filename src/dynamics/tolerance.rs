@@ -91,8 +91,8 @@ pub(crate) const VELOCITY_COUNTS: f64 = 0.15;
 /// square of time times so much (J, J/s²): what swings back within a period counts no longer than that. By
 /// Rayleigh's quotient of the two.
 pub(crate) fn velocity_counts(motion: f64, stiffened: f64) -> f64 {
-    let omega = (stiffened / motion).sqrt();
-    // NaN where nothing is wrong.
+    // NaN where nothing is wrong; the sum of nothing is −0.
+    let omega = (stiffened / motion).abs().sqrt();
     VELOCITY_COUNTS.min(omega.recip())
 }
 

@@ -83,7 +83,7 @@ pub(super) struct Parameters {
     pub rest_length: Option<f32>,
 }
 
-/// Fields as messages name them.
+/// Fields as messages name them; what a component has not is the empty string.
 #[derive(Debug)]
 pub(super) struct Names {
     pub ends: [&'static str; 2],

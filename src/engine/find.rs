@@ -153,7 +153,7 @@ impl Finder<'_, '_> {
         if body.mass_properties().local_mprops.inv_mass == 0.0 {
             return Err(Fault::new(
                 field,
-                "is a dynamic body without mass; give it a collider or AdditionalMassProperties",
+                "is a dynamic body without mass; give it AdditionalMassProperties, or a collider with or after its RigidBody",
             ));
         }
         let arm = local - body.local_center_of_mass().as_dvec3();

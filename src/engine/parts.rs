@@ -42,38 +42,63 @@ pub(crate) type ChangedParts = Or<(
 )>;
 
 /// Names of a component's fields; what it has not is the empty string.
-macro_rules! names {
-    ($component:literal, $stiffness:literal, $damping:literal, $rest:literal, $axis:literal) => {
-        Names {
-            ends: [
-                concat!($component, "::body_a"),
-                concat!($component, "::body_b"),
-            ],
-            stiffness: concat!($component, $stiffness),
-            damping: concat!($component, $damping),
-            rest_length: concat!($component, $rest),
-            axis: concat!($component, $axis),
-        }
-    };
+const fn names(
+    ends: [&'static str; 2],
+    stiffness: &'static str,
+    damping: &'static str,
+    rest_length: &'static str,
+    axis: &'static str,
+) -> Names {
+    Names {
+        ends,
+        stiffness,
+        damping,
+        rest_length,
+        axis,
+    }
 }
 
-const SPRING: Names = names!("Spring", "::stiffness", "", "::rest_length", "");
-const DAMPER: Names = names!("Damper", "", "::damping", "", "");
-const PAIR: Names = names!(
-    "SpringDamper",
-    "::stiffness",
-    "::damping",
-    "::rest_length",
-    ""
+const SPRING: Names = names(
+    ["Spring::body_a", "Spring::body_b"],
+    "Spring::stiffness",
+    "",
+    "Spring::rest_length",
+    "",
 );
-const TORSION_SPRING: Names = names!("TorsionSpring", "::stiffness", "", "::rest_angle", "::axis");
-const TORSION_DAMPER: Names = names!("TorsionDamper", "", "::damping", "", "::axis");
-const TORSION_PAIR: Names = names!(
-    "TorsionSpringDamper",
-    "::stiffness",
-    "::damping",
-    "::rest_angle",
-    "::axis"
+const DAMPER: Names = names(
+    ["Damper::body_a", "Damper::body_b"],
+    "",
+    "Damper::damping",
+    "",
+    "",
+);
+const PAIR: Names = names(
+    ["SpringDamper::body_a", "SpringDamper::body_b"],
+    "SpringDamper::stiffness",
+    "SpringDamper::damping",
+    "SpringDamper::rest_length",
+    "",
+);
+const TORSION_SPRING: Names = names(
+    ["TorsionSpring::body_a", "TorsionSpring::body_b"],
+    "TorsionSpring::stiffness",
+    "",
+    "TorsionSpring::rest_angle",
+    "TorsionSpring::axis",
+);
+const TORSION_DAMPER: Names = names(
+    ["TorsionDamper::body_a", "TorsionDamper::body_b"],
+    "",
+    "TorsionDamper::damping",
+    "",
+    "TorsionDamper::axis",
+);
+const TORSION_PAIR: Names = names(
+    ["TorsionSpringDamper::body_a", "TorsionSpringDamper::body_b"],
+    "TorsionSpringDamper::stiffness",
+    "TorsionSpringDamper::damping",
+    "TorsionSpringDamper::rest_angle",
+    "TorsionSpringDamper::axis",
 );
 
 /// Any rest length but zero will do for a damper: zero means an isotropic spring.

@@ -9,6 +9,7 @@ use super::parts::{ChangedParts, IsElement, Parts};
 use super::scene::{BodyRow, ElementRow, Held, Scene};
 use super::watch::Watch;
 use crate::element::SpringFault;
+use crate::readout::SpringReadout;
 use bevy::ecs::entity::EntityHashSet;
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
@@ -239,7 +240,16 @@ pub(super) fn report(row: &mut ElementRow, commands: &mut Commands) {
                 reason: fault.reason.into(),
             };
             log::warn!("{fault}");
-            commands.entity(row.entity).try_insert(fault);
+            let mut element = commands.entity(row.entity);
+            element.try_insert(fault);
+            if row.trouble.lasting().is_some() {
+                // What it shows would be taken for a force that still acts.
+                element.queue_silenced(|mut element: EntityWorldMut| {
+                    if let Some(mut readout) = element.get_mut::<SpringReadout>() {
+                        *readout = SpringReadout::default();
+                    }
+                });
+            }
         }
         None => {
             commands.entity(row.entity).try_remove::<SpringFault>();

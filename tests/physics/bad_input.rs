@@ -61,6 +61,8 @@ impl Bench {
         assert_eq!(fault.field, field);
         assert!(fault.reason.contains(reason), "{fault}");
         assert_eq!(fault.entity, self.element);
+        // No force is shown that does not act.
+        assert_eq!(self.lab.readout(self.element), SpringReadout::default());
         let told = log.take();
         let naming = format!("{}: {field}", self.element);
         assert_eq!(

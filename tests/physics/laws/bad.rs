@@ -67,6 +67,52 @@ fn tables_that_are_none() {
     );
 }
 
+/// A companion on an element that has nothing for it to act on.
+fn out_of_place<B: Bundle>(element: impl FnOnce(Entity, Entity) -> B, field: &str, reason: &str) {
+    let mut lab = Lab::new();
+    let hook = lab.point(Vec3::Y);
+    let weight = lab.body(1.0, Vec3::ZERO);
+    let element = lab.spawn(element(hook, weight));
+    lab.run(0.5);
+    let fault = lab.get::<SpringFault>(element).clone();
+    assert_eq!(fault.field, field, "{fault}");
+    assert!(fault.reason.contains(reason), "{fault}");
+    let fallen = 0.5 * GRAVITY * 0.25 + f64::from(lab.position(weight).y);
+    assert!(fallen.abs() < 0.05, "it is inert");
+}
+
+#[test]
+fn companions_of_an_element_that_has_nothing_for_them() {
+    const NO_SPRING: &str = "stands on a damper without a spring";
+    let damper = |a, b| Damper::new(a, b).with_damping(5.0);
+    let table = || SpringLaw::table([(-1.0, -50.0), (1.0, 50.0)]);
+    out_of_place(|a, b| (damper(a, b), table()), "SpringLaw", NO_SPRING);
+    let tuning = SpringTuning::frequency(1.0, 0.5);
+    out_of_place(|a, b| (damper(a, b), tuning), "SpringTuning", NO_SPRING);
+    let twist = |a, b| TorsionDamper::new(a, b, Vec3::X).with_damping(5.0);
+    let own = || CustomSpringLaw::new(|x| 10.0 * x);
+    out_of_place(|a, b| (twist(a, b), own()), "SpringLaw", NO_SPRING);
+    out_of_place(
+        |a, b| {
+            let spring = Spring::new(a, b).with_stiffness(50.0);
+            (spring, DampingLaw::sided(5.0, 5.0))
+        },
+        "DampingLaw",
+        "stands on a spring without a damper",
+    );
+}
+
+#[test]
+fn a_tuned_spring_without_a_damper_turns_nothing_into_heat() {
+    let mut lab = Lab::new();
+    let hook = lab.point(Vec3::Y * 2.0);
+    let weight = lab.body(1.0, Vec3::ZERO);
+    let spring = Spring::new(hook, weight).with_rest_length(1.0);
+    let element = lab.spawn((spring, SpringTuning::frequency(1.0, 0.5)));
+    lab.run(1.0);
+    assert_eq!(lab.readout(element).dissipated_energy, 0.0);
+}
+
 #[test]
 fn numbers_out_of_range() {
     check(

@@ -2,6 +2,7 @@
 
 mod axis;
 mod bad;
+mod blows;
 mod breaking;
 mod ledger;
 mod one_way;

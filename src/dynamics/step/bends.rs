@@ -1,0 +1,79 @@
+//! Where a law of a network bends: a rope goes taut, a stop is hit.
+//!
+//! The linearised kick takes the steeper side for the whole of its step, and so eats most of a blow that lasts a
+//! step or two. Around a bend a network therefore takes micro-steps that resolve the steeper side, and for a while its
+//! kicks keep the energy of laws that bend (`Network::keep_energy`).
+
+use super::Component;
+use crate::dynamics::element::Element;
+use std::f64::consts::PI;
+
+/// ω h of micro-steps around a bend, and the most of them in a step for that.
+const FINE: f64 = 0.5;
+const MOST: f64 = 16.0;
+
+/// Elements up to which a network takes micro-steps for bends: where there are more, one blow is a small share of all,
+/// and one or the other bends in every step.
+const FEW: usize = 64;
+
+/// How far ahead it looks, as a multiple of the way that the present rate leads to in a step.
+pub(crate) const AHEAD: f64 = 1.25;
+
+/// For how long after a blow kicks keep the energy of bent laws, s: energy of kicked motion sways a little, and to
+/// go to and fro between the two would heap that up.
+const KEPT: f64 = 2.0;
+
+/// What is still to be done about bends.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Bends {
+    /// For how long steps have to be fine, s.
+    fine: f64,
+    /// For how long kicks have to keep energy, s.
+    kept: f64,
+}
+
+impl Bends {
+    pub(super) fn are_near(self) -> bool {
+        self.fine > 0.0
+    }
+
+    pub(super) fn keep_energy(self) -> bool {
+        self.kept > 0.0
+    }
+}
+
+impl Component {
+    /// Micro-steps that bends ask for in a step, where (ω h)² of the stiffest mode ahead is `z`.
+    pub(super) fn steps_at_bends(&mut self, z: f64, time: f64) -> u32 {
+        let phase = z.sqrt();
+        let bends = self.elements.iter().any(|e| self.meets_bend(e, time));
+        let Bends { fine, kept } = &mut self.memory.bends;
+        if bends {
+            // A blow lasts half a period of the steeper side, on which nothing bends.
+            *fine = (time * (1.5 + PI / phase)).min(KEPT);
+            *kept = KEPT;
+        } else {
+            *fine = (*fine - time).max(0.0);
+            *kept = (*kept - time).max(0.0);
+        }
+        if *fine > 0.0 && self.elements.len() <= FEW {
+            (phase / FINE).ceil().clamp(1.0, MOST) as u32
+        } else {
+            1
+        }
+    }
+
+    fn meets_bend(&self, element: &Element, time: f64) -> bool {
+        let Some(law) = element.law.as_ref().filter(|law| law.is_bent()) else {
+            return false;
+        };
+        let Some(line) = element.line(&self.bodies) else {
+            return false;
+        };
+        let rate = line.motion(element, &self.bodies, 0.0).axial;
+        // Also behind: it may have begun there, or been put there.
+        let part = |way| law.part(line.length + way, element.rest_length);
+        let way = AHEAD * time * rate;
+        part(way) != part(0.0) || part(-way) != part(0.0)
+    }
+}

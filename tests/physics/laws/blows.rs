@@ -1,0 +1,186 @@
+//! Stops and ropes of elements that share a body: what a blow takes in comes out again.
+
+use crate::harness::*;
+use bevy::prelude::*;
+use bevy_coilover::prelude::*;
+use bevy_rapier3d::prelude::*;
+
+/// A ball between its hook and as many equal springs as share the stiffness.
+struct Ball {
+    lab: Lab,
+    ball: Entity,
+    springs: Vec<Entity>,
+}
+
+impl Ball {
+    /// 2 kg at rest length, at 2 m/s: 4 J.
+    fn on(count: usize, stiffness: f32, plugin: CoiloverPlugin, law: impl Bundle + Clone) -> Self {
+        let mut lab = Lab::with(
+            plugin,
+            Engine {
+                gravity: Vec3::ZERO,
+                ..default()
+            },
+        );
+        let hook = lab.point(Vec3::ZERO);
+        let ball = lab.moving(body(2.0, Vec3::X), Velocity::linear(Vec3::X * 2.0));
+        let spring = Spring::new(hook, ball)
+            .with_stiffness(stiffness / count as f32)
+            .with_rest_length(1.0);
+        let springs = (0..count)
+            .map(|_| lab.spawn((spring, law.clone())))
+            .collect();
+        Self { lab, ball, springs }
+    }
+
+    fn energy(&self) -> f64 {
+        let stored = |e: &Entity| f64::from(self.lab.readout(*e).stored_energy);
+        f64::from(self.lab.velocity(self.ball).length_squared())
+            + self.springs.iter().map(stored).sum::<f64>()
+    }
+}
+
+fn settings() -> [(&'static str, CoiloverPlugin); 5] {
+    let plugin = CoiloverPlugin::default;
+    [
+        ("1 micro-step", plugin()),
+        ("4 micro-steps", plugin().with_microsteps(4)),
+        ("extrapolated", plugin().with_extrapolation()),
+        ("tolerance 1e-2", plugin().with_tolerance(1e-2)),
+        ("tolerance 1e-4", plugin().with_tolerance(1e-4)),
+    ]
+}
+
+#[test]
+fn a_ball_between_two_springs_with_stops_keeps_its_energy_and_goes_as_on_one() {
+    // ω·dt of the stops 0.5, 1.7, 5.3 and 17.
+    for stops in [2e3, 2e4, 2e5, 2e6] {
+        for (name, plugin) in settings() {
+            let travel = |count: f32| SpringTravel::new(0.0, 1.1, stops / count);
+            let mut two = Ball::on(2, 200.0, plugin, travel(2.0));
+            let fine = CoiloverPlugin::default().with_microsteps(64);
+            let mut one = Ball::on(1, 200.0, fine, travel(1.0));
+            let (mut apart, mut range) = (0.0_f32, [f64::MAX, f64::MIN]);
+            for tick in 0..two.lab.ticks(10.0) {
+                two.lab.tick();
+                one.lab.tick();
+                if tick < 60 {
+                    let at = two.lab.position(two.ball);
+                    apart = apart.max(at.distance(one.lab.position(one.ball)));
+                }
+                let energy = two.energy();
+                range = [range[0].min(energy), range[1].max(energy)];
+            }
+            println!(
+                "two springs with stops of {stops:.0e} N/m, {name}: energy {:.3} to {:.3} of 4 J in 10 s, {:.2} mm \
+                 off in the first",
+                range[0],
+                range[1],
+                1e3 * apart
+            );
+            assert!(range[0] > 3.98 && range[1] < 4.02, "{range:?}");
+            assert!(apart < 8e-3, "{apart} m");
+        }
+    }
+}
+
+#[test]
+fn two_ropes_side_by_side_lose_no_more_than_one() {
+    for (name, plugin) in settings() {
+        let mut two = Ball::on(2, 2e4, plugin, SpringAction::Pull);
+        let mut taut = false;
+        for _ in 0..two.lab.ticks(2.0) {
+            two.lab.tick();
+            taut |= two.lab.readout(two.springs[0]).spring_force > 0.0;
+        }
+        println!(
+            "two ropes, {name}: after the jerk {:.4} of 4 J",
+            two.energy()
+        );
+        assert!(taut);
+        assert!((two.energy() - 4.0).abs() < 0.02, "{}", two.energy());
+    }
+}
+
+/// 1200 kg at 3 m/s on four springs of 30 kN/m at its corners, which turn it as well.
+#[test]
+fn a_car_body_bounces_between_its_stops_for_a_minute() {
+    for stops in [10.0, 100.0] {
+        let mut lab = Lab::weightless();
+        let car = brick(1200.0, Vec3::new(300.0, 1500.0, 1400.0), Vec3::ZERO);
+        let car = lab.moving(car, Velocity::linear(Vec3::Y * 3.0));
+        let springs = [(-1.3, -0.7), (-1.3, 0.7), (1.3, -0.7), (1.3, 0.7)].map(|(x, z)| {
+            let hook = lab.point(Vec3::new(x, -0.5, z));
+            lab.spawn((
+                Spring::new(hook, car)
+                    .with_stiffness(30e3)
+                    .with_rest_length(0.5),
+                Anchors {
+                    a: Vec3::ZERO,
+                    b: Vec3::new(x, 0.0, z),
+                },
+                SpringTravel::new(0.3, 0.65, stops * 30e3),
+            ))
+        });
+        let mut range = [f64::MAX, f64::MIN];
+        for _ in 0..lab.ticks(60.0) {
+            lab.tick();
+            let stored = springs.map(|e| f64::from(lab.readout(e).stored_energy));
+            let speed = f64::from(lab.velocity(car).length_squared());
+            let energy = 600.0 * speed + stored.iter().sum::<f64>();
+            range = [range[0].min(energy), range[1].max(energy)];
+        }
+        println!(
+            "car body, stops of {stops} times the stiffness: energy {:.0} to {:.0} of 5400 J in 60 s",
+            range[0], range[1]
+        );
+        assert!(range[0] > 5300.0 && range[1] < 5500.0, "{range:?}");
+    }
+}
+
+#[test]
+fn a_tolerance_counts_where_every_element_has_a_law() {
+    // Two cubic springs of 4 kN/m³ from both sides of a ball: 2 ẍ = −2·4000·x³, here by the classic Runge–Kutta.
+    let flow = |[x, v]: [f64; 2]| [v, -4000.0 * x * x * x];
+    let mut errors = [0.0_f64; 3];
+    for (error, tolerance) in errors.iter_mut().zip([1e-2, 1e-3, 1e-4]) {
+        let mut lab = Lab::with(
+            CoiloverPlugin::default().with_tolerance(tolerance),
+            Engine {
+                gravity: Vec3::ZERO,
+                ..default()
+            },
+        );
+        let hooks = [0.0, 3.0].map(|x| lab.point(Vec3::X * x));
+        let ball = lab.moving(body(2.0, Vec3::X * 1.5), Velocity::linear(Vec3::X * 2.0));
+        for hook in hooks {
+            let spring = SpringDamper::new(hook, ball)
+                .with_stiffness(4e3)
+                .with_damping(0.0)
+                .with_rest_length(1.5);
+            lab.spawn((spring, SpringLaw::Cubic));
+        }
+        let mut state = [0.0, 2.0];
+        let h = lab.dt() / 100.0;
+        for _ in 0..lab.ticks(1.0) {
+            lab.tick();
+            for _ in 0..100 {
+                let go = |by: f64, d: [f64; 2]| [state[0] + by * d[0], state[1] + by * d[1]];
+                let a = flow(state);
+                let b = flow(go(0.5 * h, a));
+                let c = flow(go(0.5 * h, b));
+                let d = flow(go(h, c));
+                state =
+                    [0, 1].map(|n| state[n] + h / 6.0 * (a[n] + 2.0 * b[n] + 2.0 * c[n] + d[n]));
+            }
+            let off = f64::from(lab.position(ball).x) - 1.5 - state[0];
+            *error = error.max(off.abs());
+        }
+        println!("two cubic springs, tolerance {tolerance:.0e}: off by {error:.1e} m in a second");
+        assert!(*error <= 3.0 * f64::from(tolerance), "{error}");
+    }
+    assert!(
+        errors[2] < 0.5 * errors[0],
+        "it changes something: {errors:?}"
+    );
+}
