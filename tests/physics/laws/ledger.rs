@@ -179,3 +179,43 @@ fn what_an_actuator_does_is_its_work() {
     assert!((seen.work - 0.4).abs() < 1e-4, "{seen:?}");
     assert!((seen.stored_energy + motion - 0.4).abs() < 1e-3);
 }
+
+/// 1200 kg at 3 m/s on four dampers and springs at its corners: what is missing in the end is heat.
+#[test]
+fn the_heat_of_a_network_is_as_exact_as_its_motion() {
+    for (microsteps, bar) in [(1, 1e-2), (4, 1e-3), (16, 1e-4)] {
+        let plugin = CoiloverPlugin::default().with_microsteps(microsteps);
+        let engine = Engine {
+            gravity: Vec3::ZERO,
+            ..default()
+        };
+        let mut lab = Lab::with(plugin, engine);
+        let car = brick(1200.0, Vec3::new(300.0, 1500.0, 1400.0), Vec3::ZERO);
+        let car = lab.moving(car, Velocity::linear(Vec3::Y * 3.0));
+        let corners = [(-1.3, -0.7), (-1.3, 0.7), (1.3, -0.7), (1.3, 0.7)].map(|(x, z)| {
+            let hook = lab.point(Vec3::new(x, -0.5, z));
+            let pair = SpringDamper::new(hook, car)
+                .with_stiffness(30e3)
+                .with_damping(1500.0)
+                .with_rest_length(0.5);
+            let b = Vec3::new(x, 0.0, z);
+            lab.spawn((pair, Anchors { a: Vec3::ZERO, b }))
+        });
+        lab.run(3.0);
+        let sum = |of: fn(&SpringReadout) -> f32| -> f64 {
+            corners
+                .iter()
+                .map(|e| f64::from(of(&lab.readout(*e))))
+                .sum()
+        };
+        let speed = f64::from(lab.velocity(car).length_squared());
+        let lost = 5400.0 - 600.0 * speed - sum(|r| r.stored_energy);
+        let heat = sum(|r| r.dissipated_energy);
+        let off = heat / lost - 1.0;
+        println!(
+            "car body on four dampers, {microsteps} micro-steps: {heat:.1} J of heat for {lost:.1} J lost ({:+.3} %)",
+            100.0 * off
+        );
+        assert!(off.abs() < bar, "{off}");
+    }
+}
