@@ -15,7 +15,7 @@ use super::body::{Body, Spin};
 use super::element::{Element, End};
 use super::kick;
 use super::line::{Line, Motion};
-use super::step::AHEAD;
+use super::step::ways;
 use super::strut::{NOBODY, Strut, Twists};
 use super::system::{Effort, System};
 use bevy::math::DVec3;
@@ -82,11 +82,14 @@ impl Network {
         for element in elements {
             if let Some(line) = element.line(bodies) {
                 // Of a linear one they do not depend on how fast it is.
-                let rate = match element.law {
-                    Some(_) => line.motion(element, bodies, step).axial,
-                    None => 0.0,
+                let (rate, ways) = match element.law {
+                    Some(_) => {
+                        let motion = line.motion(element, bodies, step);
+                        (motion.axial, ways(&motion, step))
+                    }
+                    None => (0.0, [0.0; 2]),
                 };
-                self.add_bounds(element, &line, rate, AHEAD * step * rate);
+                self.add_bounds(element, &line, rate, &ways);
             }
         }
         self.end_bounds(step)
@@ -117,7 +120,7 @@ impl Network {
         let rows = std::mem::take(&mut self.rows);
         for row in &rows {
             let rate = row.before.axial;
-            self.add_bounds(&elements[row.element], &row.line, rate, step * rate);
+            self.add_bounds(&elements[row.element], &row.line, rate, &[step * rate]);
         }
         self.rows = rows;
         self.end_bounds(step)
@@ -130,8 +133,9 @@ impl Network {
         }
     }
 
-    fn add_bounds(&mut self, element: &Element, line: &Line, rate: f64, way: f64) {
-        let stiffness = element.stiffness_ahead(line.length, way);
+    fn add_bounds(&mut self, element: &Element, line: &Line, rate: f64, ways: &[f64]) {
+        let ahead = |way: &f64| element.stiffness_ahead(line.length, *way);
+        let stiffness = ways.iter().map(ahead).fold(0.0, f64::max);
         let damping = element.drag(line.length, rate).slope;
         let w = line
             .holds

@@ -19,8 +19,8 @@ mod bends;
 mod carry;
 mod keep;
 
-pub(super) use bends::AHEAD;
 use bends::Bends;
+pub(super) use bends::ways;
 
 /// Phase per coarse step up to which the fourth-order combination converges.
 pub(super) const EXTRAPOLATION_LIMIT: f64 = 1.5;

@@ -134,8 +134,8 @@ impl Controller {
         let Some(tolerance) = accuracy.tolerance else {
             return fixed(motion, time, accuracy);
         };
-        let least = motion.least(time);
-        let most = accuracy.max_microsteps.max(least);
+        let most = accuracy.max_microsteps.max(1);
+        let least = motion.least(time).min(most);
         match self.known.filter(|_| self.age > 0) {
             Some(known) => {
                 self.age -= 1;

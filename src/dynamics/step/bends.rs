@@ -6,22 +6,27 @@
 
 use super::Component;
 use crate::dynamics::element::Element;
+use crate::dynamics::line::Motion;
 use std::f64::consts::PI;
 
-/// ω h of micro-steps around a bend, and the most of them in a step for that.
+/// ω h of micro-steps around a bend, the most of them in a step for that, and ω h above which they are none the better.
 const FINE: f64 = 0.5;
-const MOST: f64 = 16.0;
+const MOST: f64 = 20.0;
+const COARSE: f64 = 1.0;
 
 /// Elements up to which a network takes micro-steps for bends: where there are more, one blow is a small share of all,
 /// and one or the other bends in every step.
 const FEW: usize = 64;
 
-/// How far ahead it looks, as a multiple of the way that the present rate leads to in a step.
-pub(crate) const AHEAD: f64 = 1.25;
+/// How far ahead it looks, as a multiple of the way in a step.
+const AHEAD: f64 = 1.25;
+
+/// Share of the stiffness that has to change at a bend, for anything to be lost there.
+const SHARP: f64 = 0.1;
 
 /// For how long after a blow kicks keep the energy of bent laws, s: energy of kicked motion sways a little, and to
 /// go to and fro between the two would heap that up.
-const KEPT: f64 = 2.0;
+const KEPT: f64 = 0.5;
 
 /// What is still to be done about bends.
 #[derive(Clone, Copy, Debug, Default)]
@@ -46,7 +51,8 @@ impl Component {
     /// Micro-steps that bends ask for in a step, where (ω h)² of the stiffest mode ahead is `z`.
     pub(super) fn steps_at_bends(&mut self, z: f64, time: f64) -> u32 {
         let phase = z.sqrt();
-        let bends = self.elements.iter().any(|e| self.meets_bend(e, time));
+        let bends =
+            phase <= MOST * COARSE && self.elements.iter().any(|e| self.meets_bend(e, time));
         let Bends { fine, kept } = &mut self.memory.bends;
         if bends {
             // A blow lasts half a period of the steeper side, on which nothing bends.
@@ -70,10 +76,23 @@ impl Component {
         let Some(line) = element.line(&self.bodies) else {
             return false;
         };
-        let rate = line.motion(element, &self.bodies, 0.0).axial;
+        let rest = element.rest_length;
+        let here = (
+            law.part(line.length, rest),
+            element.elastic(line.length).stiffness,
+        );
+        let ways = ways(&line.motion(element, &self.bodies, 0.0), time);
         // Also behind: it may have begun there, or been put there.
-        let part = |way| law.part(line.length + way, element.rest_length);
-        let way = AHEAD * time * rate;
-        part(way) != part(0.0) || part(-way) != part(0.0)
+        ways.into_iter().chain([-ways[0]]).any(|way| {
+            let there = element.elastic(line.length + way).stiffness;
+            law.part(line.length + way, rest) != here.0
+                && (there - here.1).abs() > SHARP * there.max(here.1)
+        })
     }
+}
+
+/// Ways along the line that the present motion can lead to in a step, as fast as it is in its middle and in its end
+/// under what acts from outside.
+pub(crate) fn ways(motion: &Motion, time: f64) -> [f64; 2] {
+    [0.5, 1.0].map(|share| AHEAD * time * (motion.axial + share * time * motion.pushed))
 }

@@ -184,3 +184,45 @@ fn a_tolerance_counts_where_every_element_has_a_law() {
         "it changes something: {errors:?}"
     );
 }
+
+/// 2 kg fall 5 cm until two ropes are taut, and hang on them in the end.
+#[test]
+fn a_weight_on_two_ropes_comes_to_rest_and_turns_no_more_to_heat_than_there_was() {
+    for (phase, zeta) in [
+        (0.3, 0.1),
+        (1.0, 0.1),
+        (3.0, 0.1),
+        (5.0, 0.05),
+        (10.0, 0.05),
+        (15.0, 0.05),
+        (20.0, 0.05),
+        (50.0, 0.1),
+    ] {
+        let mut lab = Lab::new();
+        let hook = lab.point(Vec3::ZERO);
+        let weight = lab.body(2.0, Vec3::NEG_Y * 0.95);
+        let stiffness = 2.0 * (phase / DT) * (phase / DT);
+        let damping = 2.0 * zeta * (stiffness * 2.0).sqrt();
+        let ropes = [0, 1].map(|_| {
+            let rope = SpringDamper::new(hook, weight)
+                .with_stiffness(0.5 * stiffness)
+                .with_damping(0.5 * damping)
+                .with_rest_length(1.0);
+            lab.spawn((rope, SpringAction::Pull))
+        });
+        lab.run(20.0);
+        let [a, b] = ropes.map(|rope| lab.readout(rope));
+        let heat = f64::from(a.dissipated_energy + b.dissipated_energy);
+        let sag = 2.0 * GRAVITY / f64::from(stiffness);
+        let there = 2.0 * GRAVITY * (0.05 + sag) - 0.5 * f64::from(stiffness) * sag * sag;
+        let off = f64::from(a.length) - 1.0 - sag;
+        println!(
+            "2 kg on two ropes, ω·dt {phase} ζ {zeta}: {heat:.3} J of heat of {there:.3} J, {:.1e} m off, asleep: {}",
+            off,
+            lab.is_sleeping(weight)
+        );
+        assert!(heat < 1.1 * there, "{heat} J of {there} J");
+        assert!(off.abs() < 1e-4, "{off}");
+        assert!(lab.is_sleeping(weight));
+    }
+}
