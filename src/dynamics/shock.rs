@@ -222,12 +222,7 @@ impl<'a> Shock<'a> {
         let (law, rest) = (self.law, self.rest_length());
         let middle = 0.5 * (from + to);
         let rate = (to - from) / step;
-        let mean = if (to - from).abs() > 1e-7 * middle {
-            let [a, b] = [from, to].map(|length| law.elastic(length, rest).energy);
-            (b - a) / (to - from)
-        } else {
-            law.elastic(middle, rest).force
-        };
+        let mean = law.mean_force([from, to], rest);
         let mut drag = law.drag(middle, rest, rate).force;
         // As in `poles`: what rounding of the engine's f32 stirs up in unresolved motion has to settle.
         let slope = law.elastic(middle, rest).stiffness;

@@ -41,7 +41,7 @@ pub(crate) type ChangedParts = Or<(
     Changed<Anchors>,
 )>;
 
-/// Names of a component's fields; what it has not is the empty string.
+/// A component's [`Names`], in their order.
 const fn names(
     ends: [&'static str; 2],
     stiffness: &'static str,

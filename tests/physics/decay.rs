@@ -25,13 +25,7 @@ fn error(case: &Case) -> (f64, f64) {
     let c = (2.0 * case.zeta * omega * f64::from(mass)) as f32;
     let zeta = f64::from(c) / (2.0 * omega * f64::from(mass));
     let plugin = CoiloverPlugin::default().with_microsteps(case.microsteps);
-    let mut lab = Lab::with(
-        plugin,
-        Engine {
-            gravity: Vec3::ZERO,
-            ..default()
-        },
-    );
+    let mut lab = Lab::with(plugin, Engine::weightless());
     let hook = lab.point(Vec3::ZERO);
     let weight = lab.body(mass, Vec3::X * (1.0 + case.release as f32));
     lab.get_mut::<Velocity>(weight).linear = Vec3::X * case.kick as f32;

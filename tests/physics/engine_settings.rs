@@ -28,8 +28,7 @@ fn engine(iterations: usize, substeps: usize) -> Lab {
     let engine = Engine {
         iterations,
         substeps,
-        gravity: Vec3::ZERO,
-        ..default()
+        ..Engine::weightless()
     };
     Lab::with(CoiloverPlugin::default(), engine)
 }
@@ -197,10 +196,7 @@ fn locked_rotation_turns_a_pendulum_into_a_hinge_about_one_axis() {
 
 #[test]
 fn length_unit_leaves_the_motion_alone() {
-    let mut lab = Lab::without_plugin(Engine {
-        gravity: Vec3::ZERO,
-        ..default()
-    });
+    let mut lab = Lab::without_plugin(Engine::weightless());
     lab.app.add_plugins(CoiloverPlugin::default());
     lab.prime();
     let mut contexts = lab.app.world_mut().query::<&mut RapierContextSimulation>();
@@ -217,10 +213,7 @@ fn length_unit_leaves_the_motion_alone() {
 /// In `TimestepMode::Interpolated` transforms lag behind the bodies; the physics must not notice.
 #[test]
 fn interpolated_transforms_do_not_feed_back() {
-    let mut lab = Lab::without_plugin(Engine {
-        gravity: Vec3::ZERO,
-        ..default()
-    });
+    let mut lab = Lab::without_plugin(Engine::weightless());
     lab.app.add_plugins(CoiloverPlugin::default());
     lab.app.insert_resource(TimestepMode::Interpolated {
         dt: 0.01,

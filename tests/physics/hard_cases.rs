@@ -205,13 +205,7 @@ fn a_needle_held_at_its_tip_keeps_its_energy() {
     // A rod of 1 m and 1 kg: 1 : 1660 between its inertias, which a step cannot follow about its axis.
     for (k, microsteps) in [(5.0, 1), (500.0, 1), (500.0, 4)] {
         let plugin = CoiloverPlugin::default().with_microsteps(microsteps);
-        let mut lab = Lab::with(
-            plugin,
-            Engine {
-                gravity: Vec3::ZERO,
-                ..default()
-            },
-        );
+        let mut lab = Lab::with(plugin, Engine::weightless());
         let inertia = Vec3::new(5e-5, 0.083, 0.083);
         let body = lab.spawn(brick(1.0, inertia, Vec3::ZERO));
         lab.get_mut::<Transform>(body).rotation = Quat::from_euler(EulerRot::XYZ, 0.4, 0.5, 0.6);

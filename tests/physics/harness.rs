@@ -35,19 +35,22 @@ impl Default for Engine {
     }
 }
 
+impl Engine {
+    pub fn weightless() -> Self {
+        Self {
+            gravity: Vec3::ZERO,
+            ..default()
+        }
+    }
+}
+
 impl Lab {
     pub fn new() -> Self {
         Self::with(CoiloverPlugin::default(), Engine::default())
     }
 
     pub fn weightless() -> Self {
-        Self::with(
-            CoiloverPlugin::default(),
-            Engine {
-                gravity: Vec3::ZERO,
-                ..default()
-            },
-        )
+        Self::with(CoiloverPlugin::default(), Engine::weightless())
     }
 
     pub fn with(plugin: CoiloverPlugin, engine: Engine) -> Self {

@@ -208,13 +208,7 @@ fn strong_dampers_bring_a_row_to_one_speed_at_once() {
         CoiloverPlugin::default().with_microsteps(2),
         CoiloverPlugin::default().with_extrapolation(),
     ] {
-        let mut lab = Lab::with(
-            plugin,
-            Engine {
-                gravity: Vec3::ZERO,
-                ..default()
-            },
-        );
+        let mut lab = Lab::with(plugin, Engine::weightless());
         let row = [0.0, 1.0, 2.0].map(|x| lab.body(1.0, Vec3::X * x));
         for (a, b) in [(row[0], row[1]), (row[1], row[2])] {
             lab.spawn(Damper::new(a, b).with_damping(1000.0 / DT));

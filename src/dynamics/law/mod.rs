@@ -242,6 +242,16 @@ impl Law {
         sum
     }
 
+    /// The mean tension between two lengths: the one that does exactly the work of the energy.
+    pub(crate) fn mean_force(&self, [from, to]: [f64; 2], rest_length: f64) -> f64 {
+        if (to - from).abs() > 1e-7 * (from.abs() + to.abs()) {
+            let [a, b] = [from, to].map(|length| self.elastic(length, rest_length).energy);
+            (b - a) / (to - from)
+        } else {
+            self.elastic(0.5 * (from + to), rest_length).force
+        }
+    }
+
     /// Forces of the stops at least and at greatest length, with their signs as tensions.
     fn stops(&self, length: f64) -> [(Elastic, f64); 2] {
         [
@@ -325,7 +335,8 @@ impl Law {
         ]
         .map(|length| {
             if length.is_finite() {
-                length.clamp(low, high)
+                // Unlike `clamp` it stands NaN, which a motion that diverges within a step can come to.
+                length.max(low).min(high)
             } else {
                 low
             }

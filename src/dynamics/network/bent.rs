@@ -67,12 +67,7 @@ impl Row {
         if stiffest * self.line.inverse_mass * step * step > CONVERGES {
             return None;
         }
-        let (first, last) = (element.elastic(from), element.elastic(to));
-        Some(if (to - from).abs() > 1e-7 * (from.abs() + to.abs()) {
-            (last.energy - first.energy) / (to - from)
-        } else {
-            0.5 * (first.force + last.force)
-        })
+        Some(law.mean_force([from, to], element.rest_length))
     }
 }
 

@@ -185,10 +185,7 @@ fn what_an_actuator_does_is_its_work() {
 fn the_heat_of_a_network_is_as_exact_as_its_motion() {
     for (microsteps, bar) in [(1, 1e-2), (4, 1e-3), (16, 1e-4)] {
         let plugin = CoiloverPlugin::default().with_microsteps(microsteps);
-        let engine = Engine {
-            gravity: Vec3::ZERO,
-            ..default()
-        };
+        let engine = Engine::weightless();
         let mut lab = Lab::with(plugin, engine);
         let car = brick(1200.0, Vec3::new(300.0, 1500.0, 1400.0), Vec3::ZERO);
         let car = lab.moving(car, Velocity::linear(Vec3::Y * 3.0));

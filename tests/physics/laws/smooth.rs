@@ -8,10 +8,7 @@ use bevy_coilover::prelude::*;
 fn stretched(law: SpringLaw, stiffness: f32, microsteps: u32) -> (Lab, Entity) {
     let mut lab = Lab::with(
         CoiloverPlugin::default().with_microsteps(microsteps),
-        Engine {
-            gravity: Vec3::ZERO,
-            ..default()
-        },
+        Engine::weightless(),
     );
     // At rest it stands in the origin, where f32 is finest.
     let hook = lab.point(Vec3::NEG_X * 3.0);
