@@ -33,6 +33,8 @@ pub(crate) struct Body {
     pub principal: DQuat,
     /// World axes about which the body cannot turn.
     pub rotation_locked: [bool; 3],
+    /// How far the engine turns it in a step, rad.
+    pub farthest_turn: f64,
     /// Acceleration by everything but elements: gravity and the user's force.
     pub acceleration: DVec3,
     /// The user's torque.
@@ -61,6 +63,15 @@ pub(crate) struct Turned {
 /// exp of a rotation vector.
 pub(crate) fn turn(by: DVec3) -> DQuat {
     DQuat::from_scaled_axis(by)
+}
+
+/// The one of both equal rotations that turns less than half a turn.
+pub(crate) fn shortest(rotation: DQuat) -> DQuat {
+    if rotation.w < 0.0 {
+        -rotation
+    } else {
+        rotation
+    }
 }
 
 impl Body {
@@ -291,6 +302,27 @@ impl Body {
             self.force_for(self.velocity - start.velocity - time * self.acceleration),
             turned - time * self.torque,
         );
+    }
+
+    /// Turns no further since it was `start` than the engine will take it; says whether it would have.
+    pub(crate) fn hold_back(&mut self, start: &Self, time: f64) -> bool {
+        if self.spin == Spin::Still || self.farthest_turn == f64::INFINITY {
+            return false;
+        }
+        let by = shortest(self.rotation * start.rotation.inverse()).to_scaled_axis();
+        let velocity = self.angular_velocity();
+        let fastest = self.farthest_turn / time;
+        if by.length() > self.farthest_turn {
+            let held = by.clamp_length_max(self.farthest_turn);
+            self.rotation = (turn(held) * start.rotation).normalize();
+            self.note_turn();
+            self.set_angular_velocity(held / time);
+        } else if velocity.length() > fastest {
+            self.set_angular_velocity(velocity.clamp_length_max(fastest));
+        } else {
+            return false;
+        }
+        true
     }
 
     pub(crate) fn is_finite(&self) -> bool {

@@ -37,20 +37,27 @@ pub(crate) struct Bound {
 
 impl Bound {
     /// Sees what was done to the network since the last step.
-    pub(crate) fn begin(&mut self, elements: &[Element], bodies: &[Body], linked: bool) {
+    pub(crate) fn begin(
+        &mut self,
+        elements: &[Element],
+        bodies: &[Body],
+        linked: bool,
+        meddled: bool,
+    ) {
         // What contacts and joints hold, or links of a multibody do, is not ours to account for.
         if linked || bodies.iter().any(|body| body.mobility < 1.0) {
             return self.forget();
         }
         let now = Energy::of(elements, bodies).sum();
-        self.start(now, rounding(elements, bodies), power(elements, bodies));
+        let rounding = rounding(elements, bodies);
+        self.start(now, rounding, power(elements, bodies), meddled);
     }
 
     /// The same with the energy at hand, what of it can be rounding, and the power of moving ends.
-    pub(crate) fn start(&mut self, now: f64, rounding: f64, power: f64) {
+    pub(crate) fn start(&mut self, now: f64, rounding: f64, power: f64, meddled: bool) {
         let change = now - self.last;
-        let gift = if (0.0..rounding).contains(&change) {
-            // Noise of the engine's f32 is no gift.
+        let gift = if change > 0.0 && (change < rounding || !meddled) {
+            // Noise of the engine's f32 is no gift, nor that it does not arrive where it was sent.
             0.0
         } else {
             change

@@ -11,7 +11,7 @@
 //! quaternion update and gyroscopic term in between, so there the linear answer is refined by running
 //! the engine's rotation here and correcting what is missed.
 
-use super::body::Body;
+use super::body::{Body, shortest};
 use bevy::math::{DMat3, DQuat, DVec3, Quat, Vec3};
 
 /// How the engine will step: all substeps of one call together.
@@ -69,24 +69,23 @@ impl Schedule {
         }
     }
 
-    /// The engine caps speeds. Where a delivery would exceed that at either end of the step, it moves
-    /// steadily instead: the displacement stays right, speed is lost rather than gained.
-    pub(crate) fn capped(
-        &self,
-        delivery: Delivery,
-        velocity: DVec3,
-        displacement: DVec3,
-        cap: f64,
-    ) -> Delivery {
+    /// The engine caps speeds. Where a delivery would exceed that at either end of the step, it moves more
+    /// steadily, by as much as it takes: the displacement stays right, the velocity comes as near as it can.
+    pub(crate) fn capped(&self, delivery: Delivery, velocity: DVec3, cap: f64) -> Delivery {
         let first = velocity + delivery.jump + self.substep * delivery.rate;
         let last = velocity + delivery.jump + self.time * delivery.rate;
         if first.length_squared().max(last.length_squared()) <= cap * cap {
             return delivery;
         }
-        Delivery {
-            jump: displacement / self.time - velocity,
-            rate: DVec3::ZERO,
-        }
+        let mean = 0.5 * (first + last);
+        let sway = last - mean;
+        // Both of |mean ± share · sway| reach the cap at most.
+        let (square, along) = (sway.length_squared(), mean.dot(sway).abs());
+        let room = (cap * cap - mean.length_squared()).max(0.0);
+        let share = room / (along + (along * along + square * room).sqrt()).max(f64::MIN_POSITIVE);
+        let rate = share.min(1.0) * delivery.rate;
+        let jump = mean - velocity - 0.5 * (self.substep + self.time) * rate;
+        Delivery { jump, rate }
     }
 
     /// Angular part: from the start's rotation and angular velocity to where `end` now is.
@@ -94,22 +93,41 @@ impl Schedule {
         let spin = start.angular_velocity();
         let wanted = end.angular_velocity();
         let engine = Rounded::new(self, start, gyroscopic);
+        let refined = |mut delivery: Delivery, correct: &dyn Fn(DVec3, DVec3) -> Delivery| {
+            for _ in 0..ROUNDS {
+                let (rotation, velocity) = engine.run(spin, &delivery);
+                let angle = small_angle(end.rotation * rotation.inverse());
+                let change = wanted - velocity;
+                let correction = correct(angle, change);
+                delivery.jump += correction.jump;
+                delivery.rate += correction.rate;
+                if angle.length() + self.time * change.length() < MISSED {
+                    break;
+                }
+            }
+            delivery
+        };
+        let cap = start.farthest_turn * self.per_time;
         let turned = shortest(end.rotation * start.rotation.inverse()).to_scaled_axis();
-        let mut delivery = self.reach(turned - self.time * spin, wanted - spin);
-        for _ in 0..ROUNDS {
-            let (rotation, velocity) = engine.run(spin, &delivery);
-            let (angle, change) = (
-                small_angle(end.rotation * rotation.inverse()),
-                wanted - velocity,
-            );
-            let correction = self.reach(angle, change);
-            delivery.jump += correction.jump;
-            delivery.rate += correction.rate;
-            if angle.length() + self.time * change.length() < MISSED {
-                break;
+        let direct = self.reach(turned - self.time * spin, wanted - spin);
+        let eased = self.capped(direct, spin, CAUTION * cap);
+        if eased == direct {
+            let delivery = refined(direct, &|angle, change| self.reach(angle, change));
+            if self.capped(delivery, spin, cap) == delivery {
+                return delivery;
             }
         }
-        delivery
+        // Where it arrives counts; the velocity is what it then is.
+        refined(eased, &|angle, _| Delivery {
+            jump: angle * self.per_time,
+            rate: DVec3::ZERO,
+        })
+    }
+
+    /// How far the engine turns a body that its cap lets turn so far: it goes along tangents.
+    pub(crate) fn farthest_turn(&self, cap: f64) -> f64 {
+        let halves = 2.0 * f64::from(self.substeps);
+        halves * (cap / halves).atan()
     }
 
     /// What the engine makes of a delivery, to its rounding: rotation and angular velocity.
@@ -128,17 +146,11 @@ impl Schedule {
 /// Most rounds of correction, each of which leaves a thirtieth of what was missed.
 const ROUNDS: usize = 6;
 
+/// Share of the cap on turning that is planned with: where it is put right, it may come to a little more.
+const CAUTION: f64 = 0.995;
+
 /// What may be missed before the last correction, rad.
 const MISSED: f64 = 3e-7;
-
-/// The one of both equal rotations that turns less than half a turn.
-fn shortest(rotation: DQuat) -> DQuat {
-    if rotation.w < 0.0 {
-        -rotation
-    } else {
-        rotation
-    }
-}
 
 /// The rotation vector of a small rotation; of larger ones too little, by θ⁵/213.
 fn small_angle(rotation: DQuat) -> DVec3 {

@@ -40,6 +40,8 @@ pub(crate) struct Component {
     /// Energy that it has won where it should not and that its motion could not pay, J: then the step is one that
     /// only loses energy.
     pub owed: f64,
+    /// Something else than its elements can have changed its energy since the last step.
+    pub meddled: bool,
     /// It is a network of points that goes on from the last step: bodies and elements are out of date.
     pub carried: bool,
     pub(super) memory: Memory,
@@ -100,13 +102,14 @@ impl Component {
             return outcome;
         }
         let Memory { bound, saved, .. } = &mut self.memory;
-        bound.begin(&self.elements, &self.bodies, self.stepped);
+        bound.begin(&self.elements, &self.bodies, self.stepped, self.meddled);
         let start = &mut saved[0];
         start.bodies.clone_from(&self.bodies);
         start.elements.clone_from(&self.elements);
         let mut outcome = controller.drive(self, time, accuracy);
         self.memory.controller = controller;
         outcome.method = Method::ClosedForm;
+        self.hold_back(time);
         self.keep_bound(time);
         if alone {
             return outcome;

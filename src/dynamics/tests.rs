@@ -21,6 +21,7 @@ pub(super) fn point(mass: f64, position: DVec3, gravity: DVec3) -> Body {
         inertia: DVec3::ONE,
         principal: DQuat::IDENTITY,
         rotation_locked: [false; 3],
+        farthest_turn: f64::INFINITY,
         acceleration: gravity,
         torque: DVec3::ZERO,
         mobility: 1.0,

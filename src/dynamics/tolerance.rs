@@ -17,9 +17,8 @@ pub(crate) struct Accuracy {
 }
 
 impl Accuracy {
-    /// Micro-steps of every step that needs so many at least, and whether the cap keeps it from more.
-    fn count(&self, least: u32) -> (u32, bool) {
-        let asked = self.microsteps.max(least);
+    /// So many micro-steps, or as many as the cap lets, and whether it keeps a step from those.
+    fn cap(&self, asked: u32) -> (u32, bool) {
         let count = asked.min(self.max_microsteps.max(1));
         (count, count < asked)
     }
@@ -27,7 +26,7 @@ impl Accuracy {
     /// Micro-steps of every step alike, if that is all that is asked.
     pub(crate) fn plain(&self) -> Option<u32> {
         let plain = self.tolerance.is_none() && !self.extrapolate;
-        plain.then(|| self.count(1).0)
+        plain.then(|| self.cap(self.microsteps.max(1)).0)
     }
 }
 
@@ -56,7 +55,7 @@ pub(crate) struct Outcome {
 impl Outcome {
     /// Of plain micro-steps.
     pub(crate) fn plain(accuracy: &Accuracy) -> Self {
-        let (microsteps, capped) = accuracy.count(1);
+        let (microsteps, capped) = accuracy.cap(accuracy.microsteps.max(1));
         Self {
             microsteps,
             capped,
@@ -135,11 +134,17 @@ impl Controller {
             return fixed(motion, time, accuracy);
         };
         let most = accuracy.max_microsteps.max(1);
-        let least = motion.least(time).min(most);
-        match self.known.filter(|_| self.age > 0) {
+        let (least, cut) = accuracy.cap(motion.least(time));
+        let mut outcome = match self.known.filter(|_| self.age > 0) {
             Some(known) => {
                 self.age -= 1;
-                let (plan, capped) = cheapest(known, tolerance, [least, most]);
+                let (mut plan, capped) = cheapest(known, tolerance, [least, most]);
+                if let Plan::Extrapolated(m) = plan
+                    && !motion.is_resolved(time / f64::from(m))
+                {
+                    // It has become another motion since the probe.
+                    plan = Plan::Plain(3 * m);
+                }
                 Outcome {
                     microsteps: take(motion, time, plan),
                     error: Some(time * error_of(known, plan)),
@@ -148,7 +153,9 @@ impl Controller {
                 }
             }
             None => self.probe(motion, time, tolerance, [least, most]),
-        }
+        };
+        outcome.capped |= cut;
+        outcome
     }
 
     /// Takes the step with three counts and learns from it.
@@ -223,7 +230,7 @@ impl Controller {
 
 /// As many micro-steps as are asked for.
 fn fixed(motion: &mut impl Motion, time: f64, accuracy: Accuracy) -> Outcome {
-    let (count, capped) = accuracy.count(motion.least(time));
+    let (count, capped) = accuracy.cap(accuracy.microsteps.max(motion.least(time)));
     let plan = if !accuracy.extrapolate {
         Plan::Plain(count)
     } else if motion.is_resolved(time / f64::from(count)) {

@@ -15,6 +15,7 @@ use crate::dynamics::step::Component;
 use crate::dynamics::tolerance::{Accuracy, Outcome};
 use bevy::math::{DVec3, Vec3};
 use bevy_rapier3d::rapier::dynamics::RigidBodySet;
+use std::mem::{replace, take};
 
 /// A component with its bodies and elements, kept from tick to tick.
 #[derive(Default)]
@@ -104,6 +105,7 @@ impl Assembly {
         self.carry.centers.clear();
         component.stepped = false;
         component.owed = 0.0;
+        component.meddled = self.carry.meddled;
         for (slot, b) in members.bodies.iter().enumerate() {
             let row = &mut bodies[*b];
             row.slot = slot;
@@ -119,7 +121,12 @@ impl Assembly {
                 free.velocity = link.linear.as_dvec3();
                 free.set_angular_velocity(link.angular.as_dvec3());
             }
+            if row.turns {
+                free.farthest_turn = step.farthest_turn(row.handle, body);
+            }
             row.displaced = !row.is_noted || row.now.0 != free.position;
+            component.meddled |= row.was_meddled(body, free.position);
+            component.meddled |= replace(&mut row.pulled, free.acceleration) != free.acceleration;
             row.lag = step.lag_of_held(row, body);
             if row.lag > 0.0 {
                 free.drift(-row.lag);
@@ -134,7 +141,9 @@ impl Assembly {
         self.carry.ends.clear();
         for (index, e) in members.elements.iter().enumerate() {
             let row = &mut elements[*e];
-            disturbed |= row.changed || step.has_moved(row, set);
+            let has_moved = step.has_moved(row, set);
+            component.meddled |= has_moved || take(&mut row.refitted);
+            disturbed |= row.changed || has_moved;
             let ends = [0, 1].map(|end| step.end(row, end, bodies, set));
             if let Some(element) = element(row, ends, &self.start) {
                 omega = omega.max(omega_of(row));
@@ -279,7 +288,7 @@ impl Assembly {
             return;
         }
         // Taken, so that the step of another context does not advance it again.
-        let ready = std::mem::take(&mut self.state) == State::Ready;
+        let ready = take(&mut self.state) == State::Ready;
         if ready && self.component.carried {
             return self.deliver_carried(step, members, elements, bodies, set);
         }

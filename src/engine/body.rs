@@ -18,7 +18,7 @@ pub(super) struct Engine {
     pub iterations: usize,
     /// Its cap on speeds, m/s.
     pub fastest: f64,
-    /// Its cap on turning in one call, rad.
+    /// Its cap on turning in one call, rad; a body that may turn fast has none.
     pub farthest_turn: f64,
     pub length_unit: f32,
     pub gravity: Vec3,
@@ -120,6 +120,7 @@ pub(super) fn read(body: &RapierBody, gravity: Vec3, user: &ExternalForce, turns
             .as_dquat()
             .normalize(),
         rotation_locked,
+        farthest_turn: f64::INFINITY,
         acceleration: moves * gravity.as_dvec3() * f64::from(body.gravity_scale())
             + inverse_mass * user.force.as_dvec3(),
         torque: user.torque.as_dvec3(),
@@ -162,7 +163,7 @@ pub(super) fn deliver_straight(
     }
     let schedule = &terms.schedule;
     let wanted = schedule.reach(displacement - time * velocity, reached - velocity);
-    let planned = schedule.capped(wanted, velocity, displacement, engine.fastest);
+    let planned = schedule.capped(wanted, velocity, engine.fastest);
     let linvel = (velocity + planned.jump).as_vec3();
     body.set_linvel(linvel, false);
     // The engine's velocity is rounded; the force makes up for it.
@@ -195,15 +196,7 @@ pub(super) fn deliver(
         let spin = start.angular_velocity();
         let Delivery { jump, rate } = if terms.takes_impulses {
             let schedule = &terms.schedule;
-            let planned = schedule.angular(start, body.gyroscopic_forces_enabled(), end);
-            let turned = (end.rotation * start.rotation.inverse()).to_scaled_axis();
-            // A body that may turn fast has no cap.
-            let cap = if body.is_fast_rotation_allowed() {
-                f64::INFINITY
-            } else {
-                engine.farthest_turn / time
-            };
-            schedule.capped(planned, spin, turned, cap)
+            schedule.angular(start, body.gyroscopic_forces_enabled(), end)
         } else {
             Delivery {
                 jump: DVec3::ZERO,

@@ -20,6 +20,8 @@ pub(super) struct Carry {
     pub centers: Vec<Vec3>,
     /// Some body has not rested for long.
     restless: bool,
+    /// Something else than elements can have changed what it has.
+    pub meddled: bool,
     /// Some body is not where the last step left it.
     displaced: bool,
 }
@@ -35,6 +37,7 @@ impl Assembly {
         set: &RigidBodySet,
     ) -> bool {
         self.component.carried = false;
+        self.carry.meddled = false;
         let all_act = self.component.elements.len() == members.elements.len();
         if !(all_act && self.ledger.is_idle()) {
             return false;
@@ -53,6 +56,7 @@ impl Assembly {
         }
         self.carry.restless |= disturbed;
         self.component.carried = true;
+        self.component.meddled = self.carry.meddled;
         self.state = State::Ready;
         true
     }
@@ -79,6 +83,12 @@ impl Assembly {
                 return None;
             }
             let point = FreePoint::of(row, body, step).ok()?;
+            carry.meddled |= row.was_meddled(body, point.position);
+            if points.origin(slot).acceleration != point.acceleration {
+                // Written only then: it lies apart from what every step needs.
+                row.pulled = point.acceleration;
+                carry.meddled = true;
+            }
             *disturbed |= std::mem::take(&mut row.disturbed);
             carry.restless |= step.is_restless(row, body, carry.omega);
             carry.displaced |= !row.is_noted || row.now.0 != point.position;
@@ -88,7 +98,9 @@ impl Assembly {
         }
         for (index, (element, end)) in carry.ends.iter().enumerate() {
             let row = &elements[members.elements[*element]];
-            *disturbed |= step.has_moved(row, set);
+            let has_moved = step.has_moved(row, set);
+            carry.meddled |= has_moved;
+            *disturbed |= has_moved;
             let (from, to) = step.path(&row.held[*end], set);
             points.place_end(index, from, (to - from) / time);
         }

@@ -68,7 +68,7 @@ impl Trouble {
 }
 
 /// The numbers of an element, whichever component they came from; last what every step needs.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub(super) struct Parameters {
     pub ends: [Entity; 2],
@@ -84,7 +84,7 @@ pub(super) struct Parameters {
 }
 
 /// Fields as messages name them; what a component has not is the empty string.
-#[derive(Debug)]
+#[derive(Debug, PartialEq)]
 pub(super) struct Names {
     pub ends: [&'static str; 2],
     pub stiffness: &'static str,

@@ -181,6 +181,9 @@ impl<'a> Look<'a, '_, '_> {
         row.is_noted = !row.is_alone;
         if row.is_noted {
             row.now = now;
+            if row.turns {
+                row.turned = (body.position().rotation, body.angvel());
+            }
         }
         self.stale |= is_out;
         (now.0, now.1.as_dvec3())

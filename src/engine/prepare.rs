@@ -136,6 +136,7 @@ fn refresh(
         {
             return false;
         }
+        row.refitted |= parameters != row.parameters || companions.touched.contains(&entity);
         row.change(|row| {
             row.parameters = parameters;
             row.companion = companion;

@@ -64,6 +64,8 @@ impl Scene {
                     row.memory.places = [None; 2];
                     row.memory.scales = [None; 2];
                 }
+                row.refitted |=
+                    parameters != row.parameters || companions.touched.contains(&entity);
                 row.change(|row| row.parameters = parameters);
                 parameters.check()?;
                 let mut companion = companions.of(entity, &parameters)?;
@@ -204,6 +206,7 @@ impl ElementRow {
             placed: false,
             trouble: Trouble::default(),
             changed: false,
+            refitted: false,
             captured: false,
             tuned: false,
             active: false,

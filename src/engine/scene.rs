@@ -18,7 +18,7 @@ use bevy::ecs::entity::{EntityHashMap, EntityHashSet};
 use bevy::math::{DVec3, Vec3};
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::ExternalForce;
-use bevy_rapier3d::rapier::dynamics::RigidBodyHandle;
+use bevy_rapier3d::rapier::dynamics::{RigidBody as RapierBody, RigidBodyHandle};
 
 /// Where an element is held.
 #[derive(Clone, Copy, Debug)]
@@ -48,6 +48,8 @@ pub(super) struct ElementRow {
     pub parameters: Parameters,
     /// A parameter or an end changed since the last tick.
     pub changed: bool,
+    /// Its numbers or laws are others than in its last step.
+    pub refitted: bool,
     /// The rest length was found in this tick and has to be written back.
     pub captured: bool,
     /// The coefficients were worked out in this tick and have to be written back.
@@ -168,6 +170,10 @@ pub(super) struct BodyRow {
     pub elements: u32,
     /// Which ones, as a hash; a change wakes it.
     pub signature: u64,
+    /// Acceleration by everything but elements in the last step.
+    pub pulled: DVec3,
+    /// Rotation and angular velocity after the last step that was noted, of a body that elements turn.
+    pub turned: (Quat, Vec3),
 }
 
 impl BodyRow {
@@ -201,7 +207,19 @@ impl BodyRow {
             contact_work: 0.0,
             partner: None,
             now: (DVec3::ZERO, Vec3::ZERO),
+            turned: (Quat::IDENTITY, Vec3::ZERO),
+            pulled: DVec3::ZERO,
         }
+    }
+
+    /// Whether something else than elements can have changed its energy since the last step, now that its centre of
+    /// mass is here; but for what acts on it.
+    pub(super) fn was_meddled(&self, body: &RapierBody, at: DVec3) -> bool {
+        let turned = || (body.position().rotation, body.angvel());
+        let goes_on = self.is_noted
+            && self.now == (at, body.linvel())
+            && (!self.turns || self.turned == turned());
+        !goes_on || self.support != Support::None || self.disturbed
     }
 
     /// Position and velocity of its centre of mass after the last step that was noted.

@@ -109,6 +109,15 @@ impl Step<'_> {
                 .is_none()
     }
 
+    /// How far the engine turns a body in this step, rad.
+    pub(super) fn farthest_turn(&self, handle: RigidBodyHandle, body: &RapierBody) -> f64 {
+        if body.is_fast_rotation_allowed() || !self.takes_impulses(handle) {
+            f64::INFINITY
+        } else {
+            self.substeps(body).farthest_turn(self.engine.farthest_turn)
+        }
+    }
+
     /// How far behind its present place, in time, a body has to be looked at. Under a force alone the
     /// engine's n substeps run ahead by h²/(2n) of the acceleration; seen that much earlier, the motion is
     /// the integrator's own.

@@ -46,7 +46,8 @@ impl Component {
         let start = points.survey();
         *had = start.energy;
         if is_free {
-            bound.start(start.energy.sum(), start.rounding, start.power);
+            let now = start.energy.sum();
+            bound.start(now, start.rounding, start.power, self.meddled);
         } else {
             bound.forget();
         }
@@ -89,10 +90,24 @@ impl Component {
         self.memory.bound = bound;
     }
 
+    /// Turns no body further than the engine will: it would be missed by all that lies beyond.
+    pub(super) fn hold_back(&mut self, time: f64) {
+        let mut any = false;
+        for (body, start) in self.bodies.iter_mut().zip(&self.memory.saved[0].bodies) {
+            if body.hold_back(start, time) {
+                body.receive(start, time);
+                any = true;
+            }
+        }
+        if any {
+            self.aim(time);
+        }
+    }
+
     /// A step that only loses energy, where some is owed.
     pub(super) fn pay(&mut self, time: f64) -> Outcome {
         let mut bound = std::mem::take(&mut self.memory.bound);
-        bound.begin(&self.elements, &self.bodies, self.stepped);
+        bound.begin(&self.elements, &self.bodies, self.stepped, self.meddled);
         self.save(0);
         self.aim(time);
         self.settle(time, &mut bound);
@@ -125,6 +140,7 @@ impl Component {
                 body.slow_to(moved, share);
             }
             self.drift(time);
+            self.hold_back(time);
             self.aim(time);
             if bound.allows(&self.elements, &self.bodies, time) {
                 break;

@@ -15,13 +15,7 @@ struct Ball {
 impl Ball {
     /// 2 kg at rest length, at 2 m/s: 4 J.
     fn on(count: usize, stiffness: f32, plugin: CoiloverPlugin, law: impl Bundle + Clone) -> Self {
-        let mut lab = Lab::with(
-            plugin,
-            Engine {
-                gravity: Vec3::ZERO,
-                ..default()
-            },
-        );
+        let mut lab = Lab::with(plugin, Engine::weightless());
         let hook = lab.point(Vec3::ZERO);
         let ball = lab.moving(body(2.0, Vec3::X), Velocity::linear(Vec3::X * 2.0));
         let spring = Spring::new(hook, ball)
@@ -80,6 +74,26 @@ fn a_ball_between_two_springs_with_stops_keeps_its_energy_and_goes_as_on_one() {
             );
             assert!(range[0] > 3.98 && range[1] < 4.02, "{range:?}");
             assert!(apart < 8e-3, "{apart} m");
+        }
+    }
+}
+
+#[test]
+fn a_cap_below_what_a_blow_asks_for_is_told() {
+    // A tolerance so wide that nothing but the stops asks for more than one.
+    for plugin in [
+        CoiloverPlugin::default(),
+        CoiloverPlugin::default().with_tolerance(10.0),
+    ] {
+        for (most, told) in [(2, true), (64, false)] {
+            let travel = SpringTravel::new(0.0, 1.1, 1e6);
+            let mut two = Ball::on(2, 200.0, plugin.with_max_microsteps(most), travel);
+            let mut capped = false;
+            for _ in 0..two.lab.ticks(1.0) {
+                two.lab.tick();
+                capped |= two.lab.readout(two.springs[0]).capped;
+            }
+            assert_eq!(capped, told, "{plugin:?}, at most {most}");
         }
     }
 }
@@ -146,10 +160,7 @@ fn a_tolerance_counts_where_every_element_has_a_law() {
     for (error, tolerance) in errors.iter_mut().zip([1e-2, 1e-3, 1e-4]) {
         let mut lab = Lab::with(
             CoiloverPlugin::default().with_tolerance(tolerance),
-            Engine {
-                gravity: Vec3::ZERO,
-                ..default()
-            },
+            Engine::weightless(),
         );
         let hooks = [0.0, 3.0].map(|x| lab.point(Vec3::X * x));
         let ball = lab.moving(body(2.0, Vec3::X * 1.5), Velocity::linear(Vec3::X * 2.0));

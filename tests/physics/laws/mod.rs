@@ -5,6 +5,7 @@ mod bad;
 mod blows;
 mod breaking;
 mod ledger;
+mod light;
 mod one_way;
 mod random;
 mod shock;

@@ -1,0 +1,149 @@
+//! Light bodies held off centre, which springs and stops spin as fast as the engine lets anything spin: what the
+//! engine cuts off never comes back as energy.
+
+use crate::dice::Dice;
+use crate::harness::*;
+use bevy::prelude::*;
+use bevy_coilover::prelude::*;
+use bevy_rapier3d::prelude::*;
+
+/// A network by chance: every other body is `light` kilograms, some held off centre, some springs with stops.
+struct Tangle {
+    lab: Lab,
+    /// With their masses.
+    bodies: Vec<(Entity, f32)>,
+    /// Radius of gyration of them all, m.
+    gyration: f32,
+}
+
+impl Tangle {
+    /// `phase` is ω·dt of each spring on its own ends.
+    fn new(seed: u64, light: f32, gyration: f32, phase: f32, plugin: CoiloverPlugin) -> Self {
+        let mut dice = Dice(seed);
+        let mut lab = Lab::with(plugin, Engine::weightless());
+        let mut bodies = Vec::new();
+        for i in 0..4 + dice.pick(5) {
+            let at = dice.place();
+            let mass = if i % 2 == 0 { 1.0 } else { light } * dice.between(0.5, 2.0);
+            let inertia = Vec3::splat(gyration * gyration * mass);
+            bodies.push((lab.spawn(brick(mass, inertia, at)), mass));
+        }
+        let hook = (lab.point(Vec3::Y * 5.0), f32::INFINITY);
+        for i in 0..bodies.len() + 2 {
+            let a = match i {
+                0 => hook,
+                _ => bodies[dice.pick(bodies.len() as u32) as usize],
+            };
+            let b = bodies[i % bodies.len()];
+            if a == b {
+                continue;
+            }
+            let omega = 60.0 * phase;
+            let stiffness = omega * omega / (1.0 / a.1 + 1.0 / b.1);
+            let stretch = (3.0 / omega).min(0.5);
+            let arm = match dice.pick(2) {
+                0 => dice.place() * gyration * 0.5,
+                _ => Vec3::ZERO,
+            };
+            let length = (lab.position(b.0) + arm - lab.position(a.0)).length();
+            let rest = (length + stretch * dice.between(-1.0, 1.0)).max(0.5 * stretch);
+            let spring = Spring::new(a.0, b.0).with_stiffness(stiffness);
+            let spring = lab.spawn((spring.with_rest_length(rest), Anchors::new(Vec3::ZERO, arm)));
+            if dice.pick(2) == 0 {
+                let ends = [rest - 0.3 * stretch, rest + 0.5 * stretch];
+                let travel = SpringTravel::new(ends[0], ends[1], 20.0 * stiffness);
+                lab.app.world_mut().entity_mut(spring).insert(travel);
+            }
+        }
+        let mut tangle = Self {
+            lab,
+            bodies,
+            gyration,
+        };
+        // Held until the stored energy has been read.
+        tangle.hold(RigidBody::Fixed);
+        tangle.lab.tick();
+        tangle
+    }
+
+    fn hold(&mut self, kind: RigidBody) {
+        for (body, _) in &self.bodies {
+            self.lab.app.world_mut().entity_mut(*body).insert(kind);
+        }
+    }
+
+    fn energy(&mut self) -> f64 {
+        let mut sum = 0.0;
+        for (body, mass) in &self.bodies {
+            let now = self.lab.get::<Velocity>(*body);
+            let spin = self.gyration * now.angular;
+            sum += 0.5 * f64::from(mass * (now.linear.length_squared() + spin.length_squared()));
+        }
+        let mut readouts = self.lab.app.world_mut().query::<&SpringReadout>();
+        let stored = readouts.iter(self.lab.app.world());
+        sum + stored.map(|r| f64::from(r.stored_energy)).sum::<f64>()
+    }
+
+    /// The most that it ever has of what it had, the last of it, and the fastest that anything turns, rad/s.
+    fn let_go(mut self, seconds: f64) -> [f64; 3] {
+        let first = self.energy();
+        self.hold(RigidBody::Dynamic);
+        let mut seen = [0.0_f64; 3];
+        for _ in 0..self.lab.ticks(seconds) {
+            self.lab.tick();
+            let now = self.energy() / first;
+            assert!(now.is_finite());
+            seen = [seen[0].max(now), now, seen[2]];
+            for (body, _) in &self.bodies {
+                let spin = self.lab.get::<Velocity>(*body).angular.length();
+                seen[2] = seen[2].max(f64::from(spin));
+            }
+        }
+        seen
+    }
+}
+
+#[test]
+fn what_spins_as_fast_as_it_may_wins_no_energy() {
+    let mut fastest = 0.0_f64;
+    for (light, phase) in [(1e-2, 0.3), (1e-2, 2.0), (1e-4, 5.0), (1e-4, 20.0)] {
+        let mut most = 0.0_f64;
+        for seed in 0..24 {
+            let tangle = Tangle::new(seed, light, 0.2, phase, CoiloverPlugin::default());
+            let [here, _, spin] = tangle.let_go(10.0);
+            most = most.max(here);
+            fastest = fastest.max(spin);
+        }
+        println!(
+            "24 tangles, every other body of {light:e} kg, ω·dt {phase}: at most {most:.3} of the energy"
+        );
+        assert!(most < 1.05, "{most}");
+    }
+    // An eighth of a turn in a step is the engine's limit.
+    assert!(fastest > 47.0, "{fastest} rad/s");
+}
+
+/// The engine may cut off a spin in the one step in which it is about to become energy of a spring.
+#[test]
+fn at_any_setting_too_much_lasts_no_longer_than_a_moment() {
+    let plugin = CoiloverPlugin::default;
+    let settings = [
+        ("4 micro-steps", plugin().with_microsteps(4)),
+        ("extrapolated", plugin().with_extrapolation()),
+        ("tolerance 1e-2", plugin().with_tolerance(1e-2)),
+    ];
+    for (name, plugin) in settings {
+        for (light, phase) in [(1e-2, 2.0), (1e-4, 0.3), (1e-4, 20.0)] {
+            let (mut most, mut last) = (0.0_f64, 0.0_f64);
+            for seed in 104..120 {
+                let tangle = Tangle::new(seed, light, 0.05, phase, plugin);
+                let [here, end, _] = tangle.let_go(3.0);
+                (most, last) = (most.max(here), last.max(end));
+            }
+            println!(
+                "16 tangles, {light:e} kg, ω·dt {phase}, {name}: at most {most:.3} of the energy, {last:.3} in the end"
+            );
+            assert!(most < 1.25 && last < 1.05, "{most}, {last}");
+        }
+    }
+}
