@@ -74,6 +74,19 @@ pub(crate) fn shortest(rotation: DQuat) -> DQuat {
     }
 }
 
+/// Displacement and velocity at the end of a step, if one of them is beyond what the engine allows.
+fn held_back(by: DVec3, velocity: DVec3, farthest: f64, time: f64) -> Option<(DVec3, DVec3)> {
+    let fastest = farthest / time;
+    if by.length_squared() > farthest * farthest {
+        let held = by.clamp_length_max(farthest);
+        Some((held, held / time))
+    } else if velocity.length_squared() > fastest * fastest {
+        Some((by, velocity.clamp_length_max(fastest)))
+    } else {
+        None
+    }
+}
+
 impl Body {
     /// Inverse inertia in the world frame at the present rotation; zero where locked.
     pub(crate) fn inverse_inertia(&self) -> DMat3 {
@@ -304,25 +317,31 @@ impl Body {
         );
     }
 
-    /// Turns no further since it was `start` than the engine will take it; says whether it would have.
-    pub(crate) fn hold_back(&mut self, start: &Self, time: f64) -> bool {
+    /// Moves and turns no further since it was `start` than the engine will take it; says whether it would have.
+    pub(crate) fn hold_back(&mut self, start: &Self, farthest_move: f64, time: f64) -> bool {
+        let moved = held_back(
+            self.position - start.position,
+            self.velocity,
+            farthest_move,
+            time,
+        );
+        if let Some((by, velocity)) = moved {
+            self.position = start.position + by;
+            self.velocity = velocity;
+        }
         if self.spin == Spin::Still || self.farthest_turn == f64::INFINITY {
-            return false;
+            return moved.is_some();
         }
         let by = shortest(self.rotation * start.rotation.inverse()).to_scaled_axis();
-        let velocity = self.angular_velocity();
-        let fastest = self.farthest_turn / time;
-        if by.length() > self.farthest_turn {
-            let held = by.clamp_length_max(self.farthest_turn);
-            self.rotation = (turn(held) * start.rotation).normalize();
-            self.note_turn();
-            self.set_angular_velocity(held / time);
-        } else if velocity.length() > fastest {
-            self.set_angular_velocity(velocity.clamp_length_max(fastest));
-        } else {
-            return false;
+        let turned = held_back(by, self.angular_velocity(), self.farthest_turn, time);
+        if let Some((held, velocity)) = turned {
+            if held != by {
+                self.rotation = (turn(held) * start.rotation).normalize();
+                self.note_turn();
+            }
+            self.set_angular_velocity(velocity);
         }
-        true
+        moved.is_some() || turned.is_some()
     }
 
     pub(crate) fn is_finite(&self) -> bool {

@@ -42,6 +42,8 @@ pub(crate) struct Component {
     pub owed: f64,
     /// Something else than its elements can have changed its energy since the last step.
     pub meddled: bool,
+    /// How far the engine moves a body in a step, m, if there is a limit.
+    pub farthest_move: Option<f64>,
     /// It is a network of points that goes on from the last step: bodies and elements are out of date.
     pub carried: bool,
     pub(super) memory: Memory,

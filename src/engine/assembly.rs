@@ -95,6 +95,7 @@ impl Assembly {
             return;
         }
         self.asleep = false;
+        self.component.farthest_move = Some(step.engine.fastest * step.plan.time);
         if self.carry_on(step, members, elements, bodies, set) {
             return;
         }

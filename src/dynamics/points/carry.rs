@@ -95,6 +95,16 @@ impl Points {
         self.stiffest_alone * time * time < resolved && self.start[self.bodies..].iter().all(rests)
     }
 
+    /// Whether the step has taken none further, and leaves none faster, than so far in such a time.
+    pub(in crate::dynamics) fn are_within(&self, farthest: f64, time: f64) -> bool {
+        let [way, speed] = [farthest, farthest / time].map(|most| most * most);
+        let mut moves = self.points.iter().zip(&self.start).take(self.bodies);
+        moves.all(|(end, start)| {
+            (end.position - start.position).length_squared() <= way
+                && end.velocity.length_squared() <= speed
+        })
+    }
+
     pub(in crate::dynamics) fn are_finite(&self) -> bool {
         self.points[..self.bodies]
             .iter()

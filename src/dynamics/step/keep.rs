@@ -56,7 +56,10 @@ impl Component {
         outcome.capped |= !points.converged();
         let end = points.survey();
         bound.see(points.stiffest);
-        let kept = bound.is_kept(&end.energy, end.power, time);
+        let within = self
+            .farthest_move
+            .is_none_or(|farthest| points.are_within(farthest, time));
+        let kept = bound.is_kept(&end.energy, end.power, time) && within;
         if kept {
             bound.finish(end.energy.sum(), time);
             self.memory.carriable = is_free.then_some(time);
@@ -73,6 +76,7 @@ impl Component {
             .points
             .store_into(&mut self.elements, &mut self.bodies);
         if !kept {
+            self.hold_back(time);
             self.keep_bound(time);
         }
         outcome
@@ -90,11 +94,12 @@ impl Component {
         self.memory.bound = bound;
     }
 
-    /// Turns no body further than the engine will: it would be missed by all that lies beyond.
+    /// Takes no body further than the engine will: it would be missed by all that lies beyond.
     pub(super) fn hold_back(&mut self, time: f64) {
+        let farthest = self.farthest_move.unwrap_or(f64::INFINITY);
         let mut any = false;
         for (body, start) in self.bodies.iter_mut().zip(&self.memory.saved[0].bodies) {
-            if body.hold_back(start, time) {
+            if body.hold_back(start, farthest, time) {
                 body.receive(start, time);
                 any = true;
             }
