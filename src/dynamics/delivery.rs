@@ -71,12 +71,24 @@ impl Schedule {
 
     /// The engine caps speeds. Where a delivery would exceed that at either end of the step, it moves more
     /// steadily, by as much as it takes: the displacement stays right, the velocity comes as near as it can.
+    #[inline]
     pub(crate) fn capped(&self, delivery: Delivery, velocity: DVec3, cap: f64) -> Delivery {
         let first = velocity + delivery.jump + self.substep * delivery.rate;
         let last = velocity + delivery.jump + self.time * delivery.rate;
         if first.length_squared().max(last.length_squared()) <= cap * cap {
             return delivery;
         }
+        self.eased(delivery, velocity, [first, last], cap)
+    }
+
+    #[cold]
+    fn eased(
+        &self,
+        delivery: Delivery,
+        velocity: DVec3,
+        [first, last]: [DVec3; 2],
+        cap: f64,
+    ) -> Delivery {
         let mean = 0.5 * (first + last);
         let sway = last - mean;
         // Both of |mean ± share · sway| reach the cap at most.

@@ -6,7 +6,7 @@ use super::element::element;
 use super::expected::Expected;
 use super::held::{self, Support};
 use super::passive::Ledger;
-use super::scene::{BodyRow, ElementRow};
+use super::scene::{BodyRow, ElementRow, pull_mark};
 use super::sleep::omega_of;
 use super::step::Step;
 use super::touch::Partners;
@@ -127,7 +127,8 @@ impl Assembly {
             }
             row.displaced = !row.is_noted || row.now.0 != free.position;
             component.meddled |= row.was_meddled(body, free.position);
-            component.meddled |= replace(&mut row.pulled, free.acceleration) != free.acceleration;
+            let pulled = pull_mark(free.acceleration);
+            component.meddled |= replace(&mut row.pulled, pulled) != pulled;
             row.lag = step.lag_of_held(row, body);
             if row.lag > 0.0 {
                 free.drift(-row.lag);

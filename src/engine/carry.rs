@@ -4,7 +4,7 @@
 use super::assembly::{Assembly, Members, State};
 use super::body::is_movable;
 use super::point::FreePoint;
-use super::scene::{BodyRow, ElementRow};
+use super::scene::{BodyRow, ElementRow, pull_mark};
 use super::step::Step;
 use bevy::math::Vec3;
 use bevy_rapier3d::rapier::dynamics::RigidBodySet;
@@ -86,7 +86,7 @@ impl Assembly {
             carry.meddled |= row.was_meddled(body, point.position);
             if points.origin(slot).acceleration != point.acceleration {
                 // Written only then: it lies apart from what every step needs.
-                row.pulled = point.acceleration;
+                row.pulled = pull_mark(point.acceleration);
                 carry.meddled = true;
             }
             *disturbed |= std::mem::take(&mut row.disturbed);

@@ -4,7 +4,7 @@ use super::body::{is_movable, point_of, turning_of};
 use super::held::{Context, center_of, observe};
 use super::parts::IsElement;
 use super::prepare::report;
-use super::scene::{BodyRow, ElementRow, Held, Scene};
+use super::scene::{BodyRow, ElementRow, Held, Scene, turning_mark};
 use crate::dynamics::element::{End, Path};
 use crate::dynamics::guide::Guide;
 use crate::element::{Spring, SpringDamper, SpringTuning, TorsionSpring, TorsionSpringDamper};
@@ -182,7 +182,7 @@ impl<'a> Look<'a, '_, '_> {
         if row.is_noted {
             row.now = now;
             if row.turns {
-                row.turned = (body.position().rotation, body.angvel());
+                row.turned = turning_mark(body);
             }
         }
         self.stale |= is_out;

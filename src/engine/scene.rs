@@ -8,7 +8,7 @@ use super::expected::{Expected, Twist, Whole};
 use super::forces::Share;
 use super::group::Groups;
 use super::held::Support;
-use super::renew::Scratch;
+use super::renew::{Scratch, mix};
 use super::sleep::Rest;
 use super::still::Still;
 use super::touch::Partner;
@@ -162,18 +162,18 @@ pub(super) struct BodyRow {
     pub slot: usize,
     /// How far behind its present place it is seen, s: see [`super::step::Step::lag`].
     pub lag: f64,
-    /// Something else than the engine's step has moved it.
-    pub displaced: bool,
     /// The direction in which contacts hold it, for a body that does not turn.
     pub held: Option<DVec3>,
     /// How many elements act on it.
     pub elements: u32,
+    /// Something else than the engine's step has moved it.
+    pub displaced: bool,
     /// Which ones, as a hash; a change wakes it.
     pub signature: u64,
-    /// Acceleration by everything but elements in the last step.
-    pub pulled: DVec3,
-    /// Rotation and angular velocity after the last step that was noted, of a body that elements turn.
-    pub turned: (Quat, Vec3),
+    /// Acceleration by everything but elements in the last step, as a hash: a row has just room in 512 bytes.
+    pub pulled: u64,
+    /// Rotation and angular velocity after the last step that was noted, of a body that elements turn, as a hash.
+    pub turned: u64,
 }
 
 impl BodyRow {
@@ -207,18 +207,17 @@ impl BodyRow {
             contact_work: 0.0,
             partner: None,
             now: (DVec3::ZERO, Vec3::ZERO),
-            turned: (Quat::IDENTITY, Vec3::ZERO),
-            pulled: DVec3::ZERO,
+            turned: 0,
+            pulled: 0,
         }
     }
 
     /// Whether something else than elements can have changed its energy since the last step, now that its centre of
     /// mass is here; but for what acts on it.
     pub(super) fn was_meddled(&self, body: &RapierBody, at: DVec3) -> bool {
-        let turned = || (body.position().rotation, body.angvel());
         let goes_on = self.is_noted
             && self.now == (at, body.linvel())
-            && (!self.turns || self.turned == turned());
+            && (!self.turns || self.turned == turning_mark(body));
         !goes_on || self.support != Support::None || self.disturbed
     }
 
@@ -236,6 +235,20 @@ impl BodyRow {
         self.contact_work = 0.0;
         self.untouched = true;
     }
+}
+
+/// Rotation and angular velocity of a body, as a hash.
+pub(super) fn turning_mark(body: &RapierBody) -> u64 {
+    let [x, y, z, w] = body.position().rotation.to_array();
+    let [a, b, c] = body.angvel().to_array();
+    let bits = [x, y, z, w, a, b, c].map(|x| u64::from(x.to_bits()));
+    bits.into_iter().fold(0, |sum, bits| mix(sum ^ bits))
+}
+
+/// An acceleration, as a hash.
+pub(super) fn pull_mark(acceleration: DVec3) -> u64 {
+    let bits = acceleration.to_array().map(f64::to_bits);
+    bits.into_iter().fold(0, |sum, bits| mix(sum ^ bits))
 }
 
 /// The scene as the engine's step sees it.
