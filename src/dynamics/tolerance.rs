@@ -19,8 +19,12 @@ pub(crate) struct Accuracy {
 impl Accuracy {
     /// So many micro-steps, or as many as the cap lets, and whether it keeps a step from those.
     fn cap(&self, asked: u32) -> (u32, bool) {
-        let count = asked.min(self.max_microsteps.max(1));
+        let count = asked.min(self.most());
         (count, count < asked)
+    }
+
+    fn most(&self) -> u32 {
+        self.max_microsteps.max(1)
     }
 
     /// Micro-steps of every step alike, if that is all that is asked.
@@ -122,6 +126,16 @@ enum Plan {
     Extrapolated(u32),
 }
 
+impl Plan {
+    /// As many kicks, but all of them plain micro-steps, which never diverge, where extrapolation would.
+    fn sound(self, motion: &mut impl Motion, time: f64) -> Self {
+        match self {
+            Self::Extrapolated(m) if !motion.is_resolved(time / f64::from(m)) => Self::Plain(3 * m),
+            plan => plan,
+        }
+    }
+}
+
 impl Controller {
     /// Takes a motion through a step.
     pub(crate) fn drive(
@@ -133,18 +147,14 @@ impl Controller {
         let Some(tolerance) = accuracy.tolerance else {
             return fixed(motion, time, accuracy);
         };
-        let most = accuracy.max_microsteps.max(1);
+        let most = accuracy.most();
         let (least, cut) = accuracy.cap(motion.least(time));
         let mut outcome = match self.known.filter(|_| self.age > 0) {
             Some(known) => {
                 self.age -= 1;
-                let (mut plan, capped) = cheapest(known, tolerance, [least, most]);
-                if let Plan::Extrapolated(m) = plan
-                    && !motion.is_resolved(time / f64::from(m))
-                {
-                    // It has become another motion since the probe.
-                    plan = Plan::Plain(3 * m);
-                }
+                let (plan, capped) = cheapest(known, tolerance, [least, most]);
+                // It can have become another motion since the probe.
+                let plan = plan.sound(motion, time);
                 Outcome {
                     microsteps: take(motion, time, plan),
                     error: Some(time * error_of(known, plan)),
@@ -231,13 +241,10 @@ impl Controller {
 /// As many micro-steps as are asked for.
 fn fixed(motion: &mut impl Motion, time: f64, accuracy: Accuracy) -> Outcome {
     let (count, capped) = accuracy.cap(accuracy.microsteps.max(motion.least(time)));
-    let plan = if !accuracy.extrapolate {
-        Plan::Plain(count)
-    } else if motion.is_resolved(time / f64::from(count)) {
-        Plan::Extrapolated(count)
+    let plan = if accuracy.extrapolate {
+        Plan::Extrapolated(count).sound(motion, time)
     } else {
-        // The same three kicks, spent on plain micro-steps, which never diverge.
-        Plan::Plain(3 * count)
+        Plan::Plain(count)
     };
     Outcome {
         microsteps: take(motion, time, plan),

@@ -125,7 +125,7 @@ impl Assembly {
             if row.turns {
                 free.farthest_turn = step.farthest_turn(row.handle, body);
             }
-            row.displaced = !row.is_noted || row.now.0 != free.position;
+            row.displaced = row.was_displaced(free.position);
             component.meddled |= row.was_meddled(body, free.position);
             let pulled = pull_mark(free.acceleration);
             component.meddled |= replace(&mut row.pulled, pulled) != pulled;

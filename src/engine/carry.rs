@@ -91,7 +91,7 @@ impl Assembly {
             }
             *disturbed |= std::mem::take(&mut row.disturbed);
             carry.restless |= step.is_restless(row, body, carry.omega);
-            carry.displaced |= !row.is_noted || row.now.0 != point.position;
+            carry.displaced |= row.was_displaced(point.position);
             if !points.place(slot, &point) {
                 return None;
             }

@@ -212,11 +212,16 @@ impl BodyRow {
         }
     }
 
+    /// Whether something else than the engine's step has moved it, now that its centre of mass is here.
+    pub(super) fn was_displaced(&self, at: DVec3) -> bool {
+        !self.is_noted || self.now.0 != at
+    }
+
     /// Whether something else than elements can have changed its energy since the last step, now that its centre of
     /// mass is here; but for what acts on it.
     pub(super) fn was_meddled(&self, body: &RapierBody, at: DVec3) -> bool {
-        let goes_on = self.is_noted
-            && self.now == (at, body.linvel())
+        let goes_on = !self.was_displaced(at)
+            && self.now.1 == body.linvel()
             && (!self.turns || self.turned == turning_mark(body));
         !goes_on || self.support != Support::None || self.disturbed
     }

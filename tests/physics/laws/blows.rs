@@ -158,10 +158,8 @@ fn a_tolerance_counts_where_every_element_has_a_law() {
     let flow = |[x, v]: [f64; 2]| [v, -4000.0 * x * x * x];
     let mut errors = [0.0_f64; 3];
     for (error, tolerance) in errors.iter_mut().zip([1e-2, 1e-3, 1e-4]) {
-        let mut lab = Lab::with(
-            CoiloverPlugin::default().with_tolerance(tolerance),
-            Engine::weightless(),
-        );
+        let plugin = CoiloverPlugin::default().with_tolerance(tolerance);
+        let mut lab = Lab::with(plugin, Engine::weightless());
         let hooks = [0.0, 3.0].map(|x| lab.point(Vec3::X * x));
         let ball = lab.moving(body(2.0, Vec3::X * 1.5), Velocity::linear(Vec3::X * 2.0));
         for hook in hooks {
