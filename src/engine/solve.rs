@@ -202,7 +202,8 @@ impl Scene {
 /// result is the same.
 fn advance(assemblies: &mut [Assembly], time: f64, accuracy: Accuracy) {
     let load: usize = assemblies.iter().map(Assembly::load).sum();
-    let threads = ComputeTaskPool::try_get().map_or(1, |pool| pool.thread_num());
+    // The one that waits for the pool works too: on two cores the pool has just one.
+    let threads = ComputeTaskPool::try_get().map_or(1, |pool| pool.thread_num() + 1);
     let ready = assemblies.iter().filter(|a| a.load() > 0).count();
     if threads < 2 || ready < 2 || load < WORTH_SHARING {
         for assembly in assemblies {
