@@ -1,9 +1,9 @@
 //! One component through one step: gather, wake, integrate, deliver.
 
-use super::body::{deliver, read};
+use super::body::{Push, push, read};
 use super::carry::Carry;
 use super::element::element;
-use super::expected::Expected;
+use super::expected::{Expected, Whole};
 use super::held::{self, Support};
 use super::passive::Ledger;
 use super::scene::{BodyRow, ElementRow, pull_mark};
@@ -12,19 +12,24 @@ use super::step::Step;
 use super::touch::Partners;
 use crate::dynamics::body::Body;
 use crate::dynamics::step::Component;
-use crate::dynamics::tolerance::{Accuracy, Outcome};
-use bevy::math::{DVec3, Vec3};
+use crate::dynamics::tolerance::Outcome;
+use bevy::math::DVec3;
 use bevy_rapier3d::rapier::dynamics::RigidBodySet;
 use std::mem::{replace, take};
+use std::sync::atomic::Ordering;
 
 /// A component with its bodies and elements, kept from tick to tick.
 #[derive(Default)]
 pub(crate) struct Assembly {
     /// Tells its component from others.
     pub(super) signature: u64,
+    /// Index of the group whose it is.
+    pub(super) group: usize,
     pub(super) component: Component,
     /// Its bodies at the start of the step, with their full mass.
     start: Vec<Body>,
+    /// What each of them is to be given, and what that is to do.
+    orders: Vec<Option<(Push, (Expected, Whole))>>,
     /// Force and torque of all elements on each of them, where that is asked for.
     loads: Vec<(DVec3, DVec3)>,
     pub(super) state: State,
@@ -262,18 +267,42 @@ impl Assembly {
         }
     }
 
-    /// Integrates over the step.
-    pub(super) fn advance(&mut self, time: f64, accuracy: Accuracy) {
-        if self.state == State::Ready {
-            let carried = self.component.carried;
-            self.outcome = self.component.advance(time, accuracy);
-            if !self.component.is_finite() {
-                self.state = State::Powerless;
-                self.component.forget_points();
-            }
-            if carried && !self.component.carried {
-                self.start.clone_from_slice(self.component.put_down_at());
-            }
+    /// Integrates over the step, and works out what takes the bodies there.
+    pub(super) fn advance(
+        &mut self,
+        step: &Step,
+        members: &Members,
+        bodies: &[BodyRow],
+        set: &RigidBodySet,
+    ) {
+        if self.state != State::Ready {
+            return;
+        }
+        let carried = self.component.carried;
+        self.outcome = self.component.advance(step.plan.time, step.accuracy);
+        if !self.component.is_finite() {
+            self.state = State::Powerless;
+            self.component.forget_points();
+        }
+        if carried && !self.component.carried {
+            self.start.clone_from_slice(self.component.put_down_at());
+        }
+        self.orders.clear();
+        if self.state != State::Ready || self.component.carried {
+            return;
+        }
+        for (slot, b) in members.bodies.iter().enumerate() {
+            let row = &bodies[*b];
+            let (start, end) = (&self.start[slot], &self.component.bodies[slot]);
+            self.orders.push(set.get(row.handle).map(|body| {
+                let terms = step.terms(row.handle, body);
+                let push = if end.mobility < 1.0 {
+                    held::push(start, end.given, row.support, &terms)
+                } else {
+                    push(body, start, end, &terms, &step.engine)
+                };
+                (push, Expected::new(start, end, &terms))
+            }));
         }
     }
 
@@ -308,23 +337,15 @@ impl Assembly {
             let Some(body) = set.get_mut(row.handle).filter(|body| !body.is_sleeping()) else {
                 continue;
             };
-            let mut share = [Vec3::ZERO; 2];
-            let mut raised_iterations = false;
-            if ready {
-                let (start, end) = (&self.start[slot], &self.component.bodies[slot]);
-                let terms = step.terms(row.handle, body);
-                raised_iterations = terms.raised_iterations;
-                let (expected, whole) = Expected::new(start, end, &terms);
-                row.expected = Some(expected);
-                row.whole = whole;
-                share = if end.mobility < 1.0 {
-                    held::deliver(body, start, end.given, row.support, &terms)
-                } else {
-                    deliver(body, start, end, &terms, &step.engine)
-                };
+            let order = self.orders.get(slot).and_then(Option::as_ref);
+            if let Some((push, (expected, whole))) = order.filter(|_| ready) {
+                row.expected = Some(*expected);
+                row.whole = *whole;
+                row.give(push, body);
+            } else {
+                row.give(&Push::default(), body);
             }
-            row.give(share, body, raised_iterations);
-            step.delivered.set(true);
+            step.delivered.store(true, Ordering::Relaxed);
         }
         let mut solved = self.component.elements.iter();
         for e in members.elements {

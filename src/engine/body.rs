@@ -146,43 +146,67 @@ pub(super) fn read(body: &RapierBody, gravity: Vec3, user: &ExternalForce, turns
     out
 }
 
-/// Sets the body's velocity for the start of the step, and returns the acceleration that it must have
-/// over it to move so far and reach such a velocity.
+/// What the engine is given for a step, so that a body ends it where the integrator did.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Push {
+    /// Velocities at its start, where it keeps those that are set.
+    pub linvel: Option<Vec3>,
+    pub angvel: Option<Vec3>,
+    /// Force and torque of the elements over it.
+    pub share: [Vec3; 2],
+    pub raised_iterations: bool,
+}
+
+impl Push {
+    /// Gives the body all but the force and torque, which others add to.
+    #[inline(always)]
+    pub(super) fn act(&self, body: &mut RapierBody) {
+        if self.raised_iterations {
+            body.set_additional_solver_iterations(1);
+        }
+        if let Some(linvel) = self.linvel {
+            body.set_linvel(linvel, false);
+        }
+        if let Some(angvel) = self.angvel {
+            body.set_angvel(angvel, false);
+        }
+    }
+}
+
+/// The velocity that a body is given for the start of the step, if any, and the acceleration that it must have over
+/// it, to move so far and reach such a velocity.
 #[inline(always)]
-pub(super) fn deliver_straight(
-    body: &mut RapierBody,
+pub(super) fn straight(
     velocity: DVec3,
     displacement: DVec3,
     reached: DVec3,
     terms: &Terms,
     engine: &Engine,
-) -> DVec3 {
+) -> (Option<Vec3>, DVec3) {
     let time = terms.schedule.time;
     if !terms.takes_impulses {
-        return (reached - velocity) * terms.schedule.per_time;
+        return (None, (reached - velocity) * terms.schedule.per_time);
     }
     let schedule = &terms.schedule;
     let wanted = schedule.reach(displacement - time * velocity, reached - velocity);
     let planned = schedule.capped(wanted, velocity, engine.fastest);
     let linvel = (velocity + planned.jump).as_vec3();
-    body.set_linvel(linvel, false);
     // The engine's velocity is rounded; the force makes up for it.
     let rounding = velocity + planned.jump - linvel.as_dvec3();
-    planned.rate + rounding * schedule.per_time
+    let rate = planned.rate + rounding * schedule.per_time;
+    (Some(linvel), rate)
 }
 
-/// Sets the body's velocities for the start of the step, and returns the force and torque that
-/// elements must add over it, so that the engine ends where the integrator did.
-pub(super) fn deliver(
-    body: &mut RapierBody,
+/// What takes a free body from its start to its end.
+pub(super) fn push(
+    body: &RapierBody,
     start: &Body,
     end: &Body,
     terms: &Terms,
     engine: &Engine,
-) -> [Vec3; 2] {
+) -> Push {
     let time = terms.schedule.time;
-    let linear = deliver_straight(
-        body,
+    let (linvel, linear) = straight(
         start.velocity,
         end.position - start.position,
         end.velocity,
@@ -190,7 +214,7 @@ pub(super) fn deliver(
         engine,
     );
     let force = force_for(linear - start.acceleration, start.inverse_mass);
-    let mut torque = DVec3::ZERO;
+    let (mut angvel, mut torque) = (None, DVec3::ZERO);
     if start.spin != Spin::Still {
         let inverse_inertia = start.inverse_inertia();
         let spin = start.angular_velocity();
@@ -204,7 +228,7 @@ pub(super) fn deliver(
             }
         };
         if terms.takes_impulses {
-            body.set_angvel((spin + jump).as_vec3(), false);
+            angvel = Some((spin + jump).as_vec3());
         }
         torque = torque_for(rate, inverse_inertia) - start.torque;
         for axis in 0..3 {
@@ -213,5 +237,10 @@ pub(super) fn deliver(
             }
         }
     }
-    [force.as_vec3(), torque.as_vec3()]
+    Push {
+        linvel,
+        angvel,
+        share: [force.as_vec3(), torque.as_vec3()],
+        raised_iterations: terms.raised_iterations,
+    }
 }

@@ -1,5 +1,6 @@
 //! One `ExternalForce` per body, two owners: the user's share and ours, kept apart.
 
+use super::body::Push;
 use super::scene::{BodyRow, Scene};
 use super::solve::Loads;
 use bevy::ecs::entity_disabling::Disabled;
@@ -61,14 +62,11 @@ fn sum(elements: &ExternalForce, user: &ExternalForce) -> ExternalForce {
 }
 
 impl BodyRow {
-    /// Gives the body the elements' force and torque over the coming step, if they are numbers.
+    /// Gives the body what elements push it with over the coming step, if their force and torque are numbers.
     #[inline(always)]
-    pub(super) fn give(
-        &mut self,
-        [force, torque]: [Vec3; 2],
-        body: &mut RapierBody,
-        raised_iterations: bool,
-    ) {
+    pub(super) fn give(&mut self, push: &Push, body: &mut RapierBody) {
+        push.act(body);
+        let [force, torque] = push.share;
         let finite = force.is_finite() && torque.is_finite();
         let kept = |v: Vec3| if finite { v } else { Vec3::ZERO };
         let elements = ExternalForce {
@@ -83,7 +81,7 @@ impl BodyRow {
         self.share = Some(Share {
             force: elements.force,
             turns,
-            raised_iterations,
+            raised_iterations: push.raised_iterations,
         });
     }
 

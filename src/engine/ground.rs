@@ -7,15 +7,16 @@ use bevy_rapier3d::parry;
 use bevy_rapier3d::parry::bounding_volume::{Aabb, BoundingVolume};
 use bevy_rapier3d::rapier::dynamics::{RigidBody as RapierBody, RigidBodySet};
 use bevy_rapier3d::rapier::geometry::{ColliderHandle, ColliderSet};
-use std::cell::{Cell, OnceCell};
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// What cannot be moved, to see what bodies stand on that the engine has not stepped yet: it finds
 /// contacts only within its step, and a stiff spring must know before the first.
 #[derive(Default)]
 pub(super) struct Ground {
-    solids: OnceCell<Vec<(ColliderHandle, Aabb)>>,
+    solids: OnceLock<Vec<(ColliderHandle, Aabb)>>,
     /// Looks taken in this tick.
-    looks: Cell<usize>,
+    looks: AtomicUsize,
 }
 
 /// Looks in a tick after which further new bodies count as free for one step: a scene of thousands that
@@ -33,11 +34,10 @@ impl Ground {
         let mut push = DVec3::ZERO;
         for own in body.colliders().iter().filter_map(|c| colliders.get(*c)) {
             let solids = self.solids.get_or_init(|| solids(bodies, colliders));
-            let looks = self.looks.get() + solids.len();
-            if looks > LOOKS {
+            let before = self.looks.fetch_add(solids.len(), Ordering::Relaxed);
+            if before + solids.len() > LOOKS {
                 return Support::None;
             }
-            self.looks.set(looks);
             let bounds = own.compute_aabb().loosened(TOUCH);
             for (handle, solid) in solids {
                 if !bounds.intersects(solid) || !own.is_enabled() || own.is_sensor() {

@@ -25,8 +25,9 @@ pub(super) struct Group {
 }
 
 impl Group {
-    /// Has it assembled in this, all of it read anew.
-    fn take(&mut self, mut assembly: Assembly, assemblies: &mut Vec<Assembly>) {
+    /// Has it, of this index, assembled in this, all of it read anew.
+    fn take(&mut self, index: usize, mut assembly: Assembly, assemblies: &mut Vec<Assembly>) {
+        assembly.group = index;
         self.assembly = Some(assemblies.len());
         assembly.signature = self.signature;
         assembly.read_anew();
@@ -134,14 +135,14 @@ impl Groups {
             let before = known.remove(&signature).filter(|_| !is_plain);
             self.list[g].signature = signature;
             if !alone || before.is_some() {
-                self.list[g].take(before.unwrap_or_default(), assemblies);
+                self.list[g].take(g, before.unwrap_or_default(), assemblies);
             }
         }
     }
 
     /// Gives a lone element's group an assembly of its own after all.
     pub(super) fn promote(&mut self, group: usize, assemblies: &mut Vec<Assembly>) {
-        self.list[group].take(Assembly::default(), assemblies);
+        self.list[group].take(group, Assembly::default(), assemblies);
     }
 
     pub(super) fn list(&self) -> &[Group] {

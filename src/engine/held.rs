@@ -6,6 +6,7 @@
 //! by which its inverse mass is scaled in the next step. Bodies that touch nothing and have no joint are
 //! free by definition, and are never measured.
 
+use super::body::Push;
 use super::expected::Twist;
 use super::scene::BodyRow;
 use super::step::Terms;
@@ -175,13 +176,7 @@ pub(super) fn held(free: &Body, mobility: f64, direction: Option<DVec3>) -> Body
 /// Delivery to a body whose motion is not ours to order: the elements' mean force. An impulse at the
 /// start holds the first of n substeps still, whatever the constraints leave of mass and direction. Joints
 /// answer weight and the user's force as well, so these are held still with it; a contact would be left.
-pub(super) fn deliver(
-    body: &mut RapierBody,
-    free: &Body,
-    given: (DVec3, DVec3),
-    support: Support,
-    terms: &Terms,
-) -> [Vec3; 2] {
+pub(super) fn push(free: &Body, given: (DVec3, DVec3), support: Support, terms: &Terms) -> Push {
     let time = terms.schedule.time;
     let n = f64::from(terms.schedule.substeps);
     let outside = match support {
@@ -189,22 +184,24 @@ pub(super) fn deliver(
         _ => (force_for(free.acceleration, free.inverse_mass), free.torque),
     };
     let mut force = (given.0 / time, given.1 / time);
+    let turns = free.spin != Spin::Still;
+    let (mut linvel, mut angvel) = (None, None);
     if support.is_moving() && terms.takes_impulses {
         // Against a partner that moves, the force has to act evenly: each jerk would reach it.
-        body.set_linvel(free.velocity.as_vec3(), false);
-        if free.spin != Spin::Still {
-            body.set_angvel(free.angular_velocity().as_vec3(), false);
-        }
+        linvel = Some(free.velocity);
+        angvel = turns.then(|| free.angular_velocity());
     } else if terms.takes_impulses && terms.schedule.substeps > 1 {
         let back = 1.0 / (n - 1.0);
         let total = (force.0 + outside.0, force.1 + outside.1);
-        let linvel = free.velocity - back * time * (free.inverse_mass * total.0);
-        body.set_linvel(linvel.as_vec3(), false);
-        if free.spin != Spin::Still {
-            let angvel = free.angular_velocity() - back * time * (free.inverse_inertia() * total.1);
-            body.set_angvel(angvel.as_vec3(), false);
-        }
+        linvel = Some(free.velocity - back * time * (free.inverse_mass * total.0));
+        angvel = turns
+            .then(|| free.angular_velocity() - back * time * (free.inverse_inertia() * total.1));
         force = (force.0 + back * total.0, force.1 + back * total.1);
     }
-    [force.0.as_vec3(), force.1.as_vec3()]
+    Push {
+        linvel: linvel.map(|v| v.as_vec3()),
+        angvel: angvel.map(|w| w.as_vec3()),
+        share: [force.0.as_vec3(), force.1.as_vec3()],
+        raised_iterations: terms.raised_iterations,
+    }
 }

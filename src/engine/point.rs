@@ -1,7 +1,7 @@
 //! A body that elements move but do not turn: read as the point that its centre of mass is, and given what
 //! takes it on.
 
-use super::body::deliver_straight;
+use super::body::{Push, straight};
 use super::expected::Expected;
 use super::held::Support;
 use super::lone::Handled;
@@ -11,6 +11,7 @@ use super::step::Step;
 pub(super) use crate::dynamics::points::{Flight, FreePoint};
 use bevy::math::Vec3;
 use bevy_rapier3d::rapier::dynamics::{LockedAxes, RigidBody as RapierBody, RigidBodySet};
+use std::sync::atomic::Ordering;
 
 const LOCKED: LockedAxes = LockedAxes::TRANSLATION_LOCKED;
 
@@ -63,7 +64,7 @@ impl Step<'_> {
         if restless {
             keep_awake(body);
         }
-        self.delivered.set(true);
+        self.delivered.store(true, Ordering::Relaxed);
         let time = self.plan.time;
         let terms = self.terms(row.handle, body);
         row.expected = Some(Expected::straight(
@@ -74,8 +75,7 @@ impl Step<'_> {
             accounts,
             time,
         ));
-        let rate = deliver_straight(
-            body,
+        let (linvel, rate) = straight(
             point.velocity,
             flight.moved,
             flight.velocity,
@@ -83,6 +83,12 @@ impl Step<'_> {
             &self.engine,
         );
         let force = ((rate - point.acceleration) / point.inverse_mass).as_vec3();
-        row.give([force, Vec3::ZERO], body, terms.raised_iterations);
+        let push = Push {
+            linvel,
+            angvel: None,
+            share: [force, Vec3::ZERO],
+            raised_iterations: terms.raised_iterations,
+        };
+        row.give(&push, body);
     }
 }

@@ -4,11 +4,11 @@ use super::assembly::Assembly;
 use super::body::{Engine, FARTHEST_TURN};
 use super::forces::{self, SpringLoad};
 use super::ground::Ground;
+use super::group::Groups;
 use super::lone::{FLOCK, Flock, Handled, call_up};
-use super::scene::Scene;
+use super::scene::{BodyRow, Scene};
 use super::step::Step;
 use super::timestep::Plan;
-use crate::dynamics::tolerance::Accuracy;
 use crate::settings::CoiloverSettings;
 use bevy::ecs::entity_disabling::Disabled;
 use bevy::ecs::query::Allow;
@@ -16,7 +16,7 @@ use bevy::prelude::*;
 use bevy::tasks::ComputeTaskPool;
 use bevy_rapier3d::prelude::*;
 use bevy_rapier3d::rapier::dynamics::{RigidBody as RapierBody, RigidBodySet};
-use std::cell::Cell;
+use std::sync::atomic::AtomicBool;
 
 /// What of a Rapier context the step needs.
 type ContextParts<'a> = (
@@ -111,11 +111,11 @@ pub(crate) fn solve(
             accuracy: settings.accuracy(),
             links: joints.multibody_joints.multibodies().next().is_some(),
             quiet,
-            delivered: Cell::new(false),
+            delivered: AtomicBool::new(false),
         };
         let all_asleep = scene.step(context, &step, &mut set.bodies, &mut spare);
         scene.still.note(context, all_asleep);
-        scene.delivered |= step.delivered.get();
+        scene.delivered |= step.delivered.into_inner();
     }
     forces::show(scene, &mut loads);
 }
@@ -181,11 +181,11 @@ impl Scene {
         for g in spare.odd.drain(..).chain(spare.special.iter().copied()) {
             let (members, assembly) = (groups.members(&groups.list()[g]), &mut spare.assembly);
             assembly.gather(step, &members, elements, bodies, set, stale);
-            assembly.advance(step.plan.time, step.accuracy);
+            assembly.advance(step, &members, bodies, set);
             assembly.deliver(step, &members, elements, bodies, set);
             assembly.forget();
         }
-        advance(assemblies, step.plan.time, step.accuracy);
+        advance(assemblies, step, groups, bodies, set);
         for group in groups.list().iter().filter(|g| g.context == context) {
             if let Some(index) = group.assembly {
                 assemblies[index].deliver(step, &groups.members(group), elements, bodies, set);
@@ -200,25 +200,31 @@ impl Scene {
 
 /// Integrates all assemblies, on several threads where that is worth it; each is on its own, so the
 /// result is the same.
-fn advance(assemblies: &mut [Assembly], time: f64, accuracy: Accuracy) {
+fn advance(
+    assemblies: &mut [Assembly],
+    step: &Step,
+    groups: &Groups,
+    bodies: &[BodyRow],
+    set: &RigidBodySet,
+) {
     let load: usize = assemblies.iter().map(Assembly::load).sum();
     // The one that waits for the pool works too: on two cores the pool has just one.
     let threads = ComputeTaskPool::try_get().map_or(1, |pool| pool.thread_num() + 1);
     let ready = assemblies.iter().filter(|a| a.load() > 0).count();
-    if threads < 2 || ready < 2 || load < WORTH_SHARING {
+    let advance = |assemblies: &mut [Assembly]| {
         for assembly in assemblies {
-            assembly.advance(time, accuracy);
+            let group = &groups.list()[assembly.group];
+            assembly.advance(step, &groups.members(group), bodies, set);
         }
-        return;
+    };
+    if threads < 2 || ready < 2 || load < WORTH_SHARING {
+        return advance(assemblies);
     }
     let chunk = assemblies.len().div_ceil(4 * threads);
+    let advance = &advance;
     ComputeTaskPool::get().scope(|scope| {
         for chunk in assemblies.chunks_mut(chunk) {
-            scope.spawn(async move {
-                for assembly in chunk {
-                    assembly.advance(time, accuracy);
-                }
-            });
+            scope.spawn(async move { advance(chunk) });
         }
     });
 }

@@ -10,7 +10,7 @@ use bevy::math::DVec3;
 use bevy_rapier3d::prelude::*;
 use bevy_rapier3d::rapier::dynamics::{RigidBody as RapierBody, RigidBodyHandle, RigidBodySet};
 use bevy_rapier3d::rapier::geometry::ColliderSet;
-use std::cell::Cell;
+use std::sync::atomic::AtomicBool;
 
 /// Share of the lag by which a body with another one on it is seen behind. With all of it, it would neither lose nor
 /// win but for the engine's contacts, which at some frequencies win as much as the rest takes.
@@ -31,7 +31,7 @@ pub(super) struct Step<'a> {
     /// Nothing but their own bodies and moved ends can have woken what sleeps.
     pub quiet: bool,
     /// Something was given to some body.
-    pub delivered: Cell<bool>,
+    pub delivered: AtomicBool,
 }
 
 /// How the engine will step one body.
@@ -39,7 +39,7 @@ pub(super) struct Terms {
     pub schedule: Schedule,
     /// A link of a multibody does not keep velocities that are set.
     pub takes_impulses: bool,
-    /// It was given a second solver iteration for that.
+    /// It is given a second solver iteration for that.
     pub raised_iterations: bool,
 }
 
@@ -143,18 +143,17 @@ impl Step<'_> {
         0.5 * schedule.substep
     }
 
-    /// Readies a body for delivery.
-    pub(super) fn terms(&self, handle: RigidBodyHandle, body: &mut RapierBody) -> Terms {
-        let mut raised_iterations = false;
-        if self.engine.iterations * self.plan.pipeline_steps as usize == 1
-            && body.additional_solver_iterations() == 0
-        {
-            // One substep has room for a force or an impulse, not for both.
-            body.set_additional_solver_iterations(1);
-            raised_iterations = true;
-        }
+    /// How the engine is to step a body.
+    pub(super) fn terms(&self, handle: RigidBodyHandle, body: &RapierBody) -> Terms {
+        // One substep has room for a force or an impulse, not for both.
+        let raised_iterations = self.engine.iterations * self.plan.pipeline_steps as usize == 1
+            && body.additional_solver_iterations() == 0;
         Terms {
-            schedule: self.substeps(body),
+            schedule: if raised_iterations {
+                self.plan.schedule(self.engine.iterations + 1)
+            } else {
+                self.substeps(body)
+            },
             takes_impulses: self.takes_impulses(handle),
             raised_iterations,
         }
