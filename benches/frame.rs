@@ -91,8 +91,9 @@ fn networks(c: &mut Criterion) {
         group.sample_size(10);
         for count in sizes.iter().copied() {
             let mut lazy = Lazy::new(|| scene.app(count, Link::Ours, 1));
-            group.throughput(Throughput::Elements(u64::from(count)));
-            group.bench_function(BenchmarkId::from_parameter(count), |b| {
+            let springs = scene.springs(count);
+            group.throughput(Throughput::Elements(u64::from(springs)));
+            group.bench_function(BenchmarkId::from_parameter(springs), |b| {
                 b.iter_custom(|frames| lazy.own(frames, |_| {}));
             });
         }

@@ -120,6 +120,17 @@ fn stop(since: Res<Since>, mut own: ResMut<Own>) {
 }
 
 impl Scene {
+    /// How many springs [`Self::app`] makes of about `count`.
+    pub fn springs(self, count: u32) -> u32 {
+        match self {
+            Self::Lattice => {
+                let n = edge(count);
+                3 * n * n * (n - 1)
+            }
+            _ => count,
+        }
+    }
+
     /// About `count` springs without gravity, on bodies without colliders; already under way.
     pub fn app(self, count: u32, link: Link, microsteps: u32) -> App {
         let mut app = App::new();
@@ -298,9 +309,14 @@ fn cars(world: &mut World, count: u32) {
     }
 }
 
-/// The cube whose edges number about `count`.
+/// Bodies along an edge of the cube whose springs number about `count`.
+fn edge(count: u32) -> u32 {
+    ((f64::from(count) / 3.0).cbrt().round() as u32 + 1).max(2)
+}
+
+/// The cube whose springs number about `count`.
 fn lattice(world: &mut World, count: u32, link: Link) {
-    let n = ((f64::from(count) / 3.0).cbrt().round() as u32 + 1).max(2);
+    let n = edge(count);
     let at = |x: u32, y: u32, z: u32| Vec3::new(x as f32, y as f32, z as f32) * 1.05;
     let mut bodies = Vec::new();
     for x in 0..n {
