@@ -1,6 +1,7 @@
 //! A rigid body as the integrator sees it: free flight, impulses, inverse inertia.
 
 use bevy::math::{DMat3, DQuat, DVec3};
+use std::f64::consts::TAU;
 
 /// How a body can turn.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,6 +48,8 @@ pub(crate) struct Body {
     pub held: Option<DVec3>,
     /// What elements have given it so far in this step: impulse (N s) and angular impulse (N m s).
     pub given: (DVec3, DVec3),
+    /// Work of the user's torque so far in this step, J.
+    pub driven: f64,
     /// What [`Body::note_turn`] has found.
     pub turned: Option<Turned>,
 }
@@ -72,6 +75,13 @@ pub(crate) fn shortest(rotation: DQuat) -> DQuat {
     } else {
         rotation
     }
+}
+
+/// The rotation vector of a rotation: of all that come to the same, the nearest to the one that is expected.
+pub(crate) fn unwound(rotation: DQuat, expected: DVec3) -> DVec3 {
+    let by = shortest(rotation).to_scaled_axis();
+    let axis = by.try_normalize().unwrap_or_default();
+    by + ((expected - by).dot(axis) / TAU).round() * TAU * axis
 }
 
 /// Displacement and velocity at the end of a step, if one of them is beyond what the engine allows.
@@ -170,6 +180,7 @@ impl Body {
     /// Free flight: straight, and turning with constant angular momentum.
     pub(crate) fn drift(&mut self, time: f64) {
         self.position += time * self.velocity;
+        let power = self.user_power();
         match self.spin {
             Spin::Still => {}
             Spin::Locked { velocity } => {
@@ -178,6 +189,16 @@ impl Body {
             Spin::Free { momentum } => self.tumble(time, momentum),
         }
         self.note_turn();
+        self.driven += 0.5 * time * (power + self.user_power());
+    }
+
+    /// Power of the user's torque, W.
+    fn user_power(&self) -> f64 {
+        if self.torque == DVec3::ZERO {
+            0.0
+        } else {
+            self.torque.dot(self.angular_velocity())
+        }
     }
 
     /// A free rigid body as a symmetric top between two halves of what is left: exact for tops, second
@@ -332,11 +353,13 @@ impl Body {
         if self.spin == Spin::Still || self.farthest_turn == f64::INFINITY {
             return moved.is_some();
         }
-        let by = shortest(self.rotation * start.rotation.inverse()).to_scaled_axis();
+        let spin = 0.5 * (start.angular_velocity() + self.angular_velocity());
+        let by = unwound(self.rotation * start.rotation.inverse(), time * spin);
         let turned = held_back(by, self.angular_velocity(), self.farthest_turn, time);
         if let Some((held, velocity)) = turned {
             if held != by {
                 self.rotation = (turn(held) * start.rotation).normalize();
+                self.driven = self.torque.dot(held);
                 self.note_turn();
             }
             self.set_angular_velocity(velocity);

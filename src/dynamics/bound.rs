@@ -56,8 +56,9 @@ impl Bound {
     /// The same with the energy at hand, what of it can be rounding, and the power of moving ends.
     pub(crate) fn start(&mut self, now: f64, rounding: f64, power: f64, meddled: bool) {
         let change = now - self.last;
-        let gift = if change > 0.0 && (change < rounding || !meddled) {
-            // Noise of the engine's f32 is no gift, nor that it does not arrive where it was sent.
+        let gift = if change.abs() < rounding || (change > 0.0 && !meddled) {
+            // Noise of the engine's f32 is neither gift nor loss, nor is it a gift that it does not arrive where it
+            // was sent.
             0.0
         } else {
             change
@@ -169,6 +170,10 @@ impl Bound {
     pub(crate) fn end(&mut self, elements: &[Element], bodies: &[Body], time: f64) {
         if self.given.is_some() {
             self.finish(Energy::of(elements, bodies).sum(), time);
+            // From the next step on what torques gave is what the bodies have.
+            let driven: f64 = bodies.iter().map(|body| body.driven).sum();
+            self.last += driven;
+            self.given = self.given.map(|given| given + driven);
         }
     }
 
@@ -186,7 +191,7 @@ fn rounding(elements: &[Element], bodies: &[Body]) -> f64 {
     let unit = f64::from(f32::EPSILON);
     let mut sum = 0.0;
     for body in bodies {
-        sum += unit * (body.mass() * body.velocity).dot(body.velocity);
+        sum += 2.0 * unit * body.motion();
     }
     for element in elements {
         // Four substeps, two ends.

@@ -11,7 +11,7 @@
 //! quaternion update and gyroscopic term in between, so there the linear answer is refined by running
 //! the engine's rotation here and correcting what is missed.
 
-use super::body::{Body, shortest};
+use super::body::{Body, shortest, unwound};
 use bevy::math::{DMat3, DQuat, DVec3, Quat, Vec3};
 
 /// How the engine will step: all substeps of one call together.
@@ -105,32 +105,35 @@ impl Schedule {
         let spin = start.angular_velocity();
         let wanted = end.angular_velocity();
         let engine = Rounded::new(self, start, gyroscopic);
-        let refined = |mut delivery: Delivery, correct: &dyn Fn(DVec3, DVec3) -> Delivery| {
-            for _ in 0..ROUNDS {
-                let (rotation, velocity) = engine.run(spin, &delivery);
-                let angle = small_angle(end.rotation * rotation.inverse());
-                let change = wanted - velocity;
-                let correction = correct(angle, change);
-                delivery.jump += correction.jump;
-                delivery.rate += correction.rate;
-                if angle.length() + self.time * change.length() < MISSED {
-                    break;
+        // With the weight that a velocity has which is missed.
+        let refined =
+            |mut delivery: Delivery, weight: f64, correct: &dyn Fn(DVec3, DVec3) -> Delivery| {
+                for _ in 0..ROUNDS {
+                    let (rotation, velocity) = engine.run(spin, &delivery);
+                    let angle = small_angle(end.rotation * rotation.inverse());
+                    let change = weight * (wanted - velocity);
+                    let correction = correct(angle, change);
+                    delivery.jump += correction.jump;
+                    delivery.rate += correction.rate;
+                    if angle.length() + self.time * change.length() < MISSED {
+                        break;
+                    }
                 }
-            }
-            delivery
-        };
+                delivery
+            };
         let cap = start.farthest_turn * self.per_time;
-        let turned = shortest(end.rotation * start.rotation.inverse()).to_scaled_axis();
+        let expected = 0.5 * self.time * (spin + wanted);
+        let turned = unwound(end.rotation * start.rotation.inverse(), expected);
         let direct = self.reach(turned - self.time * spin, wanted - spin);
         let eased = self.capped(direct, spin, CAUTION * cap);
         if eased == direct {
-            let delivery = refined(direct, &|angle, change| self.reach(angle, change));
+            let delivery = refined(direct, 1.0, &|angle, change| self.reach(angle, change));
             if self.capped(delivery, spin, cap) == delivery {
                 return delivery;
             }
         }
         // Where it arrives counts; the velocity is what it then is.
-        refined(eased, &|angle, _| Delivery {
+        refined(eased, 0.0, &|angle, _| Delivery {
             jump: angle * self.per_time,
             rate: DVec3::ZERO,
         })

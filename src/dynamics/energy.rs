@@ -11,7 +11,7 @@ pub(crate) struct Energy {
     pub motion: f64,
     /// In the springs.
     pub stored: f64,
-    /// Potential in gravity and the users' forces.
+    /// Potential in gravity and the users' forces, less the work of their torques in this step.
     pub place: f64,
 }
 
@@ -21,7 +21,7 @@ impl Energy {
         let mut energy = Self::default();
         for body in bodies {
             energy.motion += body.motion();
-            energy.place -= (body.mass() * body.acceleration).dot(body.position);
+            energy.place -= (body.mass() * body.acceleration).dot(body.position) + body.driven;
         }
         for element in elements {
             energy.stored += element.elastic(element.distance(bodies).0).energy;

@@ -1,6 +1,6 @@
 //! From one engine step to the next: the bodies and elements that have to be solved together.
 
-use super::body::{Body, Spin, turn};
+use super::body::{Body, Spin, shortest, turn};
 use super::bound::Bound;
 use super::element::{Element, End};
 use super::energy::Energy;
@@ -353,7 +353,8 @@ impl Motion for Component {
             fine.velocity += (fine.velocity - coarse.velocity) / 3.0;
             fine.given.0 += (fine.given.0 - coarse.given.0) / 3.0;
             fine.given.1 += (fine.given.1 - coarse.given.1) / 3.0;
-            let apart = (fine.rotation * coarse.rotation.inverse()).to_scaled_axis();
+            fine.driven += (fine.driven - coarse.driven) / 3.0;
+            let apart = shortest(fine.rotation * coarse.rotation.inverse()).to_scaled_axis();
             match (&mut fine.spin, coarse.spin) {
                 (Spin::Free { momentum: f }, Spin::Free { momentum: c })
                 | (Spin::Locked { velocity: f }, Spin::Locked { velocity: c }) => {

@@ -27,6 +27,7 @@ pub(super) fn point(mass: f64, position: DVec3, gravity: DVec3) -> Body {
         mobility: 1.0,
         held: None,
         given: (DVec3::ZERO, DVec3::ZERO),
+        driven: 0.0,
         turned: None,
     }
 }

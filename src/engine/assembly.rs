@@ -82,6 +82,7 @@ impl Assembly {
     /// Readies it for another component.
     pub(super) fn forget(&mut self) {
         self.ledger.clear();
+        self.component.forget();
         self.asleep = false;
     }
 

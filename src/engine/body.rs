@@ -127,6 +127,7 @@ pub(super) fn read(body: &RapierBody, gravity: Vec3, user: &ExternalForce, turns
         mobility: 1.0,
         held: None,
         given: (DVec3::ZERO, DVec3::ZERO),
+        driven: 0.0,
         turned: None,
     };
     if turns {

@@ -1,10 +1,11 @@
 //! After the engine's step: what each element shows.
 
-use super::body::{is_movable, point_of, turning_of};
+use super::body::{is_movable, point_of};
 use super::held::{Context, center_of, observe};
 use super::parts::IsElement;
 use super::prepare::report;
 use super::scene::{BodyRow, ElementRow, Held, Scene, turning_mark};
+use super::step::facing;
 use crate::dynamics::element::{End, Path};
 use crate::dynamics::guide::Guide;
 use crate::element::{Spring, SpringDamper, SpringTuning, TorsionSpring, TorsionSpringDamper};
@@ -219,6 +220,9 @@ impl ElementRow {
                 Held::Body { local, .. } if self.on[end].is_some() => local,
                 Held::Body { .. } => point.0,
             });
+            if self.on[end].is_none() && self.companion.guide != Guide::Centres {
+                self.memory.facings[end] = frame(&self.held[end], time, look.sets).0;
+            }
         }
         Some(points)
     }
@@ -301,17 +305,11 @@ impl ElementRow {
 
 /// Rotation and angular velocity of what holds an end, after the step.
 fn frame(held: &Held, time: f64, sets: &Query<&RapierRigidBodySet>) -> (DQuat, DVec3) {
-    let Held::Body {
-        handle, context, ..
-    } = *held
-    else {
-        return (DQuat::IDENTITY, DVec3::ZERO);
+    let set = match held {
+        Held::Body { context, .. } => sets.get(*context).ok(),
+        Held::Path { .. } => None,
     };
-    sets.get(context)
-        .ok()
-        .and_then(|set| set.bodies.get(handle))
-        .map_or((DQuat::IDENTITY, DVec3::ZERO), |body| {
-            let (rotation, _) = turning_of(body, time);
-            (rotation, body.angvel().as_dvec3())
-        })
+    set.map_or((DQuat::IDENTITY, DVec3::ZERO), |set| {
+        facing(held, time, &set.bodies)
+    })
 }

@@ -15,7 +15,7 @@ use super::touch::Partner;
 use crate::dynamics::kick::Memo;
 use crate::dynamics::tolerance::{Controller, Outcome};
 use bevy::ecs::entity::{EntityHashMap, EntityHashSet};
-use bevy::math::{DVec3, Vec3};
+use bevy::math::{DQuat, DVec3, Vec3};
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::ExternalForce;
 use bevy_rapier3d::rapier::dynamics::{RigidBody as RapierBody, RigidBodyHandle};
@@ -111,6 +111,8 @@ pub(super) struct Memory {
     pub places: [Option<DVec3>; 2],
     /// Last twist, full turns counted.
     pub angle: f64,
+    /// How what holds its ends was turned then, where elements cannot turn it and that matters.
+    pub facings: [DQuat; 2],
     /// The bodies' scales, held against the rounding noise of their transforms.
     pub scales: [Option<DVec3>; 2],
 }

@@ -16,7 +16,10 @@ use bevy::prelude::*;
 use bevy::tasks::ComputeTaskPool;
 use bevy_rapier3d::prelude::*;
 use bevy_rapier3d::rapier::dynamics::{RigidBody as RapierBody, RigidBodySet};
+use std::num::NonZeroUsize;
+use std::sync::LazyLock;
 use std::sync::atomic::AtomicBool;
+use std::thread::available_parallelism;
 
 /// What of a Rapier context the step needs.
 type ContextParts<'a> = (
@@ -45,6 +48,10 @@ pub(super) type Loads<'w, 's> = Query<
 /// Elements in networks that are about to be solved, above which it is worth waking other threads, and the few
 /// allocations that this takes: the only ones of a warm step.
 const WORTH_SHARING: usize = 256;
+
+/// More threads than these would only wait for each other.
+static CORES: LazyLock<usize> =
+    LazyLock::new(|| available_parallelism().map_or(1, NonZeroUsize::get));
 
 /// Room for the work of a step.
 #[derive(Default)]
@@ -209,7 +216,8 @@ fn advance(
 ) {
     let load: usize = assemblies.iter().map(Assembly::load).sum();
     // The one that waits for the pool works too: on two cores the pool has just one.
-    let threads = ComputeTaskPool::try_get().map_or(1, |pool| pool.thread_num() + 1);
+    let pool = ComputeTaskPool::try_get().map_or(0, |pool| pool.thread_num());
+    let threads = CORES.min(pool + 1);
     let ready = assemblies.iter().filter(|a| a.load() > 0).count();
     let advance = |assemblies: &mut [Assembly]| {
         for assembly in assemblies {

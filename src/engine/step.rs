@@ -1,12 +1,13 @@
 //! What holds for every component of a context in this step, and what they all need.
 
-use super::body::{Engine, is_movable, point_after, point_of};
+use super::body::{Engine, is_movable, point_after, point_of, turning_of};
 use super::ground::Ground;
 use super::scene::{BodyRow, ElementRow, Held};
 use super::timestep::Plan;
 use crate::dynamics::delivery::Schedule;
+use crate::dynamics::guide::Guide;
 use crate::dynamics::tolerance::Accuracy;
-use bevy::math::DVec3;
+use bevy::math::{DQuat, DVec3};
 use bevy_rapier3d::prelude::*;
 use bevy_rapier3d::rapier::dynamics::{RigidBody as RapierBody, RigidBodyHandle, RigidBodySet};
 use bevy_rapier3d::rapier::geometry::ColliderSet;
@@ -43,6 +44,17 @@ pub(super) struct Terms {
     pub raised_iterations: bool,
 }
 
+/// Rotation and angular velocity of what holds an end that elements cannot turn.
+pub(super) fn facing(held: &Held, time: f64, bodies: &RigidBodySet) -> (DQuat, DVec3) {
+    let body = match held {
+        Held::Body { handle, .. } => bodies.get(*handle),
+        Held::Path { .. } => None,
+    };
+    body.map_or((DQuat::IDENTITY, DVec3::ZERO), |body| {
+        turning_of(body, time)
+    })
+}
+
 impl Step<'_> {
     /// A body as it may be moved; one that may not be any more makes the scene stale.
     pub(super) fn movable<'b>(
@@ -70,7 +82,7 @@ impl Step<'_> {
         }
     }
 
-    /// Whether an end moves, or is not where it was after the last step.
+    /// Whether an end moves or turns, or is not where or as it was after the last step.
     pub(super) fn has_moved(&self, row: &ElementRow, bodies: &RigidBodySet) -> bool {
         if row.watched == [false; 2] && row.moves() == 2 {
             // Held by what elements move, and where it says.
@@ -81,7 +93,7 @@ impl Step<'_> {
                 Held::Body { local, .. } if row.on[end].is_some() => local,
                 ref held => {
                     let (from, to) = self.path(held, bodies);
-                    if from != to {
+                    if from != to || self.has_turned(row, end, bodies) {
                         return true;
                     }
                     to
@@ -89,6 +101,15 @@ impl Step<'_> {
             };
             row.memory.places[end].is_some_and(|last| last != now)
         })
+    }
+
+    /// The same of how an end is turned that elements cannot turn, where its element has an axis of its.
+    fn has_turned(&self, row: &ElementRow, end: usize, bodies: &RigidBodySet) -> bool {
+        if row.companion.guide == Guide::Centres || row.memory.places[end].is_none() {
+            return false;
+        }
+        let (rotation, turning) = facing(&row.held[end], self.plan.time, bodies);
+        turning != DVec3::ZERO || rotation != row.memory.facings[end]
     }
 
     /// The engine's equal substeps of a body.

@@ -4,6 +4,7 @@ use super::Component;
 use crate::dynamics::body::Body;
 use crate::dynamics::energy::Energy;
 use crate::dynamics::points::Points;
+use crate::dynamics::tolerance::Controller;
 
 impl Component {
     /// The points, if the last step was as long and they can go on from it.
@@ -15,6 +16,13 @@ impl Component {
     /// Has it taken in anew for the next step.
     pub(crate) fn forget_points(&mut self) {
         self.memory.carriable = None;
+    }
+
+    /// Forgets all that it knows of the steps so far: the next one is of something else.
+    pub(crate) fn forget(&mut self) {
+        self.forget_points();
+        self.memory.bound.forget();
+        self.memory.controller = Controller::default();
     }
 
     /// After a step that was [`carried`](Self::carried) to its end: what came of it.

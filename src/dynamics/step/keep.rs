@@ -105,6 +105,11 @@ impl Component {
             }
         }
         if any {
+            // From where they were: on the way that is not taken, turns may have been counted.
+            let start = &self.memory.saved[0].elements;
+            for (element, start) in self.elements.iter_mut().zip(start) {
+                (element.angle, element.direction) = (start.angle, start.direction);
+            }
             self.aim(time);
         }
     }

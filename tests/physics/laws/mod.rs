@@ -4,6 +4,7 @@ mod axis;
 mod bad;
 mod blows;
 mod breaking;
+mod driven;
 mod ledger;
 mod light;
 mod one_way;
