@@ -84,17 +84,22 @@ pub(crate) fn unwound(rotation: DQuat, expected: DVec3) -> DVec3 {
     by + ((expected - by).dot(axis) / TAU).round() * TAU * axis
 }
 
-/// Displacement and velocity at the end of a step, if one of them is beyond what the engine allows.
+/// Whether the engine flies or turns a body so far, to such a velocity, at a steady rate and never faster.
+#[inline]
+pub(crate) fn is_within(by: DVec3, velocity: DVec3, fastest: f64, time: f64) -> bool {
+    let first = 2.0 / time * by - velocity;
+    first.length_squared().max(velocity.length_squared()) <= fastest * fastest
+}
+
+/// Displacement and velocity at the end of a step as near as it gets to these, if it does not get there.
 fn held_back(by: DVec3, velocity: DVec3, farthest: f64, time: f64) -> Option<(DVec3, DVec3)> {
     let fastest = farthest / time;
-    if by.length_squared() > farthest * farthest {
-        let held = by.clamp_length_max(farthest);
-        Some((held, held / time))
-    } else if velocity.length_squared() > fastest * fastest {
-        Some((by, velocity.clamp_length_max(fastest)))
-    } else {
-        None
+    if is_within(by, velocity, fastest, time) {
+        return None;
     }
+    let last = velocity.clamp_length_max(fastest);
+    let first = (2.0 / time * by - last).clamp_length_max(fastest);
+    Some((0.5 * time * (first + last), last))
 }
 
 impl Body {

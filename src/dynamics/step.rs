@@ -80,15 +80,24 @@ impl Component {
         self.memory.carriable = None;
         let alone = self.is_alone();
         let mut controller = std::mem::take(&mut self.memory.controller);
-        if let [element] = self.elements.as_mut_slice()
-            && let Some(apart) = Apart::of(element, &self.bodies)
-        {
-            let memo = &mut self.memory.memo;
+        let apart = match self.elements.as_slice() {
+            [element] => Apart::of(element, &self.bodies),
+            _ => None,
+        };
+        if let Some(apart) = apart {
+            self.save(0);
+            let Memory { memo, bound, .. } = &mut self.memory;
+            bound.forget();
+            let element = &mut self.elements[0];
             let outcome = apart.advance(element, &mut self.bodies, memo, |motion| {
                 controller.drive(motion, time, accuracy)
             });
-            self.memory.controller = controller;
-            return outcome;
+            if !self.is_beyond(time) {
+                self.memory.controller = controller;
+                return outcome;
+            }
+            // Held back there, energy has to be watched.
+            self.load(0);
         }
         if self.owed > 0.0 {
             self.memory.controller = controller;
@@ -103,11 +112,9 @@ impl Component {
             self.memory.controller = controller;
             return outcome;
         }
-        let Memory { bound, saved, .. } = &mut self.memory;
+        let bound = &mut self.memory.bound;
         bound.begin(&self.elements, &self.bodies, self.stepped, self.meddled);
-        let start = &mut saved[0];
-        start.bodies.clone_from(&self.bodies);
-        start.elements.clone_from(&self.elements);
+        self.save(0);
         let mut outcome = controller.drive(self, time, accuracy);
         self.memory.controller = controller;
         outcome.method = Method::ClosedForm;

@@ -9,6 +9,7 @@ use super::point::{Flight, FreePoint};
 use super::scene::{BodyRow, ElementRow};
 use super::step::Step;
 use crate::dynamics::abreast::{ABREAST, Abreast};
+use crate::dynamics::body::is_within;
 use crate::dynamics::element::rounding;
 use crate::dynamics::guide::Guide;
 use crate::dynamics::pair::{Moving, Pair, Separation};
@@ -268,10 +269,11 @@ impl Step<'_> {
                     (outcome, end, end.d.length())
                 }
             };
-            if !(end.d.is_finite() && end.v.is_finite()) {
+            let sound = end.d.is_finite() && end.v.is_finite();
+            let Some(flights) = self.flights(aloft, &end).filter(|_| sound) else {
                 failed.push(aloft.group);
                 continue;
-            }
+            };
             row.memory.direction = end.direction;
             row.outcome = Outcome {
                 method: Method::ClosedForm,
@@ -280,7 +282,7 @@ impl Step<'_> {
             if let Some(before) = aloft.energy {
                 row.ledger.dissipated += before - row.energy_of(&aloft.pair, &end, length);
             }
-            self.arrive(row, aloft, &end, bodies, set);
+            self.arrive(row, aloft, &flights, bodies, set);
         }
         flock.aloft.clear();
         flock.plain = 0;
@@ -304,36 +306,50 @@ impl Step<'_> {
         }
     }
 
-    /// Gives the engine what takes both bodies where the element takes them.
-    fn arrive(
-        &self,
-        row: &mut ElementRow,
-        aloft: &Aloft,
-        end: &Separation,
-        bodies: &mut [BodyRow],
-        set: &mut RigidBodySet,
-    ) {
+    /// What takes both ends along; none if one of them would fly faster than the engine lets it.
+    fn flights(&self, aloft: &Aloft, end: &Separation) -> Option<[Flight; 2]> {
         let time = self.plan.time;
         let Aloft { pair, start, .. } = aloft;
         // What the element adds to the free motion of the separation.
         let moved = end.d - start.d - time * (start.v + 0.5 * time * pair.outside);
         let sped = end.v - start.v - time * pair.outside;
-        for end in 0..2 {
+        let mut flights = [Flight::default(); 2];
+        for (end, flight) in flights.iter_mut().enumerate() {
             let (point, sign) = (&aloft.points[end], if end == 0 { -1.0 } else { 1.0 });
-            let Some(index) = aloft.movable[end] else {
-                // What holds this end moves it against what the other end is given.
-                row.ledger.work -= sign / pair.inverse_mass * sped.dot(point.velocity);
-                continue;
-            };
             let share = sign * point.inverse_mass / pair.inverse_mass;
             let pulled = time * point.acceleration;
-            let flight = Flight {
+            *flight = Flight {
                 moved: time * (point.velocity + 0.5 * pulled) + share * moved,
                 velocity: point.velocity + pulled + share * sped,
                 given: sign / pair.inverse_mass * sped,
             };
-            let row = &mut bodies[index];
-            self.deliver_point(row, point, &flight, [aloft.restless, false], set);
+            let moves = aloft.movable[end].is_some();
+            if moves && !is_within(flight.moved, flight.velocity, self.engine.fastest, time) {
+                return None;
+            }
+        }
+        Some(flights)
+    }
+
+    /// Gives the engine what takes both bodies where the element takes them.
+    fn arrive(
+        &self,
+        row: &mut ElementRow,
+        aloft: &Aloft,
+        flights: &[Flight; 2],
+        bodies: &mut [BodyRow],
+        set: &mut RigidBodySet,
+    ) {
+        for (end, flight) in flights.iter().enumerate() {
+            let point = &aloft.points[end];
+            match aloft.movable[end] {
+                Some(index) => {
+                    let row = &mut bodies[index];
+                    self.deliver_point(row, point, flight, [aloft.restless, false], set);
+                }
+                // What holds this end moves it against what the other end is given.
+                None => row.ledger.work -= flight.given.dot(point.velocity),
+            }
         }
     }
 }

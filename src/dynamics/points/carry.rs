@@ -3,6 +3,7 @@
 
 use super::{Point, Points, Wire};
 use crate::dynamics::body::Body;
+use crate::dynamics::body::is_within;
 use crate::dynamics::element::{Element, End};
 use bevy::math::DVec3;
 
@@ -18,7 +19,7 @@ pub(crate) struct FreePoint {
 }
 
 /// What a step made of a body.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Flight {
     /// How far it went, m.
     pub moved: DVec3,
@@ -95,13 +96,12 @@ impl Points {
         self.stiffest_alone * time * time < resolved && self.start[self.bodies..].iter().all(rests)
     }
 
-    /// Whether the step has taken none further, and leaves none faster, than so far in such a time.
+    /// Whether the engine takes all of them along, if it flies none further than so far in such a time.
     pub(in crate::dynamics) fn are_within(&self, farthest: f64, time: f64) -> bool {
-        let [way, speed] = [farthest, farthest / time].map(|most| most * most);
         let mut moves = self.points.iter().zip(&self.start).take(self.bodies);
         moves.all(|(end, start)| {
-            (end.position - start.position).length_squared() <= way
-                && end.velocity.length_squared() <= speed
+            let by = end.position - start.position;
+            is_within(by, end.velocity, farthest / time, time)
         })
     }
 

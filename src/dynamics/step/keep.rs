@@ -2,7 +2,7 @@
 //! too much was won.
 
 use super::{Component, Memory};
-use crate::dynamics::body::Body;
+use crate::dynamics::body::{Body, is_within};
 use crate::dynamics::bound::Bound;
 use crate::dynamics::points::Points;
 use crate::dynamics::system::DENSE;
@@ -92,6 +92,15 @@ impl Component {
         }
         bound.end(&self.elements, &self.bodies, time);
         self.memory.bound = bound;
+    }
+
+    /// Whether some body has flown faster than the engine will let it.
+    pub(super) fn is_beyond(&self, time: f64) -> bool {
+        let fastest = self.farthest_move.unwrap_or(f64::INFINITY) / time;
+        let start = &self.memory.saved[0].bodies;
+        self.bodies.iter().zip(start).any(|(body, start)| {
+            !is_within(body.position - start.position, body.velocity, fastest, time)
+        })
     }
 
     /// Takes no body further than the engine will: it would be missed by all that lies beyond.
