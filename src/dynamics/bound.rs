@@ -207,7 +207,7 @@ fn rounding(elements: &[Element], bodies: &[Body]) -> f64 {
 fn power(elements: &[Element], bodies: &[Body]) -> f64 {
     let mut sum = 0.0;
     for element in elements {
-        for end in &element.ends {
+        for (i, end) in element.ends.iter().enumerate() {
             if let End::Path(path) = end
                 && (path.velocity != DVec3::ZERO || path.turning != DVec3::ZERO)
                 && let Some(line) = element.line(bodies)
@@ -216,7 +216,7 @@ fn power(elements: &[Element], bodies: &[Body]) -> f64 {
                 let speed = if line.holds[0].twist {
                     path.turning.length()
                 } else {
-                    path.velocity.length() + path.turning.length() * line.length.abs()
+                    end.motion(&line.holds[i], bodies).0.length()
                 };
                 sum += element.tension(line.length, rate).abs() * speed;
             }

@@ -65,7 +65,12 @@ impl Body {
 
     /// Kinetic energy, J.
     pub(crate) fn motion(&self) -> f64 {
-        let turning = match self.spin {
+        0.5 * (self.mass() * self.velocity).dot(self.velocity) + self.turning()
+    }
+
+    /// Kinetic energy of its rotation, J.
+    pub(crate) fn turning(&self) -> f64 {
+        let twice = match self.spin {
             Spin::Still => 0.0,
             Spin::Free { momentum } => momentum.dot(self.angular_velocity()),
             Spin::Locked { velocity } => {
@@ -80,6 +85,6 @@ impl Body {
                 free.dot(inverse.inverse() * free)
             }
         };
-        0.5 * ((self.mass() * self.velocity).dot(self.velocity) + turning)
+        0.5 * twice
     }
 }

@@ -4,7 +4,7 @@
 //! an arm turns within the step, a little lateral motion can come back as a lot along the line. Energy
 //! says how much of it can be true.
 
-use super::body::{Body, Spin};
+use super::body::Body;
 use super::element::{Element, End};
 use bevy::math::DVec3;
 
@@ -24,6 +24,8 @@ impl Guard {
         let known = bodies
             .iter()
             .all(|b| b.torque == DVec3::ZERO && b.mobility == 1.0);
+        let turns = |end: &End| matches!(end, End::Path(path) if path.turning != DVec3::ZERO);
+        let known = known && !element.ends.iter().any(turns);
         if !known || element.damping * line.inverse_mass * step < STRONG {
             return None;
         }
@@ -70,9 +72,7 @@ impl Guard {
             let (mass, velocity) = (mass(body.inverse_mass), body.velocity - self.frame);
             let place = body.position - time * self.frame;
             sum += 0.5 * (mass * velocity).dot(velocity) - (mass * body.acceleration).dot(place);
-            if let Spin::Free { momentum } = body.spin {
-                sum += 0.5 * momentum.dot(body.angular_velocity());
-            }
+            sum += body.turning();
         }
         Some(sum)
     }

@@ -204,12 +204,13 @@ impl Network {
             let gained = strut.relative(&self.acceleration).dot(row.line.direction);
             let rate = row.before.axial + 0.5 * step * gained;
             element.heat += ((row.drag + row.damping * gained) * rate * step).max(0.0);
-            for (end, sign) in element.ends.iter().zip([-1.0, 1.0]) {
+            for (i, (end, sign)) in element.ends.iter().zip([-1.0, 1.0]).enumerate() {
                 if let End::Path(path) = end {
-                    let velocity = if row.line.holds[0].twist {
+                    let hold = &row.line.holds[i];
+                    let velocity = if hold.twist {
                         path.turning
                     } else {
-                        path.velocity
+                        end.motion(hold, &[]).0
                     };
                     let force = row.force() + strut.force(strut.relative(&self.acceleration));
                     element.work += sign * step * force.dot(velocity);

@@ -311,6 +311,7 @@ impl Motion for Shock<'_> {
     fn run(&mut self, time: f64, count: u32) {
         self.time = time;
         let step = time / f64::from(count);
+        self.note_side();
         let resolved = self.is_resolved_in_reach(step);
         for _ in 0..count {
             self.microstep(step, resolved);

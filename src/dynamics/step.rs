@@ -199,13 +199,17 @@ impl Component {
     /// Energy, less what the users' torques gave, and the work of a lone element's moving ends so far.
     fn energy_and_work(&self) -> (f64, f64) {
         let mut work = 0.0;
-        for end in &self.elements[0].ends {
-            if let End::Path(path) = end {
+        let element = &self.elements[0];
+        let line = element.line(&self.bodies);
+        for (i, end) in element.ends.iter().enumerate() {
+            if let (End::Path(path), Some(line)) = (end, &line) {
+                let hold = &line.holds[i];
                 for body in &self.bodies {
-                    work += body.given.0.dot(path.velocity);
-                    if let Guide::Twist(_) = self.elements[0].guide {
-                        work += body.given.1.dot(path.turning);
-                    }
+                    work += if hold.twist {
+                        body.given.1.dot(path.turning)
+                    } else {
+                        body.given.0.dot(end.motion(hold, &self.bodies).0)
+                    };
                 }
             }
         }

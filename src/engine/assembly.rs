@@ -132,9 +132,10 @@ impl Assembly {
                 free.farthest_turn = step.farthest_turn(row.handle, body);
             }
             row.displaced = row.was_displaced(free.position);
-            component.meddled |= row.was_meddled(body, free.position);
+            row.driven = row.was_driven(body, free.position);
             let pulled = pull_mark(free.acceleration);
-            component.meddled |= replace(&mut row.pulled, pulled) != pulled;
+            row.driven |= replace(&mut row.pulled, pulled) != pulled;
+            component.meddled |= row.driven || row.support != Support::None;
             row.lag = step.lag_of_held(row, body);
             if row.lag > 0.0 {
                 free.drift(-row.lag);
@@ -353,15 +354,13 @@ impl Assembly {
             let row = &mut elements[*e];
             row.outcome = Outcome::default();
             if row.trouble.passing().is_none()
-                && let Some(element) = solved.next()
+                && let Some(element) = solved.next().filter(|_| ready)
             {
                 row.memory.direction = element.direction;
                 row.memory.angle = element.angle;
-                if ready {
-                    row.ledger.dissipated += element.heat;
-                    row.ledger.work += element.work;
-                    row.outcome = self.outcome;
-                }
+                row.ledger.dissipated += element.heat;
+                row.ledger.work += element.work;
+                row.outcome = self.outcome;
             }
         }
     }

@@ -42,8 +42,8 @@ impl ElementRow {
         }
     }
 
-    /// Length and rate of a guided element whose ends are and move like this.
-    pub(super) fn guided_extent(&self, ends: [End; 2]) -> (f64, f64) {
+    /// Length and rate of a guided element whose ends are and move like this; takes note of its turns.
+    pub(super) fn guided_extent(&mut self, ends: [End; 2]) -> (f64, f64) {
         let mut element = Element {
             ends,
             stiffness: 0.0,
@@ -58,6 +58,7 @@ impl ElementRow {
             stiff_damper: false,
         };
         element.aim(&[], 0.0);
+        self.memory.angle = element.angle;
         match element.line(&[]) {
             Some(line) => (line.length, line.motion(&element, &[], 0.0).axial),
             None => (self.memory.length, 0.0),
@@ -104,7 +105,7 @@ impl ElementRow {
         let acted = self.memory.places[0].is_some() && self.parameters.rest_length.is_some();
         let before = self.elastic(self.memory.length).energy;
         change(self);
-        if acted {
+        if acted && self.parameters.rest_length.is_some() {
             let work = self.elastic(self.memory.length).energy - before;
             if work.is_finite() {
                 self.ledger.work += work;

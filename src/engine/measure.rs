@@ -13,6 +13,7 @@ use crate::readout::SpringReadout;
 use bevy::math::{DQuat, DVec3};
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
+use bevy_rapier3d::rapier::dynamics::RigidBody as RapierBody;
 
 /// What of a Rapier context tells how its step went.
 type ContextParts<'a> = (
@@ -256,9 +257,9 @@ impl ElementRow {
         }
     }
 
-    /// Length and its rate; of a guided element the distance along its axis, or its twist.
+    /// Length and its rate; of a guided element the distance along its axis, or its twist, whose turns are counted.
     fn extent(
-        &self,
+        &mut self,
         [a, b]: [(DVec3, DVec3); 2],
         time: f64,
         sets: &Query<&RapierRigidBodySet>,
@@ -305,11 +306,16 @@ impl ElementRow {
 
 /// Rotation and angular velocity of what holds an end, after the step.
 fn frame(held: &Held, time: f64, sets: &Query<&RapierRigidBodySet>) -> (DQuat, DVec3) {
-    let set = match held {
-        Held::Body { context, .. } => sets.get(*context).ok(),
-        Held::Path { .. } => None,
+    let Held::Body {
+        handle, context, ..
+    } = *held
+    else {
+        return (DQuat::IDENTITY, DVec3::ZERO);
     };
-    set.map_or((DQuat::IDENTITY, DVec3::ZERO), |set| {
-        facing(held, time, &set.bodies)
-    })
+    let Some(set) = sets.get(context).ok().map(|set| &set.bodies) else {
+        return (DQuat::IDENTITY, DVec3::ZERO);
+    };
+    // Not where it is going: the step is over.
+    let turning = set.get(handle).map_or(Vec3::ZERO, RapierBody::angvel);
+    (facing(held, time, set).0, turning.as_dvec3())
 }

@@ -76,7 +76,8 @@ impl Ledger {
         rows: impl Iterator<Item = &'a BodyRow>,
         time: f64,
     ) {
-        let (mut touch, mut moved, mut given) = (Touch::Nothing, false, 0.0);
+        let (mut touch, mut given) = (Touch::Nothing, 0.0);
+        let (mut moved, mut driven) = (false, false);
         for row in rows {
             touch = touch.max(match row.support {
                 Support::None | Support::Unknown => Touch::Nothing,
@@ -85,6 +86,7 @@ impl Ledger {
                 Support::Joint | Support::Tied(_) => Touch::Tied,
             });
             moved |= row.displaced;
+            driven |= row.driven;
             given += row.given_work + row.contact_work;
         }
         let touch = touch.max(std::mem::replace(&mut self.touched, touch));
@@ -105,7 +107,7 @@ impl Ledger {
                 self.debt = (self.debt + given + state.stored - last).max(least);
             }
         } else if self.is_accountable(elements, bodies, time) && steady {
-            if let Some(had) = had.filter(|_| touch == Touch::Ground) {
+            if let Some(had) = had.filter(|_| touch == Touch::Ground && !driven) {
                 self.debt = (self.debt + total - had).max(0.0);
             }
             self.energy = Some(total);

@@ -63,6 +63,8 @@ impl Scene {
                     // What is remembered belongs to other ends.
                     row.memory.places = [None; 2];
                     row.memory.scales = [None; 2];
+                    row.memory.direction = None;
+                    row.memory.angle = 0.0;
                 }
                 row.refitted |=
                     parameters != row.parameters || companions.touched.contains(&entity);

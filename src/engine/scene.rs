@@ -170,6 +170,8 @@ pub(super) struct BodyRow {
     pub elements: u32,
     /// Something else than the engine's step has moved it.
     pub displaced: bool,
+    /// Something else than elements and that can have changed its energy.
+    pub driven: bool,
     /// Which ones, as a hash; a change wakes it.
     pub signature: u64,
     /// Acceleration by everything but elements in the last step, as a hash: a row has just room in 512 bytes.
@@ -177,6 +179,9 @@ pub(super) struct BodyRow {
     /// Rotation and angular velocity after the last step that was noted, of a body that elements turn, as a hash.
     pub turned: u64,
 }
+
+/// Eight lines of the cache, of which a step takes as few as it can.
+const _: () = assert!(size_of::<BodyRow>() == 512);
 
 impl BodyRow {
     pub(super) fn new(entity: Entity, handle: RigidBodyHandle, context: Entity) -> Self {
@@ -192,6 +197,7 @@ impl BodyRow {
             slot: 0,
             lag: 0.0,
             displaced: false,
+            driven: false,
             user: ExternalForce::default(),
             share: None,
             rests: false,
@@ -219,13 +225,18 @@ impl BodyRow {
         !self.is_noted || self.now.0 != at
     }
 
-    /// Whether something else than elements can have changed its energy since the last step, now that its centre of
-    /// mass is here; but for what acts on it.
-    pub(super) fn was_meddled(&self, body: &RapierBody, at: DVec3) -> bool {
+    /// Whether something else than elements and the engine's step can have changed its energy since the last step,
+    /// now that its centre of mass is here; but for what acts on it.
+    pub(super) fn was_driven(&self, body: &RapierBody, at: DVec3) -> bool {
         let goes_on = !self.was_displaced(at)
             && self.now.1 == body.linvel()
             && (!self.turns || self.turned == turning_mark(body));
-        !goes_on || self.support != Support::None || self.disturbed
+        !goes_on || self.disturbed
+    }
+
+    /// The same, or what touches it can have.
+    pub(super) fn was_meddled(&self, body: &RapierBody, at: DVec3) -> bool {
+        self.was_driven(body, at) || self.support != Support::None
     }
 
     /// Position and velocity of its centre of mass after the last step that was noted.

@@ -25,7 +25,10 @@ impl Apart {
             let w = body.inverse_mass;
             body.spin == Spin::Still && body.mobility == 1.0 && w.x == w.y && w.y == w.z
         };
-        if element.guide != Guide::Centres || !bodies.iter().all(free) {
+        let held = element.ends.iter().filter(|end| !end.is_path()).count();
+        // Bodies of elements that take no part would be left where they are.
+        let complete = held == bodies.len() && bodies.iter().all(free);
+        if element.guide != Guide::Centres || !complete {
             return None;
         }
         let [a, b] = element.ends.map(|end| match end {

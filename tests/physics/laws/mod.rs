@@ -5,6 +5,7 @@ mod bad;
 mod blows;
 mod breaking;
 mod driven;
+mod given;
 mod ledger;
 mod light;
 mod one_way;

@@ -1,0 +1,267 @@
+//! Is what a game does to bodies and elements beside the physics neither lost nor taken for something else?
+
+use crate::harness::*;
+use bevy::prelude::*;
+use bevy_coilover::prelude::*;
+use bevy_rapier3d::prelude::*;
+
+/// A floor whose top is at y = 0.
+fn floor(lab: &mut Lab) {
+    lab.spawn((
+        RigidBody::Fixed,
+        Collider::cuboid(200.0, 1.0, 200.0),
+        Transform::from_xyz(0.0, -1.0, 0.0),
+    ));
+}
+
+#[test]
+fn what_jumps_off_the_ground_keeps_its_spring_alive() {
+    // A pogo stick: 50 kg on a foot of 5 kg that lies on the floor.
+    let mut lab = Lab::new();
+    floor(&mut lab);
+    let foot = lab.spawn((body(5.0, Vec3::new(0.0, 0.2, 0.0)), Collider::ball(0.2)));
+    let top = lab.body(50.0, Vec3::new(0.0, 1.1, 0.0));
+    let spring = lab.spawn(
+        SpringDamper::new(foot, top)
+            .with_stiffness(5000.0)
+            .with_damping(0.0)
+            .with_rest_length(1.0),
+    );
+    lab.app
+        .world_mut()
+        .entity_mut(foot)
+        .insert(LockedAxes::ROTATION_LOCKED);
+    lab.run(1.0);
+    lab.app.world_mut().entity_mut(top).insert(ExternalImpulse {
+        impulse: Vec3::Y * 200.0,
+        ..default()
+    });
+    // In flight the spring swings at √(k/m), m = 50·5/55 kg.
+    let mut lengths = [f32::INFINITY, 0.0_f32];
+    for i in 0..lab.ticks(0.7) {
+        lab.tick();
+        if i > 6 {
+            let now = lab.readout(spring).length;
+            lengths = [lengths[0].min(now), lengths[1].max(now)];
+        }
+    }
+    println!(
+        "after the jump the spring swings from {:.3} to {:.3} m",
+        lengths[0], lengths[1]
+    );
+    assert!(lengths[1] - lengths[0] > 0.1, "{lengths:?}");
+}
+
+#[test]
+fn a_users_force_that_turns_round_on_the_ground_acts_wherever_that_is() {
+    let slide = |x: f32| {
+        let mut lab = Lab::new();
+        floor(&mut lab);
+        let mut bodies = Vec::new();
+        for i in 0..2 {
+            let puck = (
+                body(1.0, Vec3::new(x + i as f32, 0.2, 0.0)),
+                Collider::ball(0.2),
+                Friction::new(0.0),
+                LockedAxes::ROTATION_LOCKED,
+            );
+            bodies.push(lab.spawn(puck));
+        }
+        let spring = lab.spawn(
+            SpringDamper::new(bodies[0], bodies[1])
+                .with_stiffness(200.0)
+                .with_damping(1.0)
+                .with_rest_length(1.0),
+        );
+        lab.run(0.5);
+        let push = |lab: &mut Lab, x: f32| {
+            lab.app
+                .world_mut()
+                .entity_mut(bodies[0])
+                .insert(ExternalForce {
+                    force: Vec3::X * x,
+                    ..default()
+                });
+        };
+        push(&mut lab, 20.0);
+        lab.run(0.5);
+        push(&mut lab, -20.0);
+        let mut lengths = [f32::INFINITY, 0.0_f32];
+        for _ in 0..lab.ticks(1.0) {
+            lab.tick();
+            let now = lab.readout(spring).length;
+            lengths = [lengths[0].min(now), lengths[1].max(now)];
+        }
+        let momentum: f32 = bodies
+            .iter()
+            .map(|body| lab.get::<Velocity>(*body).linear.x)
+            .sum();
+        (momentum, lengths[1] - lengths[0])
+    };
+    // Momentum of both: 20 N for half a second, −20 N for one. Half of the force is the spring's: it swings about
+    // −5 cm for half a second and then, of 12.5 cm, about +5 cm: c/m = 1/s takes a seventh of that in half a period.
+    for x in [0.0, 50.0, -50.0] {
+        let (momentum, swing) = slide(x);
+        println!(
+            "pushed to and fro at x = {x} m: {momentum:.3} of -10 N s, the spring swings over {swing:.3} m"
+        );
+        assert!((momentum + 10.0).abs() < 0.2, "{x}: {momentum}");
+        assert!((0.22..0.24).contains(&swing), "{x}: {swing}");
+    }
+}
+
+#[test]
+fn a_torsion_dampers_rate_and_moment_are_shown() {
+    let mut lab = Lab::weightless();
+    let wall = lab.spawn((RigidBody::Fixed, Transform::default()));
+    let wheel = lab.moving(
+        brick(1.0, Vec3::splat(20.0), Vec3::X),
+        Velocity::angular(Vec3::Z * 3.0),
+    );
+    let damper = lab.spawn(TorsionDamper::new(wall, wheel, Vec3::Z).with_damping(0.4));
+    lab.run(0.1);
+    let seen = lab.readout(damper);
+    let spin = lab.get::<Velocity>(wheel).angular.z;
+    assert!((seen.rate - spin).abs() < 1e-4, "{} {spin}", seen.rate);
+    assert!((seen.damper_force - 0.4 * spin).abs() < 1e-4);
+    assert!((seen.dissipated_power - 0.4 * spin * spin).abs() < 1e-3);
+}
+
+#[test]
+fn strong_torsion_dampers_brake_no_more_where_axes_are_locked_or_the_holder_turns() {
+    // I = 0.2 kg m², k = 500 N m/rad, c = 6.5: ζ = 0.33; from rest angle at a spin against the holder's.
+    let (inertia, k, c) = (0.2_f64, 500.0, 6.5);
+    let free = |relative: f64, t: f64| {
+        let gamma = c / (2.0 * inertia);
+        let omega = (k / inertia - gamma * gamma).sqrt();
+        relative / omega * (-gamma * t).exp() * (omega * t).sin()
+    };
+    for (locked, spin, holder) in [(true, 1.0, 0.0), (false, 0.0, 2.0), (true, 0.0, 2.0)] {
+        let mut lab = Lab::weightless();
+        let hub = lab.moving(
+            (RigidBody::KinematicVelocityBased, Transform::default()),
+            Velocity::angular(Vec3::Z * holder),
+        );
+        let wheel = lab.moving(
+            brick(1.0, Vec3::splat(inertia as f32), Vec3::X),
+            Velocity::angular(Vec3::Z * spin),
+        );
+        if locked {
+            lab.app
+                .world_mut()
+                .entity_mut(wheel)
+                .insert(LockedAxes::ROTATION_LOCKED_X);
+        }
+        let element = lab.spawn(
+            TorsionSpringDamper::new(hub, wheel, Vec3::Z)
+                .with_stiffness(k as f32)
+                .with_damping(c as f32)
+                .with_rest_angle(0.0),
+        );
+        for i in 1..=12 {
+            lab.tick();
+            let wanted = free(f64::from(spin - holder), i as f64 * lab.dt());
+            let twist = f64::from(lab.readout(element).length);
+            assert!(
+                (twist - wanted).abs() < 5e-4,
+                "locked {locked}, holder {holder}, tick {i}: {twist} of {wanted} rad"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_ball_that_is_put_on_the_other_side_of_its_hook_is_not_shot_away() {
+    let mut lab = Lab::weightless();
+    let hook = lab.point(Vec3::ZERO);
+    let ball = lab.body(1.0, Vec3::X);
+    lab.spawn((
+        SpringDamper::new(hook, ball)
+            .with_stiffness(100.0)
+            .with_rest_length(1.0),
+        DampingLaw::sided(1.0, 2.0),
+    ));
+    lab.run(0.5);
+    lab.get_mut::<Transform>(ball).translation = -Vec3::X;
+    lab.run(0.5);
+    let speed = lab.get::<Velocity>(ball).linear.length();
+    assert!(speed < 1e-4, "{speed} m/s");
+}
+
+#[test]
+fn turns_between_a_wall_and_a_crank_are_counted() {
+    let mut lab = Lab::weightless();
+    let wall = lab.spawn((RigidBody::Fixed, Transform::default()));
+    let crank = lab.moving(
+        (
+            RigidBody::KinematicVelocityBased,
+            Transform::from_xyz(1.0, 0.0, 0.0),
+        ),
+        Velocity::angular(Vec3::Z),
+    );
+    let element = lab.spawn(
+        TorsionSpring::new(wall, crank, Vec3::Z)
+            .with_stiffness(1.0)
+            .with_rest_angle(0.0),
+    );
+    lab.run(10.0);
+    let seen = lab.readout(element);
+    assert!((seen.length - 10.0).abs() < 0.02, "{}", seen.length);
+    assert!((seen.work - 50.0).abs() < 0.5, "{}", seen.work);
+}
+
+#[test]
+fn a_spring_that_is_hooked_to_another_wheel_is_not_wound_any_more() {
+    let mut lab = Lab::weightless();
+    let wall = lab.spawn((RigidBody::Fixed, Transform::default()));
+    let wheels = [1.0, 2.0].map(|x| lab.spawn(brick(1.0, Vec3::splat(0.2), Vec3::X * x)));
+    lab.get_mut::<Velocity>(wheels[0]).angular = Vec3::Z * 20.0;
+    let element = lab.spawn(
+        TorsionSpring::new(wall, wheels[0], Vec3::Z)
+            .with_stiffness(0.01)
+            .with_rest_angle(0.0),
+    );
+    lab.run(1.0);
+    assert!(lab.readout(element).length > 12.0);
+    lab.get_mut::<TorsionSpring>(element).body_b = wheels[1];
+    lab.run(0.5);
+    assert!(lab.readout(element).length.abs() < 1e-3);
+    assert!(lab.get::<Velocity>(wheels[1]).angular.length() < 1e-3);
+}
+
+#[test]
+fn a_rest_length_that_is_found_anew_is_no_work() {
+    let mut lab = Lab::weightless();
+    let hook = lab.point(Vec3::ZERO);
+    let ball = lab.body(1.0, Vec3::X);
+    let spring = lab.spawn(
+        Spring::new(hook, ball)
+            .with_stiffness(1000.0)
+            .with_rest_length(1.0),
+    );
+    lab.run(0.2);
+    lab.get_mut::<Spring>(spring).rest_length = None;
+    lab.run(0.2);
+    let seen = lab.readout(spring);
+    assert!(seen.work.abs() < 1e-3, "{} J", seen.work);
+}
+
+#[test]
+fn a_ball_on_a_faulty_spring_falls_although_its_neighbour_hangs_on_a_rope() {
+    let mut lab = Lab::new();
+    let hook = lab.point(Vec3::ZERO);
+    let [upper, lower] = [-1.0, -2.0].map(|y| lab.body(1.0, Vec3::Y * y));
+    lab.spawn((
+        SpringDamper::new(hook, upper)
+            .with_stiffness(500.0)
+            .with_rest_length(1.0),
+        SpringAction::Pull,
+    ));
+    lab.spawn((
+        Spring::new(upper, lower).with_rest_length(1.0),
+        CustomSpringLaw::new(|_: f64| f64::NAN),
+    ));
+    lab.run(1.0);
+    let fallen = -2.0 - lab.position(lower).y;
+    assert!((fallen - 4.905).abs() < 0.1, "{fallen} m");
+}
