@@ -10,7 +10,7 @@ use super::body::Push;
 use super::expected::Twist;
 use super::scene::BodyRow;
 use super::step::Terms;
-use super::touch::{created, support};
+use super::touch::{created, is_touched, support};
 use crate::dynamics::body::{Body, Spin};
 use crate::dynamics::delivery::force_for;
 use bevy::math::{DVec3, Vec3};
@@ -107,6 +107,7 @@ pub(super) fn observe(row: &mut BodyRow, body: &RapierBody, context: &Context) {
         ..mean
     });
     row.contact_work = 0.0;
+    row.was_pushed = false;
     let known = row.partner.take();
     if orders.was_met(&change) {
         row.support = Support::None;
@@ -119,6 +120,8 @@ pub(super) fn observe(row: &mut BodyRow, body: &RapierBody, context: &Context) {
     row.contact_work = created(row, known, body, moved, context.bodies);
     if row.support == Support::None {
         row.mobility = 1.0;
+        // Something has pushed it in an earlier substep than the last.
+        row.was_pushed = is_touched(body, context);
     } else if let (Support::Contact { .. }, false) = (row.support, row.turns) {
         if let Some((direction, share)) = orders.missing(&change) {
             row.held = Some(direction);

@@ -172,6 +172,8 @@ pub(super) struct BodyRow {
     pub displaced: bool,
     /// Something else than elements and that can have changed its energy.
     pub driven: bool,
+    /// Something that touches it has pushed it in the last step, although it did so no longer in the end.
+    pub was_pushed: bool,
     /// Which ones, as a hash; a change wakes it.
     pub signature: u64,
     /// Acceleration by everything but elements in the last step, as a hash: a row has just room in 512 bytes.
@@ -198,6 +200,7 @@ impl BodyRow {
             lag: 0.0,
             displaced: false,
             driven: false,
+            was_pushed: false,
             user: ExternalForce::default(),
             share: None,
             rests: false,
@@ -231,7 +234,7 @@ impl BodyRow {
         let goes_on = !self.was_displaced(at)
             && self.now.1 == body.linvel()
             && (!self.turns || self.turned == turning_mark(body));
-        !goes_on || self.disturbed
+        !goes_on || self.disturbed || self.was_pushed
     }
 
     /// The same, or what touches it can have.
@@ -252,6 +255,7 @@ impl BodyRow {
         self.given_work = 0.0;
         self.contact_work = 0.0;
         self.untouched = true;
+        self.was_pushed = false;
     }
 }
 

@@ -72,6 +72,17 @@ pub(super) fn support(
     (contact(push, on_fixed), partner)
 }
 
+/// Whether anything touches it, pushing or not.
+pub(super) fn is_touched(body: &RapierBody, context: &Context) -> bool {
+    body.colliders().iter().any(|collider| {
+        let mut pairs = context
+            .simulation
+            .narrow_phase
+            .contact_pairs_with(*collider);
+        pairs.any(|pair| pair.has_any_active_contact())
+    })
+}
+
 impl Step<'_> {
     /// What is known of a body that the engine has not stepped yet.
     pub(super) fn first_support(

@@ -9,7 +9,7 @@ use crate::dynamics::system::DENSE;
 use crate::dynamics::tolerance::{Method, Motion, Outcome};
 
 /// Tries at moving less far; then nothing moves at all.
-const HALVINGS: u32 = 12;
+const HALVINGS: i32 = 12;
 
 /// (ω h)² of the stiffest mode up to which the matrix is so well conditioned that a few iterations solve it.
 const SOFT: f64 = 9.0;
@@ -153,18 +153,22 @@ impl Component {
 
     /// Moves with these velocities, as far as the stored energy allows.
     fn yield_to(&mut self, motion: &[Body], time: f64, bound: &mut Bound) {
-        let mut share = 1.0;
-        for _ in 0..HALVINGS {
+        for half in 0..=HALVINGS {
+            // At last not at all: who stays where he is must not go on being fast either.
+            let share = if half < HALVINGS {
+                0.5_f64.powi(half)
+            } else {
+                0.0
+            };
             for (body, moved) in self.bodies.iter_mut().zip(motion) {
                 body.slow_to(moved, share);
             }
             self.drift(time);
             self.hold_back(time);
             self.aim(time);
-            if bound.allows(&self.elements, &self.bodies, time) {
+            if share == 0.0 || bound.allows(&self.elements, &self.bodies, time) {
                 break;
             }
-            share *= 0.5;
             self.load(0);
         }
         bound.slow(&self.elements, &mut self.bodies, time);
