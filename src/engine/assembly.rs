@@ -155,6 +155,9 @@ impl Assembly {
             disturbed |= row.changed || has_moved;
             let ends = [0, 1].map(|end| step.end(row, end, bodies, set));
             if let Some(element) = element(row, ends, &self.start) {
+                if has_moved {
+                    row.account_for_leap(element.distance(&self.start).0);
+                }
                 omega = omega.max(omega_of(row));
                 for (end, _) in ends.iter().enumerate().filter(|(_, end)| end.is_path()) {
                     self.carry.ends.push((index, end));

@@ -102,6 +102,10 @@ impl Assembly {
             carry.meddled |= has_moved;
             *disturbed |= has_moved;
             let (from, to) = step.path(&row.held[*end], set);
+            if has_moved && from == to {
+                // It has leapt: what work that was is to be found.
+                return None;
+            }
             points.place_end(index, from, (to - from) / time);
         }
         Some(())

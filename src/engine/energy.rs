@@ -100,6 +100,16 @@ impl ElementRow {
         }
     }
 
+    /// Takes in that the game has put an end elsewhere since the last step, so that it is so long now.
+    pub(super) fn account_for_leap(&mut self, length: f64) {
+        if self.memory.places[0].is_some() && self.parameters.rest_length.is_some() {
+            let leap = self.elastic(length).energy - self.elastic(self.memory.length).energy;
+            if leap.is_finite() {
+                self.ledger.work += leap;
+            }
+        }
+    }
+
     /// Takes in other numbers; what that changes in stored energy is work that was done.
     pub(super) fn change(&mut self, change: impl FnOnce(&mut Self)) {
         let acted = self.memory.places[0].is_some() && self.parameters.rest_length.is_some();

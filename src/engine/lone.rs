@@ -173,13 +173,17 @@ impl Step<'_> {
             return Handled::No;
         }
         let length = d.length();
+        let has_moved = self.has_moved(row, set);
+        if has_moved {
+            row.account_for_leap(length);
+        }
         row.memory.length = length;
         if !row.is_sound(v, d) {
             return Handled::No;
         }
         let inverse_mass = a.inverse_mass + b.inverse_mass;
         let omega = (row.slope() * inverse_mass).sqrt();
-        let mut restless = row.changed || self.has_moved(row, set);
+        let mut restless = row.changed || has_moved;
         for (b, body) in found.into_iter().flatten() {
             restless |= std::mem::take(&mut bodies[b].disturbed);
             restless |= self.is_restless(&mut bodies[b], body, omega as f32);

@@ -337,6 +337,34 @@ fn a_rest_length_that_is_found_anew_is_no_work() {
 }
 
 #[test]
+fn a_hook_that_is_put_elsewhere_has_done_work() {
+    // Half a metre away in no time, on a lone spring and on two in a row.
+    for springs in [1, 2] {
+        let mut lab = Lab::weightless();
+        let hook = lab.spawn((RigidBody::Fixed, Transform::default()));
+        let mut last = hook;
+        let mut first = None;
+        for i in 1..=springs {
+            let next = lab.body(1e4, Vec3::X * i as f32);
+            let spring = Spring::new(last, next)
+                .with_stiffness(100.0)
+                .with_rest_length(1.0);
+            let spring = lab.spawn(spring);
+            first.get_or_insert(spring);
+            last = next;
+        }
+        lab.run(0.2);
+        lab.get_mut::<Transform>(hook).translation.x = -0.5;
+        lab.run(0.2);
+        let seen = first.map(|spring| lab.readout(spring).work);
+        assert!(
+            seen.is_some_and(|work| (work - 12.5).abs() < 0.01),
+            "{springs}: {seen:?}"
+        );
+    }
+}
+
+#[test]
 fn a_ball_on_a_faulty_spring_falls_although_its_neighbour_hangs_on_a_rope() {
     let mut lab = Lab::new();
     let hook = lab.point(Vec3::ZERO);
