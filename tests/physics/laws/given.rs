@@ -112,7 +112,7 @@ fn a_users_force_that_turns_round_on_the_ground_acts_wherever_that_is() {
 
 #[test]
 fn what_stands_on_the_ground_swings_the_same_at_any_height_when_gravity_changes() {
-    // 1 kg on a spring of 400 N/m on a block of 20 kg, let go 0.3 m above its rest, gravity halved after a second.
+    // 1 kg on a spring of 400 N/m on a block of 20 kg, let go 0.15 m above its rest, gravity halved after a second.
     let swing = |height: f32| {
         let mut lab = Lab::new();
         let up = |y: f32| Transform::from_xyz(0.0, height + y, 0.0);
