@@ -30,6 +30,8 @@ impl CoiloverDiagnosticsPlugin {
     pub const DIRECT: DiagnosticPath = DiagnosticPath::const_new("coilover/direct");
     /// in large networks by iteration,
     pub const ITERATIVE: DiagnosticPath = DiagnosticPath::const_new("coilover/iterative");
+    /// by the engine, since something holds their bodies,
+    pub const ENGINE: DiagnosticPath = DiagnosticPath::const_new("coilover/engine");
     /// and not at all: asleep, inert, or with nothing to move.
     pub const RESTING: DiagnosticPath = DiagnosticPath::const_new("coilover/resting");
 }
@@ -45,6 +47,7 @@ impl Plugin for CoiloverDiagnosticsPlugin {
             (Self::CLOSED_FORM, ""),
             (Self::DIRECT, ""),
             (Self::ITERATIVE, ""),
+            (Self::ENGINE, ""),
             (Self::RESTING, ""),
         ] {
             app.register_diagnostic(Diagnostic::new(path).with_suffix(unit));
@@ -65,7 +68,7 @@ impl Plugin for CoiloverDiagnosticsPlugin {
 
 fn sum(readouts: Query<&SpringReadout>, mut diagnostics: Diagnostics) {
     let mut sums = [0.0; 5];
-    let mut methods = [0.0; 4];
+    let mut methods = [0.0; 5];
     for readout in &readouts {
         sums[0] += f64::from(readout.stored_energy);
         sums[1] += f64::from(readout.dissipated_power);
@@ -76,7 +79,8 @@ fn sum(readouts: Query<&SpringReadout>, mut diagnostics: Diagnostics) {
             SpringMethod::ClosedForm => 0,
             SpringMethod::Direct => 1,
             SpringMethod::Iterative => 2,
-            SpringMethod::None => 3,
+            SpringMethod::Engine => 3,
+            SpringMethod::None => 4,
         }] += 1.0;
     }
     use CoiloverDiagnosticsPlugin as P;
@@ -89,7 +93,8 @@ fn sum(readouts: Query<&SpringReadout>, mut diagnostics: Diagnostics) {
         (&P::CLOSED_FORM, methods[0]),
         (&P::DIRECT, methods[1]),
         (&P::ITERATIVE, methods[2]),
-        (&P::RESTING, methods[3]),
+        (&P::ENGINE, methods[3]),
+        (&P::RESTING, methods[4]),
     ] {
         diagnostics.add_measurement(path, || value);
     }

@@ -48,6 +48,7 @@ impl CoiloverPlugin {
                 tolerance: None,
                 max_microsteps: 256,
                 max_iterations: 200,
+                max_substeps: 64,
                 schedule: schedule.intern(),
             },
         }
@@ -75,6 +76,12 @@ impl CoiloverPlugin {
     /// Caps the iterations of one solve of a large network (default 200).
     pub const fn with_max_iterations(mut self, most: u32) -> Self {
         self.settings.max_iterations = most;
+        self
+    }
+
+    /// Caps the solver substeps that elements on held bodies ask of the engine in one step (default 64).
+    pub const fn with_max_substeps(mut self, most: u32) -> Self {
+        self.settings.max_substeps = most;
         self
     }
 

@@ -65,6 +65,9 @@ pub enum SpringMethod {
     Direct,
     /// In a large network: conjugate gradients.
     Iterative,
+    /// By the engine's own solver, together with the contacts or joints that hold its bodies;
+    /// [`SpringReadout::microsteps`] are that solver's substeps.
+    Engine,
 }
 
 impl SpringReadout {
@@ -79,6 +82,7 @@ impl SpringReadout {
             Method::ClosedForm => SpringMethod::ClosedForm,
             Method::Direct => SpringMethod::Direct,
             Method::Iterative => SpringMethod::Iterative,
+            Method::Engine => SpringMethod::Engine,
         };
         self.microsteps = outcome.microsteps;
         self.error = outcome.error.unwrap_or(0.0) as f32;

@@ -22,6 +22,9 @@ pub struct CoiloverSettings {
     pub max_microsteps: u32,
     /// Most iterations of one solve of a large network, at least 1; told likewise.
     pub max_iterations: u32,
+    /// Most solver substeps of one engine step that elements ask for where contacts or joints hold a body of theirs, at
+    /// least 1; told likewise.
+    pub max_substeps: u32,
     pub(crate) schedule: Interned<dyn ScheduleLabel>,
 }
 

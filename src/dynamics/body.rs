@@ -40,12 +40,6 @@ pub(crate) struct Body {
     pub acceleration: DVec3,
     /// The user's torque.
     pub torque: DVec3,
-    /// How much of a free body's motion contacts and joints leave it: 1 free, 0 held. Already in
-    /// `inverse_mass` and `acceleration`.
-    pub mobility: f64,
-    /// Unit direction that contacts hold, if they hold only that: then the inverse mass is less along it
-    /// alone, and the masses along all axes are the same.
-    pub held: Option<DVec3>,
     /// What elements have given it so far in this step: impulse (N s) and angular impulse (N m s).
     pub given: (DVec3, DVec3),
     /// Work of the user's torque so far in this step, J.
@@ -54,12 +48,11 @@ pub(crate) struct Body {
     pub turned: Option<Turned>,
 }
 
-/// Inverse inertia in the world frame, and for which rotation and mobility: it is asked for many times between
-/// one rotation and the next.
+/// Inverse inertia in the world frame, and for which rotation: it is asked for many times between one rotation and the
+/// next.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Turned {
     rotation: DQuat,
-    mobility: f64,
     inverse_inertia: DMat3,
 }
 
@@ -110,9 +103,7 @@ impl Body {
             return DMat3::ZERO;
         }
         match &self.turned {
-            Some(t) if t.rotation == self.rotation && t.mobility == self.mobility => {
-                t.inverse_inertia
-            }
+            Some(t) if t.rotation == self.rotation => t.inverse_inertia,
             _ => self.turn_inertia(),
         }
     }
@@ -122,7 +113,6 @@ impl Body {
         if self.spin != Spin::Still {
             self.turned = Some(Turned {
                 rotation: self.rotation,
-                mobility: self.mobility,
                 inverse_inertia: self.turn_inertia(),
             });
         }
@@ -132,7 +122,7 @@ impl Body {
         if self.inertia.min_element() <= 0.0 {
             return DMat3::ZERO;
         }
-        let inverse = self.mobility * self.inertia.recip();
+        let inverse = self.inertia.recip();
         let mut world = if inverse.x == inverse.y && inverse.y == inverse.z {
             DMat3::from_diagonal(inverse)
         } else {
@@ -252,38 +242,15 @@ impl Body {
         w.x == w.y && w.y == w.z
     }
 
-    /// Change of velocity by an impulse.
-    pub(crate) fn answer(&self, impulse: DVec3) -> DVec3 {
-        self.inverse_mass * self.left(impulse)
-    }
-
-    /// See `Hold::held`.
-    pub(crate) fn held_part(&self) -> DVec3 {
-        self.held
-            .map_or(DVec3::ZERO, |held| (1.0 - self.mobility).sqrt() * held)
-    }
-
-    /// What a contact leaves of a motion.
-    pub(crate) fn left(&self, motion: DVec3) -> DVec3 {
-        match self.held {
-            Some(held) => motion - (1.0 - self.mobility) * held.dot(motion) * held,
-            None => motion,
-        }
-    }
-
-    /// The force for an acceleration: the other way round.
+    /// The force for an acceleration.
     pub(crate) fn force_for(&self, acceleration: DVec3) -> DVec3 {
-        let free = super::delivery::force_for(acceleration, self.inverse_mass);
-        match self.held {
-            Some(held) => free + (self.mobility.recip() - 1.0) * held.dot(free) * held,
-            None => free,
-        }
+        super::delivery::force_for(acceleration, self.inverse_mass)
     }
 
     /// An impulse (N s) at `arm` from the centre of mass, with the inverse inertia at hand.
     pub(crate) fn apply(&mut self, impulse: DVec3, arm: DVec3, inverse_inertia: DMat3) {
         self.given.0 += impulse;
-        self.velocity += self.answer(impulse);
+        self.velocity += self.inverse_mass * impulse;
         if arm == DVec3::ZERO {
             return;
         }

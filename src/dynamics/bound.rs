@@ -37,17 +37,7 @@ pub(crate) struct Bound {
 
 impl Bound {
     /// Sees what was done to the network since the last step.
-    pub(crate) fn begin(
-        &mut self,
-        elements: &[Element],
-        bodies: &[Body],
-        linked: bool,
-        meddled: bool,
-    ) {
-        // What contacts and joints hold, or links of a multibody do, is not ours to account for.
-        if linked || bodies.iter().any(|body| body.mobility < 1.0) {
-            return self.forget();
-        }
+    pub(crate) fn begin(&mut self, elements: &[Element], bodies: &[Body], meddled: bool) {
         let now = Energy::of(elements, bodies).sum();
         let rounding = rounding(elements, bodies);
         self.start(now, rounding, power(elements, bodies), meddled);

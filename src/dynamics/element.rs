@@ -71,8 +71,6 @@ pub(crate) struct Hold {
     /// From the centre of mass to the held point, world frame.
     pub arm: DVec3,
     pub inverse_mass: DVec3,
-    /// Direction in which a contact leaves only a share of it, times the square root of what it takes.
-    pub held: DVec3,
     pub inverse_inertia: DMat3,
     /// Pushed about an axis instead of along it.
     pub twist: bool,
@@ -86,7 +84,6 @@ impl End {
                 body: None,
                 arm: DVec3::ZERO,
                 inverse_mass: DVec3::ZERO,
-                held: DVec3::ZERO,
                 inverse_inertia: DMat3::ZERO,
                 twist: false,
                 position: path.position,
@@ -98,7 +95,6 @@ impl End {
                         body: Some(index),
                         arm,
                         inverse_mass: body.inverse_mass,
-                        held: body.held_part(),
                         inverse_inertia: DMat3::ZERO,
                         twist: false,
                         position: body.position,
@@ -109,7 +105,6 @@ impl End {
                     body: Some(index),
                     arm,
                     inverse_mass: body.inverse_mass,
-                    held: body.held_part(),
                     inverse_inertia: body.inverse_inertia(),
                     twist: false,
                     position: body.position + arm,
@@ -150,14 +145,14 @@ impl End {
     }
 
     /// From the frame that holds it to the world.
-    pub(super) fn rotation(&self, bodies: &[Body]) -> DQuat {
+    pub(crate) fn rotation(&self, bodies: &[Body]) -> DQuat {
         match *self {
             End::Path(path) => path.rotation,
             End::Body { index, .. } => bodies[index].rotation,
         }
     }
 
-    pub(super) fn angular_velocity(&self, bodies: &[Body]) -> DVec3 {
+    pub(crate) fn angular_velocity(&self, bodies: &[Body]) -> DVec3 {
         match *self {
             End::Path(path) => path.turning,
             End::Body { index, .. } => bodies[index].angular_velocity(),
@@ -192,6 +187,18 @@ impl End {
 }
 
 impl Hold {
+    /// A bound on its inverse effective mass along any direction.
+    pub(crate) fn most_inverse_mass(&self) -> f64 {
+        let inertia = &self.inverse_inertia;
+        let trace = |m: &DMat3| m.x_axis.x + m.y_axis.y + m.z_axis.z;
+        if self.twist {
+            return trace(inertia);
+        }
+        let levers = DVec3::AXES.map(|axis| self.arm.cross(axis));
+        let turning: f64 = levers.iter().map(|l| l.dot(*inertia * *l)).sum();
+        self.inverse_mass.max_element() + turning
+    }
+
     /// Inverse effective mass of this end along a direction.
     pub(crate) fn inverse_mass_along(&self, direction: DVec3) -> f64 {
         if self.twist {
@@ -200,8 +207,7 @@ impl Hold {
         let w = self.inverse_mass;
         // Not rounded by the direction, so that equal lines have bitwise equal coefficients.
         let linear = if w.x == w.y && w.y == w.z {
-            let taken = self.held.dot(direction);
-            w.x * (1.0 - taken * taken)
+            w.x
         } else {
             (w * direction).dot(direction)
         };
@@ -239,7 +245,7 @@ impl Element {
                 End::Path(path) => path.position,
                 End::Body { index, .. } => {
                     let body = &bodies[*index];
-                    if body.spin != Spin::Still || body.held.is_some() || !body.moves_alike() {
+                    if body.spin != Spin::Still || !body.moves_alike() {
                         return None;
                     }
                     sum += body.inverse_mass.x;

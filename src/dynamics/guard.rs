@@ -21,9 +21,7 @@ impl Guard {
     /// Begins to watch a lone element, if it is strongly damped and all forces on its bodies are known.
     pub(crate) fn begin(element: &Element, bodies: &[Body], step: f64) -> Option<Self> {
         let line = element.line(bodies)?;
-        let known = bodies
-            .iter()
-            .all(|b| b.torque == DVec3::ZERO && b.mobility == 1.0);
+        let known = bodies.iter().all(|b| b.torque == DVec3::ZERO);
         let turns = |end: &End| matches!(end, End::Path(path) if path.turning != DVec3::ZERO);
         let known = known && !element.ends.iter().any(turns);
         if !known || element.damping * line.inverse_mass * step < STRONG {

@@ -6,7 +6,7 @@
 use super::body::Body;
 use super::element::{Element, Hold};
 use super::line::{Line, Motion};
-use bevy::math::DVec3;
+use bevy::math::{DQuat, DVec3};
 use std::f64::consts::{PI, TAU};
 
 /// Unit vectors.
@@ -24,13 +24,18 @@ pub(crate) enum Guide {
 }
 
 impl Guide {
+    /// Whether it is a twist, not a length.
+    pub(crate) fn is_twist(self) -> bool {
+        matches!(self, Self::Twist(_))
+    }
+
     /// Whether it turns bodies even where it holds them at their centres.
     pub(crate) fn turns(self) -> bool {
         matches!(self, Self::OfA(_) | Self::Twist(_))
     }
 }
 
-/// Share of a half turn by which the other axis may be tilted before the twist has no meaning.
+/// Least cos² of half the tilt between both axes: beyond, within a degree of half a turn, a twist has no meaning.
 const UPRIGHT: f64 = 1e-4;
 
 impl Element {
@@ -69,16 +74,15 @@ impl Element {
     /// Twist of end B against end A about an axis of A's (swing–twist decomposition), within a turn, and its
     /// gradient with respect to rotation vectors of the world: the axis itself where that is common.
     fn twist(&self, axis: DVec3, bodies: &[Body]) -> Option<(DVec3, f64)> {
-        let frame = self.ends[0].rotation(bodies);
-        let q = frame.inverse() * self.ends[1].rotation(bodies);
-        let (v, w) = (q.xyz(), q.w);
-        let along = v.dot(axis);
-        let square = w * w + along * along;
-        if square < UPRIGHT {
-            return None;
+        twist(axis, self.ends.each_ref().map(|end| end.rotation(bodies)))
+    }
+
+    /// What it acts about where its ends are turned like this, if it is a torsion element.
+    pub(crate) fn twist_gradient(&self, ends: [DQuat; 2]) -> Option<DVec3> {
+        match self.guide {
+            Guide::Twist(axis) => Some(twist(axis, ends)?.0),
+            _ => None,
         }
-        let gradient = (w * w * axis + w * v.cross(axis) + along * v) / square;
-        Some((frame * gradient, 2.0 * along.atan2(w)))
     }
 
     /// Notes the twist, so that full turns are counted.
@@ -89,6 +93,19 @@ impl Element {
             self.angle += wrapped(angle - self.angle);
         }
     }
+}
+
+/// Twist of one frame against another, and its gradient: see [`Element::twist`].
+fn twist(axis: DVec3, [frame, other]: [DQuat; 2]) -> Option<(DVec3, f64)> {
+    let q = frame.inverse() * other;
+    let (v, w) = (q.xyz(), q.w);
+    let along = v.dot(axis);
+    let square = w * w + along * along;
+    if square < UPRIGHT {
+        return None;
+    }
+    let gradient = (w * w * axis + w * v.cross(axis) + along * v) / square;
+    Some((frame * gradient, 2.0 * along.atan2(w)))
 }
 
 /// The same angle within half a turn.

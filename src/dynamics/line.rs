@@ -105,7 +105,6 @@ impl Line {
             let w = hold.inverse_mass;
             w.x == w.y
                 && w.y == w.z
-                && hold.held == DVec3::ZERO
                 && hold
                     .body
                     .is_none_or(|index| bodies[index].spin == Spin::Still)

@@ -314,8 +314,9 @@ impl Pair {
     }
 
     /// A step that went too far for its energy, because it follows neither the motion nor its decay, is taken
-    /// again by [`super::shock`], which keeps energy at any stiffness. Very strong damping is not its field;
-    /// there the surplus is taken out of the motion along the line.
+    /// again by [`super::shock`], which keeps energy at any stiffness. Very strong damping is not its field; there
+    /// the motion along the line is over so soon that its exact solution is taken, and what surplus is left comes out
+    /// of that motion.
     fn keep_energy(
         &self,
         state: &mut Separation,
@@ -330,11 +331,15 @@ impl Pair {
             return;
         }
         let damped = self.damping * self.inverse_mass * time;
-        if surplus(state) > GAIN * scale && damped < FIERCE {
-            let law = Law::linear(self.stiffness, self.damping);
-            let mut again = Shock::new(self, &law, *start, memo);
-            again.keep_energy(time);
-            let kept = again.state;
+        if surplus(state) > GAIN * scale {
+            let kept = if damped < FIERCE {
+                let law = Law::linear(self.stiffness, self.damping);
+                let mut again = Shock::new(self, &law, *start, memo);
+                again.keep_energy(time);
+                again.state
+            } else {
+                self.creep(start, time)
+            };
             if surplus(&kept) < surplus(state) {
                 *state = Separation {
                     stiff_damper: start.stiff_damper,
@@ -352,6 +357,43 @@ impl Pair {
                 .max(0.0)
                 .sqrt();
             state.v += (left.copysign(rate) - rate) * line.direction;
+        }
+    }
+
+    /// The exact overdamped motion along the line as it is at the start, beside a straight one across it.
+    fn creep(&self, start: &Separation, time: f64) -> Separation {
+        let Some(line) = self.line(start) else {
+            return *start;
+        };
+        let decay = 0.5 * self.damping * self.inverse_mass;
+        let square = self.stiffness * self.inverse_mass;
+        let spread = (decay * decay - square).max(0.0).sqrt();
+        let fast = decay + spread;
+        let slow = square / fast;
+        let stretch = line.length - self.rest_length;
+        // Where it creeps to, or without a spring how fast it creeps.
+        let (rest, flow) = if square > 0.0 {
+            (line.pushed / square, 0.0)
+        } else {
+            (0.0, line.pushed / fast)
+        };
+        let (away, rate) = (stretch - rest, line.axial - flow);
+        let [slowly, hastily] = [slow, fast].map(|rate| (-rate * time).exp());
+        let (even, odd) = if spread * time > 1e-4 {
+            (0.5 * (slowly + hastily), 0.5 * (slowly - hastily) / spread)
+        } else {
+            (slowly, time * slowly)
+        };
+        let left = even * away + odd * (rate + decay * away);
+        let axial = flow + even * rate - odd * (decay * rate + square * away);
+        let moved = rest + flow * time + left - stretch;
+        let d = start.d + moved * line.direction + time * line.lateral;
+        let direction = d.try_normalize().filter(|_| d.length() > self.rounding);
+        Separation {
+            d,
+            v: axial * line.direction + line.lateral,
+            direction: direction.or(start.direction),
+            stiff_damper: start.stiff_damper,
         }
     }
 

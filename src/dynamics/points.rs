@@ -31,10 +31,6 @@ struct Point {
     given: DVec3,
     /// 0 of a point that elements cannot move.
     inverse_mass: f64,
-    /// See [`Body::held_part`].
-    held: DVec3,
-    /// What contacts add to its mass: that along the square of this, times the mass.
-    heavy: DVec3,
 }
 
 /// One element.
@@ -65,12 +61,8 @@ pub(crate) struct Points {
     /// [`super::network::Network`].
     stiffness: Vec<f64>,
     damping: Vec<f64>,
-    /// Contacts hold some point, so that the sums above depend on where the lines are.
-    any_held: bool,
     /// (ω h)² of the stiffest mode.
     pub(super) stiffest: f64,
-    /// ω² of the stiffest element on its own ends.
-    stiffest_alone: f64,
     bars: Vec<Bar>,
     impulses: Vec<DVec3>,
     solver: Solver,
@@ -88,17 +80,12 @@ struct Line {
 
 impl Point {
     fn of(body: &Body) -> Self {
-        let heavy = body.held.map_or(DVec3::ZERO, |held| {
-            (body.mobility.recip() - 1.0).sqrt() * held
-        });
         Self {
             position: body.position,
             velocity: body.velocity,
             acceleration: body.acceleration,
             given: body.given.0,
             inverse_mass: body.inverse_mass.x,
-            held: body.held_part(),
-            heavy,
         }
     }
 
@@ -109,19 +96,7 @@ impl Point {
             acceleration: DVec3::ZERO,
             given: DVec3::ZERO,
             inverse_mass: 0.0,
-            held: DVec3::ZERO,
-            heavy: DVec3::ZERO,
         }
-    }
-
-    /// Change of velocity by an impulse.
-    fn answer(&self, impulse: DVec3) -> DVec3 {
-        self.inverse_mass * (impulse - self.held.dot(impulse) * self.held)
-    }
-
-    fn inverse_mass_along(&self, direction: DVec3) -> f64 {
-        let taken = self.held.dot(direction);
-        self.inverse_mass * (1.0 - taken * taken)
     }
 }
 
@@ -193,7 +168,6 @@ impl Points {
         self.points.clear();
         self.points.extend(bodies.iter().map(Point::of));
         self.bodies = bodies.len();
-        self.any_held = bodies.iter().any(|body| body.held.is_some());
         self.wires.clear();
         for element in elements {
             let ends = element.ends.map(|end| match end {
@@ -215,9 +189,7 @@ impl Points {
                 work: element.work,
             });
         }
-        if !self.any_held {
-            self.add_up();
-        }
+        self.add_up();
         self.begin(budget);
     }
 
@@ -252,17 +224,9 @@ impl Points {
             sums.clear();
             sums.resize(self.points.len(), 0.0);
         }
-        self.stiffest_alone = 0.0;
         for wire in &self.wires {
             let ends = wire.of(&self.points);
-            let along = if self.any_held {
-                wire.line(ends).map_or(DVec3::ZERO, |line| line.direction)
-            } else {
-                DVec3::ZERO
-            };
-            let w = ends.map(|end| end.inverse_mass_along(along).sqrt());
-            let alone = wire.stiffness * (w[0] * w[0] + w[1] * w[1]);
-            self.stiffest_alone = self.stiffest_alone.max(alone);
+            let w = ends.map(|end| end.inverse_mass.sqrt());
             for (end, w_end) in wire.ends.iter().zip(w) {
                 let share = w_end * (w[0] + w[1]);
                 self.stiffness[*end as usize] += wire.stiffness * share;
@@ -272,10 +236,7 @@ impl Points {
     }
 
     /// Bounds on (ω h)² of the stiffest mode, and on 2γh of the most damped one.
-    pub(super) fn bounds(&mut self, step: f64) -> (f64, f64) {
-        if self.any_held {
-            self.add_up();
-        }
+    pub(super) fn bounds(&self, step: f64) -> (f64, f64) {
         let largest = |sums: &[f64]| sums.iter().copied().fold(0.0, f64::max);
         (
             step * step * largest(&self.stiffness),
@@ -290,8 +251,7 @@ impl Points {
             wire.side = wire.aimed([a, b]);
             wire.stiff_damper = false;
             if wire.damping > 0.0 && wire.rest_length == 0.0 {
-                let along = wire.side.try_normalize().unwrap_or(DVec3::Y);
-                let inverse_mass = a.inverse_mass_along(along) + b.inverse_mass_along(along);
+                let inverse_mass = a.inverse_mass + b.inverse_mass;
                 let resolved = wire.stiffness * inverse_mass * step * step < 4.0;
                 wire.stiff_damper = resolved && wire.damping * inverse_mass * step > 0.5;
             }

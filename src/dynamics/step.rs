@@ -34,12 +34,6 @@ const EXTRA_STEPS: u32 = 4;
 pub(crate) struct Component {
     pub bodies: Vec<Body>,
     pub elements: Vec<Element>,
-    /// Velocities are not mapped to the true ones and back: what delivers the motion can order only the
-    /// stepped ones.
-    pub stepped: bool,
-    /// Energy that it has won where it should not and that its motion could not pay, J: then the step is one that
-    /// only loses energy.
-    pub owed: f64,
     /// Something else than its elements can have changed its energy since the last step.
     pub meddled: bool,
     /// How far the engine moves a body in a step, m, if there is a limit.
@@ -57,8 +51,6 @@ pub(super) struct Memory {
     points: Points,
     /// Length of the last step, if the points can go on from it.
     carriable: Option<f64>,
-    /// What they had at the start of the step.
-    had: Energy,
     controller: Controller,
     bends: Bends,
     bound: Bound,
@@ -99,10 +91,6 @@ impl Component {
             // Held back there, energy has to be watched.
             self.load(0);
         }
-        if self.owed > 0.0 {
-            self.memory.controller = controller;
-            return self.pay(time);
-        }
         if self.carried {
             self.memory.points.begin(self.memory.max_iterations);
         }
@@ -113,7 +101,7 @@ impl Component {
             return outcome;
         }
         let bound = &mut self.memory.bound;
-        bound.begin(&self.elements, &self.bodies, self.stepped, self.meddled);
+        bound.begin(&self.elements, &self.bodies, self.meddled);
         self.save(0);
         let mut outcome = controller.drive(self, time, accuracy);
         self.memory.controller = controller;
@@ -145,31 +133,6 @@ impl Component {
     #[cfg(test)]
     pub(super) fn memory_for_test(&mut self, max_iterations: u32) {
         self.memory.max_iterations = max_iterations;
-    }
-
-    /// Force (N) and torque (N m) of all elements on each body as they stand.
-    pub(crate) fn loads(&self, loads: &mut Vec<(DVec3, DVec3)>) {
-        loads.clear();
-        loads.resize(self.bodies.len(), (DVec3::ZERO, DVec3::ZERO));
-        for element in &self.elements {
-            let Some(line) = element.line(&self.bodies) else {
-                continue;
-            };
-            let rate = line.motion(element, &self.bodies, 0.0).axial;
-            let tension = element.tension(line.length, rate);
-            for (hold, sign) in line.holds.iter().zip([1.0, -1.0]) {
-                let Some(sum) = hold.body.map(|body| &mut loads[body]) else {
-                    continue;
-                };
-                let force = sign * tension * line.direction;
-                if hold.twist {
-                    sum.1 += force;
-                } else {
-                    sum.0 += force;
-                    sum.1 += hold.arm.cross(force);
-                }
-            }
-        }
     }
 
     /// Micro-steps of one element alone.
@@ -217,10 +180,8 @@ impl Component {
     }
 
     fn map(&mut self, step: f64, map: Map) {
-        if !self.stepped {
-            let memo = &mut self.memory.memo;
-            kick::map_velocity(&self.elements[0], &mut self.bodies, step, map, memo);
-        }
+        let memo = &mut self.memory.memo;
+        kick::map_velocity(&self.elements[0], &mut self.bodies, step, map, memo);
     }
 
     /// Micro-steps of elements that share bodies.

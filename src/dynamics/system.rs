@@ -56,13 +56,8 @@ impl System {
             let w = body.inverse_mass;
             let free = DVec3::select(w.cmpgt(DVec3::ZERO), DVec3::ONE, DVec3::ZERO);
             self.free.linear[i] = free;
-            let mut mass =
-                DMat3::from_diagonal(DVec3::select(w.cmpgt(DVec3::ZERO), w.recip(), DVec3::ONE));
-            if let Some(held) = body.held {
-                let more = (body.mobility.recip() - 1.0) / w.x;
-                mass += DMat3::from_cols(held * held.x, held * held.y, held * held.z) * more;
-            }
-            self.mass.push(mass);
+            let mass = DVec3::select(w.cmpgt(DVec3::ZERO), w.recip(), DVec3::ONE);
+            self.mass.push(DMat3::from_diagonal(mass));
             let turns = body.spin != Spin::Still;
             self.places.push((self.unknowns, turns));
             self.unknowns += if turns { 6 } else { 3 };

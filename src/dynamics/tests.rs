@@ -24,8 +24,6 @@ pub(super) fn point(mass: f64, position: DVec3, gravity: DVec3) -> Body {
         farthest_turn: f64::INFINITY,
         acceleration: gravity,
         torque: DVec3::ZERO,
-        mobility: 1.0,
-        held: None,
         given: (DVec3::ZERO, DVec3::ZERO),
         driven: 0.0,
         turned: None,

@@ -27,6 +27,12 @@ impl Accuracy {
         self.max_microsteps.max(1)
     }
 
+    /// How many times as finely as by default an engine is to solve what it solves itself.
+    pub(crate) fn fineness(&self) -> u32 {
+        let more = if self.extrapolate { 2 } else { 1 };
+        self.cap(self.microsteps.max(1)).0.saturating_mul(more)
+    }
+
     /// Micro-steps of every step alike, if that is all that is asked.
     pub(crate) fn plain(&self) -> Option<u32> {
         let plain = self.tolerance.is_none() && !self.extrapolate;
@@ -42,6 +48,7 @@ pub(crate) enum Method {
     ClosedForm,
     Direct,
     Iterative,
+    Engine,
 }
 
 /// What a step took.

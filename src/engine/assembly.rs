@@ -3,17 +3,12 @@
 use super::body::{Push, push, read};
 use super::carry::Carry;
 use super::element::element;
-use super::expected::{Expected, Whole};
-use super::held::{self, Support};
-use super::passive::Ledger;
 use super::scene::{BodyRow, ElementRow, pull_mark};
 use super::sleep::omega_of;
 use super::step::Step;
-use super::touch::Partners;
 use crate::dynamics::body::Body;
 use crate::dynamics::step::Component;
 use crate::dynamics::tolerance::Outcome;
-use bevy::math::DVec3;
 use bevy_rapier3d::rapier::dynamics::RigidBodySet;
 use std::mem::{replace, take};
 use std::sync::atomic::Ordering;
@@ -26,19 +21,15 @@ pub(crate) struct Assembly {
     /// Index of the group whose it is.
     pub(super) group: usize,
     pub(super) component: Component,
-    /// Its bodies at the start of the step, with their full mass.
+    /// Its bodies at the start of the step.
     start: Vec<Body>,
-    /// What each of them is to be given, and what that is to do.
-    orders: Vec<Option<(Push, (Expected, Whole))>>,
-    /// Force and torque of all elements on each of them, where that is asked for.
-    loads: Vec<(DVec3, DVec3)>,
+    /// What each of them is to be given.
+    orders: Vec<Option<Push>>,
     pub(super) state: State,
     /// It was found asleep.
     asleep: bool,
     pub(super) outcome: Outcome,
-    pub(super) ledger: Ledger,
     pub(super) carry: Carry,
-    partners: Partners,
 }
 
 /// What there is to do.
@@ -81,7 +72,6 @@ impl Assembly {
 
     /// Readies it for another component.
     pub(super) fn forget(&mut self) {
-        self.ledger.clear();
         self.component.forget();
         self.asleep = false;
     }
@@ -110,8 +100,6 @@ impl Assembly {
         component.elements.clear();
         self.start.clear();
         self.carry.centers.clear();
-        component.stepped = false;
-        component.owed = 0.0;
         component.meddled = self.carry.meddled;
         for (slot, b) in members.bodies.iter().enumerate() {
             let row = &mut bodies[*b];
@@ -119,30 +107,15 @@ impl Assembly {
             let Some(body) = step.movable(set, row.handle, stale) else {
                 return;
             };
-            if let Some(partner) = &mut row.partner {
-                partner.note(body, set);
-            }
+            row.can_touch = !body.colliders().is_empty();
             self.carry.centers.push(body.local_center_of_mass());
             let mut free = read(body, step.engine.gravity, &row.user, row.turns);
-            if let Some(link) = row.link {
-                free.velocity = link.linear.as_dvec3();
-                free.set_angular_velocity(link.angular.as_dvec3());
-            }
             if row.turns {
-                free.farthest_turn = step.farthest_turn(row.handle, body);
+                free.farthest_turn = step.farthest_turn(body);
             }
-            row.displaced = row.was_displaced(free.position);
-            row.driven = row.was_driven(body, free.position);
             let pulled = pull_mark(free.acceleration);
-            row.driven |= replace(&mut row.pulled, pulled) != pulled;
-            component.meddled |= row.driven || row.support != Support::None;
-            row.lag = step.lag_of_held(row, body);
-            if row.lag > 0.0 {
-                free.drift(-row.lag);
-                // A network maps no velocities anyway.
-                component.stepped |= members.elements.len() == 1;
-            }
-            component.stepped |= step.lag(row.handle, body) > 0.0;
+            component.meddled |= row.was_driven(body, free.position);
+            component.meddled |= replace(&mut row.pulled, pulled) != pulled;
             self.start.push(free);
         }
         let sound = self.start.iter().all(Body::is_finite);
@@ -174,102 +147,12 @@ impl Assembly {
             self.asleep = true;
             return;
         }
-        if disturbed {
-            self.ledger.clear();
-        }
-        let handles = || members.bodies.iter().map(|b| bodies[*b].handle);
-        if handles().any(|handle| set.get(handle).is_some_and(|b| !b.colliders().is_empty())) {
-            // It can touch something.
-            let rows = members.bodies.iter().map(|b| &bodies[*b]);
-            let time = step.plan.time;
-            self.ledger
-                .settle(&component.elements, &mut self.start, rows, time);
-            component.owed = self.ledger.owed();
-            self.give_way(members, bodies, set, time);
-        }
         self.component.bodies.clone_from(&self.start);
         self.state = if sound && !self.component.elements.is_empty() {
             State::Ready
         } else {
             State::Powerless
         };
-        let free = |b: &usize| bodies[*b].support == Support::None;
-        if self.component.stepped || !members.bodies.iter().all(free) {
-            self.component.loads(&mut self.loads);
-        }
-        for (slot, b) in members.bodies.iter().enumerate() {
-            let row = &bodies[*b];
-            if row.support == Support::None {
-                continue;
-            }
-            let load = self.loads[slot];
-            let support = match (row.support, set.get(row.handle)) {
-                (Support::Unknown, Some(body)) => step.first_support(row, body, load, set),
-                (known, _) => known,
-            };
-            let mobility = held::mobility(row, support, &self.start[slot], load.0);
-            let direction = match (row.support, support) {
-                (Support::Unknown, Support::Contact { push, .. }) => Some(push),
-                (Support::Contact { .. }, _) => row.held,
-                _ => None,
-            };
-            self.component.bodies[slot] = held::held(&self.start[slot], mobility, direction);
-        }
-        if self.component.stepped {
-            self.look_back(step, members, bodies, set);
-        }
-    }
-
-    /// Bodies that moving ones hold give way with them, and the more, the less the hold can be trusted.
-    fn give_way(
-        &mut self,
-        members: &Members,
-        bodies: &mut [BodyRow],
-        set: &RigidBodySet,
-        time: f64,
-    ) {
-        let rows = members.bodies.iter().map(|b| &bodies[*b]);
-        self.partners.find(rows, set);
-        let motion = self.partners.motion + self.start.iter().map(Body::motion).sum::<f64>();
-        let distrust = self.ledger.distrust(motion, time);
-        for (b, own) in members.bodies.iter().zip(&self.start) {
-            let row = &mut bodies[*b];
-            if row.partner.is_some() {
-                let least = self.partners.least_mobility(row, own).max(distrust);
-                row.mobility = row.mobility.max(least);
-            }
-        }
-    }
-
-    /// Sees links of multibodies where they were a little earlier: see [`Step::lag`].
-    fn look_back(
-        &mut self,
-        step: &Step,
-        members: &Members,
-        bodies: &[BodyRow],
-        set: &RigidBodySet,
-    ) {
-        for (slot, b) in members.bodies.iter().enumerate() {
-            let row = &bodies[*b];
-            let lag = set.get(row.handle).map_or(0.0, |b| step.lag(row.handle, b));
-            if lag == 0.0 {
-                continue;
-            }
-            if row.link.is_none() {
-                // Later the velocity is that of then, too; before the first step it is of now.
-                let load = self.loads[slot];
-                let body = &mut self.component.bodies[slot];
-                let inverse_inertia = body.inverse_inertia();
-                body.apply_external(-lag, inverse_inertia);
-                body.apply(-lag * load.0, DVec3::ZERO, inverse_inertia);
-                body.apply_angular(-lag * load.1, inverse_inertia);
-                body.given = (DVec3::ZERO, DVec3::ZERO);
-                body.drift(-lag);
-                body.position -= 0.5 * lag * lag * (body.inverse_mass * load.0 + body.acceleration);
-            } else {
-                self.component.bodies[slot].drift(-lag);
-            }
-        }
     }
 
     /// Integrates over the step, and works out what takes the bodies there.
@@ -300,13 +183,8 @@ impl Assembly {
             let row = &bodies[*b];
             let (start, end) = (&self.start[slot], &self.component.bodies[slot]);
             self.orders.push(set.get(row.handle).map(|body| {
-                let terms = step.terms(row.handle, body);
-                let push = if end.mobility < 1.0 {
-                    held::push(start, end.given, row.support, &terms)
-                } else {
-                    push(body, start, end, &terms, &step.engine)
-                };
-                (push, Expected::new(start, end, &terms))
+                let terms = step.terms(body);
+                push(body, start, end, &terms, &step.engine)
             }));
         }
     }
@@ -343,9 +221,8 @@ impl Assembly {
                 continue;
             };
             let order = self.orders.get(slot).and_then(Option::as_ref);
-            if let Some((push, (expected, whole))) = order.filter(|_| ready) {
-                row.expected = Some(*expected);
-                row.whole = *whole;
+            row.is_alone = false;
+            if let Some(push) = order.filter(|_| ready) {
                 row.give(push, body);
             } else {
                 row.give(&Push::default(), body);

@@ -76,6 +76,22 @@ pub(super) fn turning_of(body: &RapierBody, time: f64) -> (DQuat, DVec3) {
     }
 }
 
+/// Centre of mass.
+pub(super) fn center_of(body: &RapierBody) -> DVec3 {
+    let pose = body.position();
+    let mut center = pose.translation.as_dvec3();
+    let local = body.local_center_of_mass();
+    if local != Vec3::ZERO {
+        center += rotation_of(body) * local.as_dvec3();
+    }
+    center
+}
+
+/// From its frame to the world.
+pub(super) fn rotation_of(body: &RapierBody) -> DQuat {
+    body.position().rotation.as_dquat().normalize()
+}
+
 /// Whether an element can move it.
 pub(super) fn is_movable(body: &RapierBody) -> bool {
     body.is_dynamic() && body.is_enabled()
@@ -124,8 +140,6 @@ pub(super) fn read(body: &RapierBody, gravity: Vec3, user: &ExternalForce, turns
         acceleration: moves * gravity.as_dvec3() * f64::from(body.gravity_scale())
             + inverse_mass * user.force.as_dvec3(),
         torque: user.torque.as_dvec3(),
-        mobility: 1.0,
-        held: None,
         given: (DVec3::ZERO, DVec3::ZERO),
         driven: 0.0,
         turned: None,
@@ -150,7 +164,7 @@ pub(super) fn read(body: &RapierBody, gravity: Vec3, user: &ExternalForce, turns
 /// What the engine is given for a step, so that a body ends it where the integrator did.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Push {
-    /// Velocities at its start, where it keeps those that are set.
+    /// Velocities at its start, if others than it has.
     pub linvel: Option<Vec3>,
     pub angvel: Option<Vec3>,
     /// Force and torque of the elements over it.
@@ -174,7 +188,7 @@ impl Push {
     }
 }
 
-/// The velocity that a body is given for the start of the step, if any, and the acceleration that it must have over
+/// The velocity that a body is given for the start of the step, and the acceleration that it must have over
 /// it, to move so far and reach such a velocity.
 #[inline(always)]
 pub(super) fn straight(
@@ -183,11 +197,8 @@ pub(super) fn straight(
     reached: DVec3,
     terms: &Terms,
     engine: &Engine,
-) -> (Option<Vec3>, DVec3) {
+) -> (Vec3, DVec3) {
     let time = terms.schedule.time;
-    if !terms.takes_impulses {
-        return (None, (reached - velocity) * terms.schedule.per_time);
-    }
     let schedule = &terms.schedule;
     let wanted = schedule.reach(displacement - time * velocity, reached - velocity);
     let planned = schedule.capped(wanted, velocity, engine.fastest);
@@ -195,7 +206,7 @@ pub(super) fn straight(
     // The engine's velocity is rounded; the force makes up for it.
     let rounding = velocity + planned.jump - linvel.as_dvec3();
     let rate = planned.rate + rounding * schedule.per_time;
-    (Some(linvel), rate)
+    (linvel, rate)
 }
 
 /// What takes a free body from its start to its end.
@@ -206,7 +217,6 @@ pub(super) fn push(
     terms: &Terms,
     engine: &Engine,
 ) -> Push {
-    let time = terms.schedule.time;
     let (linvel, linear) = straight(
         start.velocity,
         end.position - start.position,
@@ -219,18 +229,9 @@ pub(super) fn push(
     if start.spin != Spin::Still {
         let inverse_inertia = start.inverse_inertia();
         let spin = start.angular_velocity();
-        let Delivery { jump, rate } = if terms.takes_impulses {
-            let schedule = &terms.schedule;
-            schedule.angular(start, body.gyroscopic_forces_enabled(), end)
-        } else {
-            Delivery {
-                jump: DVec3::ZERO,
-                rate: (end.angular_velocity() - spin) / time,
-            }
-        };
-        if terms.takes_impulses {
-            angvel = Some((spin + jump).as_vec3());
-        }
+        let gyroscopic = body.gyroscopic_forces_enabled();
+        let Delivery { jump, rate } = terms.schedule.angular(start, gyroscopic, end);
+        angvel = Some((spin + jump).as_vec3());
         torque = torque_for(rate, inverse_inertia) - start.torque;
         for axis in 0..3 {
             if start.rotation_locked[axis] {
@@ -239,7 +240,7 @@ pub(super) fn push(
         }
     }
     Push {
-        linvel,
+        linvel: Some(linvel),
         angvel,
         share: [force.as_vec3(), torque.as_vec3()],
         raised_iterations: terms.raised_iterations,

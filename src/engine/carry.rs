@@ -22,8 +22,6 @@ pub(super) struct Carry {
     restless: bool,
     /// Something else than elements can have changed what it has.
     pub meddled: bool,
-    /// Some body is not where the last step left it.
-    displaced: bool,
 }
 
 impl Assembly {
@@ -38,8 +36,7 @@ impl Assembly {
     ) -> bool {
         self.component.carried = false;
         self.carry.meddled = false;
-        let all_act = self.component.elements.len() == members.elements.len();
-        if !(all_act && self.ledger.is_idle()) {
+        if self.component.elements.len() != members.elements.len() {
             return false;
         }
         let mut disturbed = false;
@@ -50,9 +47,6 @@ impl Assembly {
                 bodies[*first].disturbed |= disturbed;
             }
             return false;
-        }
-        if disturbed {
-            self.ledger.clear();
         }
         self.carry.restless |= disturbed;
         self.component.carried = true;
@@ -74,7 +68,7 @@ impl Assembly {
         let carry = &mut self.carry;
         let time = step.plan.time;
         let points = self.component.points_to_carry(time)?;
-        (carry.restless, carry.displaced) = (false, false);
+        carry.restless = false;
         for (slot, b) in members.bodies.iter().enumerate() {
             let row = &mut bodies[*b];
             let body = set.get(row.handle)?;
@@ -82,8 +76,9 @@ impl Assembly {
             if !is_movable(body) || body.is_sleeping() || carry.centers[slot] != center {
                 return None;
             }
+            row.can_touch = !body.colliders().is_empty();
             let point = FreePoint::of(row, body, step).ok()?;
-            carry.meddled |= row.was_meddled(body, point.position);
+            carry.meddled |= row.was_driven(body, point.position);
             if points.origin(slot).acceleration != point.acceleration {
                 // Written only then: it lies apart from what every step needs.
                 row.pulled = pull_mark(point.acceleration);
@@ -91,7 +86,6 @@ impl Assembly {
             }
             *disturbed |= std::mem::take(&mut row.disturbed);
             carry.restless |= step.is_restless(row, body, carry.omega);
-            carry.displaced |= row.was_displaced(point.position);
             if !points.place(slot, &point) {
                 return None;
             }
@@ -120,14 +114,11 @@ impl Assembly {
         bodies: &mut [BodyRow],
         set: &mut RigidBodySet,
     ) {
-        let time = step.plan.time;
-        self.ledger
-            .go_on(&self.component, self.carry.displaced, time);
         let points = self.component.carried_points();
         for (slot, b) in members.bodies.iter().enumerate() {
             let (origin, flight) = (points.origin(slot), points.flight(slot));
             let row = &mut bodies[*b];
-            step.deliver_point(row, &origin, &flight, [self.carry.restless, true], set);
+            step.deliver_point(row, &origin, &flight, self.carry.restless, set);
         }
         for (e, (direction, heat, work)) in members.elements.iter().zip(points.take_results()) {
             let row = &mut elements[*e];

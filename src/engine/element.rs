@@ -9,7 +9,7 @@ use crate::dynamics::element::{Element, End, Path};
 use crate::dynamics::guide::Guide;
 use bevy_rapier3d::rapier::dynamics::RigidBodySet;
 
-impl Step<'_> {
+impl Step {
     /// An end as the integrator sees it.
     pub(super) fn end(
         &self,

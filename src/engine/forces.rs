@@ -66,6 +66,8 @@ impl BodyRow {
     #[inline(always)]
     pub(super) fn give(&mut self, push: &Push, body: &mut RapierBody) {
         push.act(body);
+        self.is_fresh = true;
+        self.carries_share = true;
         let [force, torque] = push.share;
         let finite = force.is_finite() && torque.is_finite();
         let kept = |v: Vec3| if finite { v } else { Vec3::ZERO };

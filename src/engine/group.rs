@@ -1,7 +1,6 @@
 //! Which elements have to be solved together.
 
 use super::assembly::{Assembly, Members};
-use super::held::Support;
 use super::renew::mix;
 use super::scene::{BodyRow, ElementRow};
 use bevy::platform::collections::HashMap;
@@ -22,6 +21,12 @@ pub(super) struct Group {
     pub assembly: Option<usize>,
     /// Its bodies, where it has been found asleep and nothing but them can wake it.
     pub dozing: Option<[RigidBodyHandle; 2]>,
+    /// Contacts or joints hold some body of it.
+    pub held: bool,
+    /// The engine solves its elements,
+    pub inside: bool,
+    /// and it was asleep in the last step.
+    pub is_asleep: bool,
 }
 
 impl Group {
@@ -110,7 +115,14 @@ impl Groups {
             signature: 0,
             assembly: None,
             dozing: None,
+            held: false,
+            inside: false,
+            is_asleep: false,
         }));
+        for group in &mut self.list {
+            let members = &self.elements[group.elements.clone()];
+            group.inside = members.iter().any(|e| elements[*e].inside.is_some());
+        }
     }
 
     /// Gives every group that needs one its assembly: the one that it had, if it was there before.
@@ -131,8 +143,7 @@ impl Groups {
             });
             let any = |is: fn(&BodyRow) -> bool| members.bodies.iter().any(|b| is(&bodies[*b]));
             let alone = members.elements.len() == 1 && !any(|body| body.turns);
-            let is_plain = alone && !any(|body| body.support != Support::None);
-            let before = known.remove(&signature).filter(|_| !is_plain);
+            let before = known.remove(&signature);
             self.list[g].signature = signature;
             if !alone || before.is_some() {
                 self.list[g].take(g, before.unwrap_or_default(), assemblies);

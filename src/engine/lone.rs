@@ -79,7 +79,7 @@ pub(super) fn call_up(
     for group in groups.list()[next..].iter().take(FLOCK).filter(awake) {
         let members = groups.members(group);
         for row in members.bodies.iter().map(|b| &bodies[*b]) {
-            seen ^= row.user.force.x.to_bits() ^ u32::from(row.expected.is_some());
+            seen ^= row.user.force.x.to_bits();
             if let Some(body) = set.get(row.handle) {
                 let properties = body.mass_properties();
                 seen ^= body.position().translation.x.to_bits() ^ body.linvel().x.to_bits();
@@ -98,7 +98,7 @@ pub(super) fn call_up(
     black_box(seen);
 }
 
-impl Step<'_> {
+impl Step {
     /// Reads the element of a group, if it is an ordinary one.
     pub(super) fn take_off(
         &self,
@@ -130,6 +130,7 @@ impl Step<'_> {
                 row.active = false;
                 return Handled::Done;
             };
+            bodies[*index].can_touch = !body.colliders().is_empty();
             sleepers += usize::from(body.is_sleeping());
             *found = Some((*index, body));
         }
@@ -349,7 +350,8 @@ impl Step<'_> {
             match aloft.movable[end] {
                 Some(index) => {
                     let row = &mut bodies[index];
-                    self.deliver_point(row, point, flight, [aloft.restless, false], set);
+                    row.is_alone = true;
+                    self.deliver_point(row, point, flight, aloft.restless, set);
                 }
                 // What holds this end moves it against what the other end is given.
                 None => row.ledger.work -= flight.given.dot(point.velocity),

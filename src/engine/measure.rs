@@ -1,7 +1,6 @@
 //! After the engine's step: what each element shows.
 
-use super::body::{is_movable, point_of};
-use super::held::{Context, center_of, observe};
+use super::body::{center_of, is_movable, point_of, rotation_of};
 use super::parts::IsElement;
 use super::prepare::report;
 use super::scene::{BodyRow, ElementRow, Held, Scene, turning_mark};
@@ -13,14 +12,7 @@ use crate::readout::SpringReadout;
 use bevy::math::{DQuat, DVec3};
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
-use bevy_rapier3d::rapier::dynamics::RigidBody as RapierBody;
-
-/// What of a Rapier context tells how its step went.
-type ContextParts<'a> = (
-    &'a RapierContextSimulation,
-    &'a RapierContextJoints,
-    &'a RapierContextColliders,
-);
+use bevy_rapier3d::rapier::dynamics::{RigidBody as RapierBody, RigidBodyHandle, RigidBodySet};
 
 /// What a captured rest length or angle is written into.
 type Springs<'a> = (
@@ -36,7 +28,6 @@ pub(crate) fn measure(
     sets: Query<&'static RapierRigidBodySet>,
     mut readouts: Query<(Entity, &mut SpringReadout), IsElement>,
     mut springs: Query<Springs, IsElement>,
-    contexts: Query<ContextParts<'static>>,
     mut commands: Commands,
 ) {
     let scene = &mut *scene;
@@ -50,7 +41,6 @@ pub(crate) fn measure(
     let time = scene.time;
     let mut look = Look {
         sets: &sets,
-        contexts: &contexts,
         known: None,
         stale: false,
     };
@@ -66,6 +56,7 @@ pub(crate) fn measure(
                 commands.entity(row.entity).try_remove::<SpringTuning>();
             }
             let seen = row.extent(points, time, &sets);
+            let seen = row.arrive(seen, points, time, &mut look);
             if led {
                 row.account_for_moved(seen, time);
             }
@@ -135,48 +126,38 @@ fn write_back(row: &ElementRow, tuned: bool, springs: &mut Query<Springs, IsElem
     }
 }
 
-/// What is needed to see where stepped bodies are, and what the step did to them.
+/// What is needed to see where stepped bodies are.
 struct Look<'a, 'w, 's> {
     sets: &'a Query<'w, 's, &'static RapierRigidBodySet>,
-    contexts: &'a Query<'w, 's, ContextParts<'static>>,
-    known: Option<(Entity, Context<'a>)>,
+    known: Option<(Entity, &'a RigidBodySet)>,
     /// The scene is not what it was thought to be.
     stale: bool,
 }
 
 impl<'a> Look<'a, '_, '_> {
-    /// What a Rapier context is after its step.
-    fn context(&mut self, entity: Entity) -> Option<&Context<'a>> {
-        if self.known.as_ref().is_none_or(|known| known.0 != entity) {
-            let (set, parts) = (self.sets.get(entity).ok(), self.contexts.get(entity).ok());
-            self.known = set
-                .zip(parts)
-                .map(|(set, (simulation, joints, colliders))| {
-                    let context = Context {
-                        simulation,
-                        joints,
-                        colliders: &colliders.colliders,
-                        bodies: &set.bodies,
-                    };
-                    (entity, context)
-                });
+    /// The bodies of a context.
+    fn bodies(&mut self, context: Entity) -> Option<&'a RigidBodySet> {
+        if self.known.is_none_or(|known| known.0 != context) {
+            let set = self.sets.get(context).ok()?;
+            self.known = Some((context, &set.bodies));
         }
-        Some(&self.known.as_ref()?.1)
+        self.known.map(|known| known.1)
     }
 
-    /// Position and velocity of a body's centre of mass, after what the step did to it has been taken in.
+    fn body(&mut self, context: Entity, handle: RigidBodyHandle) -> Option<&'a RapierBody> {
+        self.bodies(context)?.get(handle)
+    }
+
+    /// Position and velocity of a body's centre of mass after the step.
     fn at(&mut self, row: &mut BodyRow) -> (DVec3, DVec3) {
-        if row.expected.is_none() && row.is_noted {
+        if !row.is_fresh && row.is_noted {
             return row.place();
         }
-        let Some(context) = self.context(row.context) else {
-            return row.place();
-        };
-        let Some(body) = context.bodies.get(row.handle) else {
+        let Some(body) = self.body(row.context, row.handle) else {
             self.stale = true;
             return row.place();
         };
-        observe(row, body, context);
+        row.is_fresh = false;
         // The engine takes bodies out that it cannot step.
         let is_out = !is_movable(body);
         let now = (center_of(body), body.linvel());
@@ -251,8 +232,7 @@ impl ElementRow {
                 local,
                 ..
             } => look
-                .context(context)
-                .and_then(|context| context.bodies.get(handle))
+                .body(context, handle)
                 .map_or((DVec3::ZERO, DVec3::ZERO), |body| point_of(body, local)),
         }
     }
@@ -280,6 +260,37 @@ impl ElementRow {
             self.memory.direction.unwrap_or(DVec3::ZERO)
         };
         (length, (b.1 - a.1).dot(direction))
+    }
+
+    /// Takes in how a step inside the engine's solver went: there the rate is that of the length, not the engine's.
+    fn arrive(
+        &mut self,
+        (length, rate): (f64, f64),
+        points: [(DVec3, DVec3); 2],
+        time: f64,
+        look: &mut Look,
+    ) -> (f64, f64) {
+        let Some(inside) = self.inside.take_if(|inside| inside.active) else {
+            return (length, rate);
+        };
+        let facings = self.held.map(|held| match held {
+            Held::Body {
+                handle, context, ..
+            } => look
+                .body(context, handle)
+                .map_or(DQuat::IDENTITY, rotation_of),
+            Held::Path { .. } => DQuat::IDENTITY,
+        });
+        let length = inside.wound(facings, length, time, |twist| self.elastic(twist).energy);
+        let moved = [0, 1].map(|end| {
+            let by = inside.moved(end, points[end].0, facings[end]);
+            by.filter(|_| self.on[end].is_none())
+        });
+        self.inside = Some(inside);
+        if self.companion.guide.is_twist() {
+            self.memory.angle = length;
+        }
+        self.arrive_inside(length, moved, time)
     }
 
     fn read_out(&self, (length, rate): (f64, f64), time: f64) -> SpringReadout {

@@ -2,8 +2,9 @@
 //!
 //! One step runs [`prepare::prepare`] → [`forces::read_users`] → [`solve::solve`] → (Rapier steps) → [`measure::measure`].
 //! [`scene`] holds what is kept between; [`renew`] fills it where [`watch`] or an element says that it
-//! changed. A lone element goes through [`lone`], everything else through [`assembly`], where [`carry`] takes
-//! networks of points past most of the work, and [`still`] a world asleep past all of it.
+//! changed. What contacts or joints hold goes through [`inside`]; of the rest a lone element through [`lone`], everything
+//! else through [`assembly`], where [`carry`] takes networks of points past most of the work, and [`still`] a world asleep
+//! past all of it.
 
 mod assembly;
 mod body;
@@ -14,17 +15,13 @@ mod companions;
 mod element;
 mod ends;
 mod energy;
-mod expected;
 mod find;
 mod forces;
-mod ground;
 mod group;
-mod held;
-mod jointed;
+mod inside;
 mod lone;
 mod measure;
 mod parts;
-mod passive;
 mod point;
 mod prepare;
 mod renew;
@@ -35,7 +32,6 @@ mod solve;
 mod step;
 mod still;
 mod timestep;
-mod touch;
 mod tune;
 mod watch;
 

@@ -2,8 +2,6 @@
 //! takes it on.
 
 use super::body::{Push, straight};
-use super::expected::Expected;
-use super::held::Support;
 use super::lone::Handled;
 use super::scene::BodyRow;
 use super::sleep::keep_awake;
@@ -20,15 +18,8 @@ impl FreePoint {
     #[inline(always)]
     pub(super) fn of(row: &BodyRow, body: &RapierBody, step: &Step) -> Result<Self, Handled> {
         let properties = &body.mass_properties().local_mprops;
-        if step.lag(row.handle, body) > 0.0 || body.locked_axes().intersects(LOCKED) {
+        if body.locked_axes().intersects(LOCKED) {
             return Err(Handled::Never);
-        }
-        match row.support {
-            Support::None => {}
-            Support::Unknown => return Err(Handled::No),
-            Support::Joint | Support::Tied(_) | Support::Contact { .. } => {
-                return Err(Handled::Never);
-            }
         }
         let mut position = body.position().translation.as_dvec3();
         if properties.local_com != Vec3::ZERO {
@@ -46,16 +37,15 @@ impl FreePoint {
     }
 }
 
-impl Step<'_> {
-    /// Gives the engine what takes a body where its elements do. `restless`: it has to be kept awake; `accounts`:
-    /// somebody asks for the work that is done on it.
+impl Step {
+    /// Gives the engine what takes a body where its elements do. `restless`: it has to be kept awake.
     #[inline(always)]
     pub(super) fn deliver_point(
         &self,
         row: &mut BodyRow,
         point: &FreePoint,
         flight: &Flight,
-        [restless, accounts]: [bool; 2],
+        restless: bool,
         set: &mut RigidBodySet,
     ) {
         let Some(body) = set.get_mut(row.handle) else {
@@ -65,16 +55,7 @@ impl Step<'_> {
             keep_awake(body);
         }
         self.delivered.store(true, Ordering::Relaxed);
-        let time = self.plan.time;
-        let terms = self.terms(row.handle, body);
-        row.expected = Some(Expected::straight(
-            point.velocity,
-            point.inverse_mass * flight.given,
-            time * point.acceleration,
-            flight.given,
-            accounts,
-            time,
-        ));
+        let terms = self.terms(body);
         let (linvel, rate) = straight(
             point.velocity,
             flight.moved,
@@ -84,7 +65,7 @@ impl Step<'_> {
         );
         let force = ((rate - point.acceleration) / point.inverse_mass).as_vec3();
         let push = Push {
-            linvel,
+            linvel: Some(linvel),
             angvel: None,
             share: [force, Vec3::ZERO],
             raised_iterations: terms.raised_iterations,

@@ -4,6 +4,7 @@ use super::check::{Parameters, Trouble};
 use super::companions::{Companion, Companions};
 use super::ends::Place;
 use super::find::{Finder, Found, Wanted};
+use super::inside::Inside;
 use super::parts::{IsElement, Parts};
 use super::prepare::report;
 use super::scene::{BodyRow, ElementRow, Held, Memory, Scene};
@@ -54,6 +55,7 @@ impl Scene {
             row.changed &= !row.has_acted(&self.bodies, &self.stepped);
             row.changed |= is_new;
             row.reset();
+            let held_by = row.parameters;
             let parameters = parts.parameters();
             if parameters.is_err() {
                 row.parameters = Parameters::NONE;
@@ -96,12 +98,20 @@ impl Scene {
             if found.is_err() {
                 self.faulty.push(index);
             }
+            if found.is_err() || !held_by.is_held_like(&row.parameters) {
+                self.left.extend(row.take_inside());
+            }
             scratch.found.push(found.ok());
         }
-        for gone in self.elements.drain(scratch.found.len()..) {
+        for mut gone in self.elements.drain(scratch.found.len()..) {
             self.row_of.remove(&gone.entity);
+            self.left.extend(gone.take_inside());
         }
         self.enter_bodies(&mut scratch, modified);
+        let entered = |body: &&BodyRow| self.index.contains_key(&body.entity);
+        let gone = scratch.bodies.iter().filter(|body| !entered(body));
+        self.unloaded
+            .extend(gone.filter_map(|row| Some((row.context, row.handle, row.raised?))));
         let found_all = self.elements.iter_mut().zip(&scratch.found);
         for (index, (row, found)) in found_all.enumerate() {
             let Some(found) = found else { continue };
@@ -122,6 +132,12 @@ impl Scene {
         }
         for (body, wanted) in self.bodies.iter_mut().zip(&scratch.wanted) {
             body.disturbed |= wanted.signature != body.signature;
+        }
+        for row in &mut self.elements {
+            // What moves nothing any more is in no component.
+            if row.moves() == 0 {
+                self.left.extend(row.take_inside());
+            }
         }
         self.immovable = self
             .elements
@@ -215,7 +231,14 @@ impl ElementRow {
             memory: Memory::default(),
             inverse_mass: 0.0,
             outcome: default(),
+            inside: None,
         }
+    }
+
+    /// What it has in the engine's solver, and in which context.
+    fn take_inside(&mut self) -> Option<(Entity, Box<Inside>)> {
+        let inside = self.inside.take()?;
+        Some((inside.context?, inside))
     }
 
     /// Makes it an inert one but for what is known of the element.

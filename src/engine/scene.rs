@@ -4,14 +4,12 @@ use super::assembly::Assembly;
 use super::check::{Parameters, Trouble};
 use super::companions::Companion;
 use super::energy::EnergyLedger;
-use super::expected::{Expected, Twist, Whole};
 use super::forces::Share;
 use super::group::Groups;
-use super::held::Support;
+use super::inside::{Inside, Raised};
 use super::renew::{Scratch, mix};
 use super::sleep::Rest;
 use super::still::Still;
-use super::touch::Partner;
 use crate::dynamics::kick::Memo;
 use crate::dynamics::tolerance::{Controller, Outcome};
 use bevy::ecs::entity::{EntityHashMap, EntityHashSet};
@@ -73,6 +71,8 @@ pub(super) struct ElementRow {
     pub on: [Option<u32>; 2],
     pub memory: Memory,
     pub held: [Held; 2],
+    /// What it has in the engine's solver, while that solves it.
+    pub inside: Option<Box<Inside>>,
 }
 
 impl ElementRow {
@@ -129,61 +129,51 @@ pub(super) struct BodyRow {
     pub disturbed: bool,
     /// It has been at rest since some time.
     pub rests: bool,
-    /// Its only element goes through the step without an assembly, and nothing holds it.
+    /// Its only element goes through the step without an assembly.
     pub is_alone: bool,
     /// [`Self::now`] is of the last step; nobody asks for that of a body that is alone.
     pub is_noted: bool,
-    /// Nothing has held it since the rows were made, or [`Self::let_go`].
-    pub untouched: bool,
+    /// It was stepped and has not been looked at since.
+    pub is_fresh: bool,
+    /// The engine has not stepped it yet.
+    pub is_new: bool,
+    /// It has colliders.
+    pub can_touch: bool,
+    /// A joint holds it,
+    pub jointed: bool,
+    /// something touches it,
+    pub touched: bool,
+    /// and pushes it,
+    pub pressed: bool,
+    /// or did so a moment ago: it counts as held for so long still, s.
+    pub lingers: f32,
     pub user: ExternalForce,
     /// What we give it over the coming step; `None` where it is not stepped by us.
     pub share: Option<Share>,
-    /// What the coming step is to do.
-    pub expected: Option<Expected>,
+    /// The engine still has a share of ours, which it should not have while it solves the elements itself.
+    pub carries_share: bool,
     pub context: Entity,
-    /// What keeps it from moving freely.
-    pub support: Support,
     /// Centre of mass after the last step that was noted, and its velocity.
     pub now: (DVec3, Vec3),
     /// Since when and where it has been at rest, if it is.
     pub rest: Rest,
-    pub whole: Whole,
     /// The torque of its share.
     pub torque: Vec3,
-    /// How much of a free body's motion contacts and joints leave it; see [`super::held`].
-    pub mobility: f64,
-    /// Velocities of a link of a multibody, which the engine shows too late.
-    pub link: Option<Twist>,
-    /// The body that pushed it most in the last step.
-    pub partner: Option<Partner>,
-    /// Work that elements did on it over the last step, J, where anybody asks.
-    pub given_work: f64,
-    /// Work that a contact with a moving body seems to have created, J.
-    pub contact_work: f64,
+    /// What it has besides forces while the engine solves its elements.
+    pub raised: Option<Raised>,
+    /// The engine's substep then, s.
+    pub substep: f64,
     /// Index within its component.
     pub slot: usize,
-    /// How far behind its present place it is seen, s: see [`super::step::Step::lag`].
-    pub lag: f64,
-    /// The direction in which contacts hold it, for a body that does not turn.
-    pub held: Option<DVec3>,
     /// How many elements act on it.
     pub elements: u32,
-    /// Something else than the engine's step has moved it.
-    pub displaced: bool,
-    /// Something else than elements and that can have changed its energy.
-    pub driven: bool,
-    /// Something that touches it has pushed it in the last step, although it did so no longer in the end.
-    pub was_pushed: bool,
     /// Which ones, as a hash; a change wakes it.
     pub signature: u64,
-    /// Acceleration by everything but elements in the last step, as a hash: a row has just room in 512 bytes.
+    /// Acceleration by everything but elements in the last step, as a hash.
     pub pulled: u64,
     /// Rotation and angular velocity after the last step that was noted, of a body that elements turn, as a hash.
     pub turned: u64,
 }
-
-/// Eight lines of the cache, of which a step takes as few as it can.
-const _: () = assert!(size_of::<BodyRow>() == 512);
 
 impl BodyRow {
     pub(super) fn new(entity: Entity, handle: RigidBodyHandle, context: Entity) -> Self {
@@ -195,28 +185,24 @@ impl BodyRow {
             elements: 0,
             signature: 0,
             disturbed: true,
-            untouched: true,
             slot: 0,
-            lag: 0.0,
-            displaced: false,
-            driven: false,
-            was_pushed: false,
+            is_new: true,
+            can_touch: true,
+            jointed: false,
+            touched: false,
+            pressed: false,
+            lingers: 0.0,
             user: ExternalForce::default(),
             share: None,
+            carries_share: false,
             rests: false,
             is_alone: false,
             is_noted: true,
+            is_fresh: false,
             rest: Rest::default(),
-            mobility: 1.0,
-            held: None,
-            support: Support::Unknown,
-            expected: None,
-            whole: Whole::default(),
             torque: Vec3::ZERO,
-            link: None,
-            given_work: 0.0,
-            contact_work: 0.0,
-            partner: None,
+            raised: None,
+            substep: 0.0,
             now: (DVec3::ZERO, Vec3::ZERO),
             turned: 0,
             pulled: 0,
@@ -234,28 +220,12 @@ impl BodyRow {
         let goes_on = !self.was_displaced(at)
             && self.now.1 == body.linvel()
             && (!self.turns || self.turned == turning_mark(body));
-        !goes_on || self.disturbed || self.was_pushed
-    }
-
-    /// The same, or what touches it can have.
-    pub(super) fn was_meddled(&self, body: &RapierBody, at: DVec3) -> bool {
-        self.was_driven(body, at) || self.support != Support::None
+        !goes_on || self.disturbed
     }
 
     /// Position and velocity of its centre of mass after the last step that was noted.
     pub(super) fn place(&self) -> (DVec3, DVec3) {
         (self.now.0, self.now.1.as_dvec3())
-    }
-
-    /// Forgets what held it.
-    pub(super) fn let_go(&mut self) {
-        self.mobility = 1.0;
-        self.link = None;
-        self.partner = None;
-        self.given_work = 0.0;
-        self.contact_work = 0.0;
-        self.untouched = true;
-        self.was_pushed = false;
     }
 }
 
@@ -313,6 +283,10 @@ pub struct Scene {
     pub(super) unordered: bool,
     /// The rows were made anew in this tick.
     pub(super) renewed: bool,
+    /// What elements that are gone have left in the engine's solver, and in which context.
+    pub(super) left: Vec<(Entity, Box<Inside>)>,
+    /// Bodies that no element moves any more, and what they have besides forces.
+    pub(super) unloaded: Vec<(Entity, RigidBodyHandle, Raised)>,
 }
 
 impl Scene {

@@ -87,7 +87,7 @@ pub(super) fn omega_of(row: &ElementRow) -> f32 {
     (row.slope() * row.inverse_mass).sqrt() as f32
 }
 
-impl Step<'_> {
+impl Step {
     /// Whether all of a component that was asleep is so still, and nothing that holds it has moved.
     pub(super) fn is_left_alone(
         &self,

@@ -3,8 +3,8 @@
 use super::assembly::Assembly;
 use super::body::{Engine, FARTHEST_TURN};
 use super::forces::{self, SpringLoad};
-use super::ground::Ground;
-use super::group::Groups;
+use super::group::{Group, Groups};
+use super::inside::{EngineParts, Solver, Surroundings};
 use super::lone::{FLOCK, Flock, Handled, call_up};
 use super::scene::{BodyRow, Scene};
 use super::step::Step;
@@ -16,6 +16,7 @@ use bevy::prelude::*;
 use bevy::tasks::ComputeTaskPool;
 use bevy_rapier3d::prelude::*;
 use bevy_rapier3d::rapier::dynamics::{RigidBody as RapierBody, RigidBodySet};
+use bevy_rapier3d::rapier::geometry::NarrowPhase;
 use std::num::NonZeroUsize;
 use std::sync::LazyLock;
 use std::sync::atomic::AtomicBool;
@@ -24,9 +25,9 @@ use std::thread::available_parallelism;
 /// What of a Rapier context the step needs.
 type ContextParts<'a> = (
     Entity,
-    &'a RapierContextSimulation,
-    &'a RapierContextColliders,
-    &'a RapierContextJoints,
+    &'a mut RapierContextSimulation,
+    &'a mut RapierContextColliders,
+    &'a mut RapierContextJoints,
     &'a RapierConfiguration,
     &'a SimulationToRenderTime,
 );
@@ -63,6 +64,7 @@ pub(crate) struct Spare {
     odd: Vec<usize>,
     /// The groups of those that are so for as long as can be seen.
     special: Vec<usize>,
+    inside: Solver,
 }
 
 /// Computes and delivers every element's force for the coming engine step.
@@ -71,9 +73,10 @@ pub(crate) fn solve(
     settings: Res<CoiloverSettings>,
     mode: Res<TimestepMode>,
     time: Res<Time>,
-    contexts: Query<ContextParts>,
+    mut contexts: Query<ContextParts>,
     mut sets: Query<&mut RapierRigidBodySet>,
     mut loads: Loads,
+    users: Query<&AdditionalSolverIterations>,
     mut spare: Local<Spare>,
     mut commands: Commands,
 ) {
@@ -84,7 +87,7 @@ pub(crate) fn solve(
     scene.time = 0.0;
     scene.stepped.clear();
     scene.delivered = false;
-    for (context, simulation, colliders, joints, configuration, lag) in &contexts {
+    for (context, mut simulation, mut colliders, mut joints, configuration, lag) in &mut contexts {
         let plan = Plan::new(*mode, time.delta_secs(), lag.diff);
         if plan.time <= 0.0 || !configuration.physics_pipeline_active {
             // What is moved meanwhile is not to be taken for known.
@@ -94,15 +97,20 @@ pub(crate) fn solve(
         scene.time = plan.time;
         scene.stepped.push(context);
         let here = scene.groups.list().iter().any(|g| g.context == context);
+        let left = scene.left.iter().any(|(of, _)| *of == context)
+            || scene.unloaded.iter().any(|(of, ..)| *of == context);
         let Ok(mut set) = sets.get_mut(context) else {
             continue;
         };
-        let quiet = scene.changed.is_empty() && !scene.loaded && !scene.renewed;
-        if !here || (quiet && !scene.shifted && scene.still.holds(context, simulation, &set)) {
+        let quiet = scene.changed.is_empty() && !scene.loaded && !scene.renewed && !left;
+        if !(here || left)
+            || (quiet && !scene.shifted && scene.still.holds(context, &simulation, &set))
+        {
             continue;
         }
-        let parameters = &simulation.integration_parameters;
-        let step = Step {
+        let simulation = &mut *simulation;
+        let parameters = simulation.integration_parameters;
+        let mut step = Step {
             plan,
             schedule: plan.schedule(parameters.num_solver_iterations),
             engine: Engine {
@@ -112,15 +120,43 @@ pub(crate) fn solve(
                 length_unit: parameters.length_unit,
                 gravity: configuration.gravity,
             },
-            joints,
-            colliders: &colliders.colliders,
-            ground: &Ground::default(),
             accuracy: settings.accuracy(),
-            links: joints.multibody_joints.multibodies().next().is_some(),
+            most_substeps: settings.max_substeps.max(1),
+            alike: None,
             quiet,
             delivered: AtomicBool::new(false),
         };
-        let all_asleep = scene.step(context, &step, &mut set.bodies, &mut spare);
+        let mut engine = EngineParts {
+            bodies: &mut set.bodies,
+            joints: &mut joints,
+            islands: &mut simulation.islands,
+            colliders: &mut colliders.colliders,
+        };
+        scene.left.retain_mut(|(of, inside)| {
+            let here = *of == context;
+            if here {
+                inside.remove(&mut engine);
+            }
+            !here
+        });
+        scene.unloaded.retain(|(of, handle, raised)| {
+            let here = *of == context;
+            if let Some(body) = engine.bodies.get_mut(*handle).filter(|_| here) {
+                raised.give_back(body);
+            }
+            !here
+        });
+        let finest = users.iter().map(|users| users.0).max().unwrap_or(0);
+        let spare = &mut *spare;
+        let held_asleep = scene.step_held(
+            context,
+            &mut step,
+            &simulation.narrow_phase,
+            &mut engine,
+            finest,
+            &mut spare.inside,
+        );
+        let all_asleep = scene.step(context, &step, engine.bodies, spare) && held_asleep;
         scene.still.note(context, all_asleep);
         scene.delivered |= step.delivered.into_inner();
     }
@@ -128,7 +164,78 @@ pub(crate) fn solve(
 }
 
 impl Scene {
-    /// Takes every component of a context through the step; says whether all of them are asleep.
+    /// Finds what contacts or joints hold, and has the engine solve it; says whether all of that is asleep.
+    fn step_held(
+        &mut self,
+        context: Entity,
+        step: &mut Step,
+        narrow: &NarrowPhase,
+        engine: &mut EngineParts,
+        finest: usize,
+        solver: &mut Solver,
+    ) -> bool {
+        let Self {
+            elements,
+            bodies,
+            groups,
+            assemblies,
+            stale,
+            ..
+        } = self;
+        let mut all_asleep = true;
+        solver.clear();
+        for g in 0..groups.list().len() {
+            let group = &groups.list()[g];
+            if group.context != context {
+                continue;
+            }
+            let members = groups.members(group);
+            let (was_inside, asleep) = (group.inside, group.is_asleep);
+            if was_inside
+                && asleep
+                && step.quiet
+                && step.is_left_alone(&members, elements, bodies, engine.bodies)
+            {
+                continue;
+            }
+            let around = Surroundings::new(narrow, engine.joints);
+            let mut held = false;
+            for b in members.bodies {
+                let row = &mut bodies[*b];
+                if (row.can_touch || around.any_joints || row.lingers > 0.0)
+                    && let Some(body) = engine.bodies.get(row.handle)
+                {
+                    held |= around.look(row, body, step.plan.time);
+                }
+            }
+            held &= !members.elements.is_empty();
+            if !(held || was_inside) {
+                groups.at(g).held = false;
+                continue;
+            }
+            let awake = solver.read(step, g, &members, elements, bodies, engine.bodies, stale);
+            if !held && awake {
+                solver.release(groups, elements, bodies, engine);
+            }
+            let index = groups.list()[g].assembly;
+            if let Some(index) = index {
+                assemblies[index].forget();
+            }
+            let group = groups.at(g);
+            group.held = held || !awake;
+            group.is_asleep = !awake;
+            all_asleep &= !awake || !held;
+        }
+        solver.write(step, groups, elements, bodies, engine, finest);
+        let links = engine.joints.multibody_joints.multibodies().next();
+        step.alike = links.map(|_| {
+            let more = |row: &BodyRow| row.raised.map_or(0, |raised| raised.iterations());
+            bodies.iter().map(more).max().unwrap_or(0).max(finest)
+        });
+        all_asleep
+    }
+
+    /// Takes every other component of a context through the step; says whether all of them are asleep.
     fn step(
         &mut self,
         context: Entity,
@@ -146,7 +253,8 @@ impl Scene {
         } = self;
         let mut all_asleep = true;
         // First, so that what touches them is read as the engine has left it, whatever lone elements there are.
-        for group in groups.list().iter().filter(|g| g.context == context) {
+        let free = |g: &&Group| g.context == context && !g.held;
+        for group in groups.list().iter().filter(free) {
             if let Some(index) = group.assembly {
                 let members = groups.members(group);
                 assemblies[index].gather(step, &members, elements, bodies, set, stale);
@@ -158,7 +266,7 @@ impl Scene {
                 call_up(groups, g, elements, bodies, set);
             }
             let group = &groups.list()[g];
-            if group.context != context || group.assembly.is_some() {
+            if group.context != context || group.assembly.is_some() || group.held {
                 continue;
             }
             if let (true, Some(handles)) = (step.quiet, &group.dozing)
@@ -193,7 +301,7 @@ impl Scene {
             assembly.forget();
         }
         advance(assemblies, step, groups, bodies, set);
-        for group in groups.list().iter().filter(|g| g.context == context) {
+        for group in groups.list().iter().filter(free) {
             if let Some(index) = group.assembly {
                 assemblies[index].deliver(step, &groups.members(group), elements, bodies, set);
             }

@@ -1,34 +1,26 @@
 //! What holds for every component of a context in this step, and what they all need.
 
 use super::body::{Engine, is_movable, point_after, point_of, turning_of};
-use super::ground::Ground;
-use super::scene::{BodyRow, ElementRow, Held};
+use super::scene::{ElementRow, Held};
 use super::timestep::Plan;
 use crate::dynamics::delivery::Schedule;
 use crate::dynamics::guide::Guide;
 use crate::dynamics::tolerance::Accuracy;
 use bevy::math::{DQuat, DVec3};
-use bevy_rapier3d::prelude::*;
 use bevy_rapier3d::rapier::dynamics::{RigidBody as RapierBody, RigidBodyHandle, RigidBodySet};
-use bevy_rapier3d::rapier::geometry::ColliderSet;
 use std::sync::atomic::AtomicBool;
 
-/// Share of the lag by which a body with another one on it is seen behind. With all of it, it would neither lose nor
-/// win but for the engine's contacts, which at some frequencies win as much as the rest takes.
-const LOADED: f64 = 0.85;
-
 /// A context about to step.
-pub(super) struct Step<'a> {
+pub(super) struct Step {
     pub plan: Plan,
     /// The substeps of a body that asks for no more iterations than others.
     pub schedule: Schedule,
     pub engine: Engine,
-    pub joints: &'a RapierContextJoints,
-    pub colliders: &'a ColliderSet,
-    pub ground: &'a Ground,
     pub accuracy: Accuracy,
-    /// There are multibodies at all.
-    pub links: bool,
+    /// Most substeps of a step for what the engine solves.
+    pub most_substeps: u32,
+    /// There are multibodies: then the engine steps all bodies as finely as the one that asks for most.
+    pub alike: Option<usize>,
     /// Nothing but their own bodies and moved ends can have woken what sleeps.
     pub quiet: bool,
     /// Something was given to some body.
@@ -38,8 +30,6 @@ pub(super) struct Step<'a> {
 /// How the engine will step one body.
 pub(super) struct Terms {
     pub schedule: Schedule,
-    /// A link of a multibody does not keep velocities that are set.
-    pub takes_impulses: bool,
     /// It is given a second solver iteration for that.
     pub raised_iterations: bool,
 }
@@ -55,7 +45,7 @@ pub(super) fn facing(held: &Held, time: f64, bodies: &RigidBodySet) -> (DQuat, D
     })
 }
 
-impl Step<'_> {
+impl Step {
     /// A body as it may be moved; one that may not be any more makes the scene stale.
     pub(super) fn movable<'b>(
         &self,
@@ -114,68 +104,34 @@ impl Step<'_> {
 
     /// The engine's equal substeps of a body.
     fn substeps(&self, body: &RapierBody) -> Schedule {
-        match body.additional_solver_iterations() {
+        let more = self.alike.unwrap_or(body.additional_solver_iterations());
+        match more {
             0 => self.schedule,
             more => self.plan.schedule(self.engine.iterations + more),
         }
     }
 
-    /// A link of a multibody does not keep velocities that are set.
-    fn takes_impulses(&self, handle: RigidBodyHandle) -> bool {
-        !self.links
-            || self
-                .joints
-                .multibody_joints
-                .rigid_body_link(handle)
-                .is_none()
-    }
-
     /// How far the engine turns a body in this step, rad.
-    pub(super) fn farthest_turn(&self, handle: RigidBodyHandle, body: &RapierBody) -> f64 {
-        if body.is_fast_rotation_allowed() || !self.takes_impulses(handle) {
+    pub(super) fn farthest_turn(&self, body: &RapierBody) -> f64 {
+        if body.is_fast_rotation_allowed() {
             f64::INFINITY
         } else {
             self.substeps(body).farthest_turn(self.engine.farthest_turn)
         }
     }
 
-    /// How far behind its present place, in time, a body has to be looked at. Under a force alone the
-    /// engine's n substeps run ahead by h²/(2n) of the acceleration; seen that much earlier, the motion is
-    /// the integrator's own.
-    pub(super) fn lag(&self, handle: RigidBodyHandle, body: &RapierBody) -> f64 {
-        if self.takes_impulses(handle) {
-            0.0
-        } else {
-            self.runs_ahead(body)
-        }
-    }
-
-    /// The same of a body on which the force has to act evenly, because another one lies on it.
-    pub(super) fn lag_of_held(&self, row: &BodyRow, body: &RapierBody) -> f64 {
-        if row.support.is_moving() && row.mobility < 1.0 && self.takes_impulses(row.handle) {
-            LOADED * self.runs_ahead(body)
-        } else {
-            0.0
-        }
-    }
-
-    fn runs_ahead(&self, body: &RapierBody) -> f64 {
-        let schedule = self.substeps(body);
-        0.5 * schedule.substep
-    }
-
     /// How the engine is to step a body.
-    pub(super) fn terms(&self, handle: RigidBodyHandle, body: &RapierBody) -> Terms {
+    pub(super) fn terms(&self, body: &RapierBody) -> Terms {
         // One substep has room for a force or an impulse, not for both.
         let raised_iterations = self.engine.iterations * self.plan.pipeline_steps as usize == 1
-            && body.additional_solver_iterations() == 0;
+            && body.additional_solver_iterations() == 0
+            && self.alike.is_none();
         Terms {
             schedule: if raised_iterations {
                 self.plan.schedule(self.engine.iterations + 1)
             } else {
                 self.substeps(body)
             },
-            takes_impulses: self.takes_impulses(handle),
             raised_iterations,
         }
     }

@@ -260,6 +260,11 @@ impl Law {
         ]
     }
 
+    /// Greatest tension of spring and damper together, N.
+    pub(crate) fn most(&self) -> f64 {
+        self.most
+    }
+
     /// Whether it can take energy at all.
     pub(crate) fn damps(&self) -> bool {
         self.drag.linear() != Some(0.0) || self.stop.damping > 0.0

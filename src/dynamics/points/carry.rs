@@ -37,11 +37,10 @@ impl Points {
         self.start.clone_from(&self.points);
     }
 
-    /// Moves a body to where the engine has taken it. Says whether it is the same mass still, and there are
-    /// no contacts to reckon with.
+    /// Moves a body to where the engine has taken it; says whether it is the same mass still.
     pub(crate) fn place(&mut self, body: usize, at: &FreePoint) -> bool {
         let point = &mut self.points[body];
-        let is_same = point.inverse_mass == at.inverse_mass && !self.any_held;
+        let is_same = point.inverse_mass == at.inverse_mass;
         *point = Point {
             acceleration: at.acceleration,
             inverse_mass: at.inverse_mass,
@@ -87,13 +86,6 @@ impl Points {
             );
             (wire.side.try_normalize(), heat, work)
         })
-    }
-
-    /// Whether the energy at the ends of steps says something about the motion between: all elements are
-    /// resolved up to this (ω h)², and nothing else moves any end.
-    pub(in crate::dynamics) fn is_accountable(&self, time: f64, resolved: f64) -> bool {
-        let rests = |point: &Point| point.velocity == DVec3::ZERO;
-        self.stiffest_alone * time * time < resolved && self.start[self.bodies..].iter().all(rests)
     }
 
     /// Whether the engine takes all of them along, if it flies none further than so far in such a time.

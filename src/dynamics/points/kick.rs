@@ -77,7 +77,7 @@ impl Points {
             // The mean of before and after the kick keeps the step its own mirror image in time.
             let after = |end: u32| {
                 let (point, impulse) = (&self.points[end as usize], self.impulses[end as usize]);
-                point.velocity + point.answer(impulse) + step * point.acceleration
+                point.velocity + point.inverse_mass * impulse + step * point.acceleration
             };
             let velocity = after(bar.ends[1]) - after(bar.ends[0]);
             let lateral = velocity - velocity.dot(bar.direction) * bar.direction;
@@ -88,7 +88,7 @@ impl Points {
         self.push(step);
         for (point, impulse) in self.points[..self.bodies].iter_mut().zip(&self.impulses) {
             point.given += *impulse;
-            point.velocity += point.answer(*impulse) + step * point.acceleration;
+            point.velocity += point.inverse_mass * *impulse + step * point.acceleration;
         }
         self.account(step);
     }
@@ -139,7 +139,7 @@ impl Points {
             };
             let elastic = k * (length - wire.rest_length);
             let tension = elastic + c * rate;
-            let inverse_mass = a.inverse_mass_along(u) + b.inverse_mass_along(u);
+            let inverse_mass = a.inverse_mass + b.inverse_mass;
             bar.damping = damper_placement(c * step * inverse_mass) * step * c;
             let across = if bar.isotropic {
                 k
@@ -210,6 +210,5 @@ fn weight(point: &Point) -> DVec3 {
     if point.inverse_mass == 0.0 {
         return DVec3::ZERO;
     }
-    let acceleration = point.acceleration;
-    (acceleration + point.heavy.dot(acceleration) * point.heavy) / point.inverse_mass
+    point.acceleration / point.inverse_mass
 }

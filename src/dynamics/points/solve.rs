@@ -12,25 +12,13 @@ const TOLERANCE: f64 = 1e-10;
 pub(super) struct Solver {
     /// Accelerations of all points; of those that elements cannot move zero.
     pub solution: Vec<DVec3>,
-    masses: Vec<Mass>,
+    masses: Vec<f64>,
     /// The inverse of each point's own block.
     blocks: Vec<DMat3>,
     residual: Vec<DVec3>,
     preconditioned: Vec<DVec3>,
     search: Vec<DVec3>,
     image: Vec<DVec3>,
-}
-
-#[derive(Clone, Copy, Debug)]
-struct Mass {
-    mass: f64,
-    heavy: DVec3,
-}
-
-impl Mass {
-    fn times(&self, x: DVec3) -> DVec3 {
-        self.mass * (x + self.heavy.dot(x) * self.heavy)
-    }
 }
 
 fn outer(u: DVec3) -> DMat3 {
@@ -41,19 +29,11 @@ impl Solver {
     /// Takes in the movable points and the bars as they are now.
     pub(super) fn begin(&mut self, points: &[Point], bars: &[Bar]) {
         self.masses.clear();
-        self.masses.extend(points.iter().map(|point| Mass {
-            mass: point.inverse_mass.recip(),
-            heavy: point.heavy,
-        }));
+        self.masses
+            .extend(points.iter().map(|point| point.inverse_mass.recip()));
         self.blocks.clear();
-        self.blocks.extend(self.masses.iter().map(|m| {
-            let heavy = if m.heavy == DVec3::ZERO {
-                DMat3::ZERO
-            } else {
-                outer(m.heavy)
-            };
-            (DMat3::IDENTITY + heavy) * m.mass
-        }));
+        self.blocks
+            .extend(self.masses.iter().map(|m| DMat3::IDENTITY * *m));
         for bar in bars {
             let across = DMat3::from_diagonal(DVec3::splat(bar.across));
             let own = across + outer(bar.direction) * (bar.along - bar.across);
@@ -132,14 +112,14 @@ impl Solver {
 }
 
 /// y = A x for movable points, 0 for others; returns xᵀ A x.
-fn apply(masses: &[Mass], bars: &[Bar], x: &[DVec3], y: &mut [DVec3]) -> f64 {
+fn apply(masses: &[f64], bars: &[Bar], x: &[DVec3], y: &mut [DVec3]) -> f64 {
     y.fill(DVec3::ZERO);
     for bar in bars {
         bar.add(y, bar.answer(bar.relative(x)));
     }
     let mut sum = 0.0;
     for ((y, x), mass) in y.iter_mut().zip(x).zip(masses) {
-        *y += mass.times(*x);
+        *y += *mass * *x;
         sum += x.dot(*y);
     }
     y[masses.len()..].fill(DVec3::ZERO);

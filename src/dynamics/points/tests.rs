@@ -20,7 +20,7 @@ impl Dice {
     }
 }
 
-/// A sheet of bodies that hangs from moving points and rests on something, all a little out of place.
+/// A sheet of bodies that hangs from moving points, all a little out of place.
 fn sheet(stiffness: f64, damping: f64) -> Component {
     let mut dice = Dice(7);
     let (columns, rows) = (7, 6);
@@ -33,15 +33,11 @@ fn sheet(stiffness: f64, damping: f64) -> Component {
         let (x, y) = (i % columns, i / columns);
         let at = DVec3::new(x as f64, -(y as f64), 0.0) + 0.2 * dice.vector();
         let mass = 1.0 + dice.roll();
-        let held = (i % 11 == 3).then(|| dice.vector().normalize());
         let gravity = DVec3::new(0.0, -9.81, 0.0);
-        let mut body = Body {
+        let body = Body {
             velocity: dice.vector(),
-            mobility: if held.is_some() { 0.05 } else { 1.0 },
-            held,
             ..tests::point(mass, at, gravity)
         };
-        body.acceleration = body.left(body.acceleration);
         let own = |index: usize| End::Body {
             index,
             arm: DVec3::ZERO,

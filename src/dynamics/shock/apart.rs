@@ -23,7 +23,7 @@ impl Apart {
         element.law.as_ref()?;
         let free = |body: &Body| {
             let w = body.inverse_mass;
-            body.spin == Spin::Still && body.mobility == 1.0 && w.x == w.y && w.y == w.z
+            body.spin == Spin::Still && w.x == w.y && w.y == w.z
         };
         let held = element.ends.iter().filter(|end| !end.is_path()).count();
         // Bodies of elements that take no part would be left where they are.

@@ -2,7 +2,6 @@
 
 use super::Component;
 use crate::dynamics::body::Body;
-use crate::dynamics::energy::Energy;
 use crate::dynamics::points::Points;
 use crate::dynamics::tolerance::Controller;
 
@@ -28,13 +27,6 @@ impl Component {
     /// After a step that was [`carried`](Self::carried) to its end: what came of it.
     pub(crate) fn carried_points(&mut self) -> &mut Points {
         &mut self.memory.points
-    }
-
-    /// What the carried network had at the start of the step; and whether that says something about the motion
-    /// over it, for elements that are resolved up to this (ω h)².
-    pub(crate) fn carried_energy(&self, time: f64, resolved: f64) -> (Energy, bool) {
-        let memory = &self.memory;
-        (memory.had, memory.points.is_accountable(time, resolved))
     }
 
     /// Bodies as they were at the start of a step that could not be carried to its end.

@@ -18,10 +18,7 @@ impl Component {
     /// Whether no body turns, and iterations are the cheaper way: it is large, or so soft that they end soon.
     /// Then it has been taken in.
     pub(super) fn is_of_points(&mut self, time: f64) -> bool {
-        let plain = !self.stepped
-            && self.elements.len() > 1
-            && Points::can_be(&self.elements, &self.bodies);
-        if !plain {
+        if self.elements.len() < 2 || !Points::can_be(&self.elements, &self.bodies) {
             return false;
         }
         let Memory {
@@ -39,18 +36,10 @@ impl Component {
         time: f64,
         drive: impl FnOnce(&mut Points) -> Outcome,
     ) -> Outcome {
-        let is_free = self.carried || self.bodies.iter().all(|body| body.mobility == 1.0);
-        let Memory {
-            points, bound, had, ..
-        } = &mut self.memory;
+        let Memory { points, bound, .. } = &mut self.memory;
         let start = points.survey();
-        *had = start.energy;
-        if is_free {
-            let now = start.energy.sum();
-            bound.start(now, start.rounding, start.power, self.meddled);
-        } else {
-            bound.forget();
-        }
+        let now = start.energy.sum();
+        bound.start(now, start.rounding, start.power, self.meddled);
         let mut outcome = drive(points);
         outcome.method = Method::Iterative;
         outcome.capped |= !points.converged();
@@ -62,7 +51,7 @@ impl Component {
         let kept = bound.is_kept(&end.energy, end.power, time) && within;
         if kept {
             bound.finish(end.energy.sum(), time);
-            self.memory.carriable = is_free.then_some(time);
+            self.memory.carriable = Some(time);
             if self.carried {
                 return outcome;
             }
@@ -120,26 +109,6 @@ impl Component {
                 (element.angle, element.direction) = (start.angle, start.direction);
             }
             self.aim(time);
-        }
-    }
-
-    /// A step that only loses energy, where some is owed.
-    pub(super) fn pay(&mut self, time: f64) -> Outcome {
-        let mut bound = std::mem::take(&mut self.memory.bound);
-        bound.begin(&self.elements, &self.bodies, self.stepped, self.meddled);
-        self.save(0);
-        self.aim(time);
-        self.settle(time, &mut bound);
-        bound.end(&self.elements, &self.bodies, time);
-        self.memory.bound = bound;
-        Outcome {
-            method: if self.memory.network.take_effort().0 {
-                Method::Iterative
-            } else {
-                Method::Direct
-            },
-            microsteps: 1,
-            ..Outcome::default()
         }
     }
 

@@ -1,0 +1,248 @@
+//! An element as a joint of Rapier's: the only place that knows how its motors reckon.
+//!
+//! A motor with stiffness k, damping c and target s₀ gives in a substep h the impulse h·(k (s − s₀) + (h k + c) ṡ − …),
+//! where s is the length at the start and ṡ its rate at the end. So a damping of C is ordered as C − h k; what is left is
+//! the symplectic Euler rule with an implicit damper.
+
+use bevy::math::{DVec3, Quat, Vec3};
+use bevy_rapier3d::rapier::dynamics::{
+    GenericJoint, GenericJointBuilder, ImpulseJoint, ImpulseJointHandle, ImpulseJointSet,
+    JointAxesMask, JointAxis, MotorModel, RigidBodyHandle,
+};
+use bevy_rapier3d::rapier::math::Pose;
+
+/// Marks the joints that are ours alone.
+const OURS: u128 = u128::from_be_bytes(*b"bevy_coilover\0\0\0");
+
+/// Whether elements have made a joint.
+pub(in crate::engine) fn is_ours(joint: &ImpulseJoint) -> bool {
+    joint.data.user_data == OURS
+}
+
+/// What a joint acts along.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Along {
+    /// From anchor to anchor.
+    Distance,
+    /// The x axis of the first frame.
+    Slide,
+    /// About the x axis of the first frame.
+    Twist,
+}
+
+/// One joint, in numbers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct SoftJoint {
+    pub bodies: [RigidBodyHandle; 2],
+    pub anchors: [Vec3; 2],
+    pub rotations: [Quat; 2],
+    pub along: Along,
+    /// Substep, s.
+    pub substep: f32,
+    /// N/m, or N m/rad.
+    pub stiffness: f32,
+    /// N s/m that act in all.
+    pub damping: f32,
+    /// Length without force, m.
+    pub target: f32,
+    /// Force there and at rest, N.
+    pub force: f32,
+    /// Greatest force, N.
+    pub most: f32,
+}
+
+impl SoftJoint {
+    fn axis(&self) -> JointAxis {
+        match self.along {
+            Along::Distance | Along::Slide => JointAxis::LinX,
+            Along::Twist => JointAxis::AngX,
+        }
+    }
+
+    fn data(&self) -> GenericJoint {
+        let axis = self.axis();
+        let frame = |end: usize| Pose::from_parts(self.anchors[end], self.rotations[end]);
+        let coupled = match self.along {
+            Along::Distance => JointAxesMask::LIN_AXES,
+            Along::Slide | Along::Twist => JointAxesMask::empty(),
+        };
+        let ordered = ordered_damping(self.stiffness, self.damping, self.substep);
+        // As Rapier reckons it: what its damper gives at a speed of 1.
+        let acting = self.substep * self.stiffness + ordered;
+        let mut joint = GenericJointBuilder::new(JointAxesMask::empty())
+            .coupled_axes(coupled)
+            .local_frame1(frame(0))
+            .local_frame2(frame(1))
+            .user_data(OURS)
+            .build();
+        joint
+            .set_motor(
+                axis,
+                self.target,
+                -self.force / acting,
+                self.stiffness,
+                ordered,
+            )
+            .set_motor_model(axis, MotorModel::ForceBased)
+            .set_motor_max_force(axis, self.most);
+        joint
+    }
+}
+
+/// The damping to order so that in substeps of so long a damping of `wanted` acts. What Rapier makes of it in f32 is a
+/// small difference of large numbers, so of its neighbours the one is taken that leaves the stiffness as it is.
+fn ordered_damping(stiffness: f32, wanted: f32, substep: f32) -> f32 {
+    let (k, h) = (stiffness, substep);
+    let ordered = (f64::from(wanted) - f64::from(h) * f64::from(k)) as f32;
+    let off = |c: f32| {
+        // As in Rapier's `MotorModel::combine_coefficients`.
+        let (per_rate, per_speed) = (h * k + c, h * h * k + h * c);
+        if per_rate > 0.0 && per_speed > 0.0 {
+            (f64::from(per_speed) / (f64::from(per_rate) * f64::from(h)) - 1.0).abs()
+        } else {
+            f64::INFINITY
+        }
+    };
+    let mut best = (off(ordered), ordered);
+    let mut candidate = ordered;
+    for _ in 0..NEIGHBOURS {
+        if best.0 < EXACT {
+            break;
+        }
+        candidate = candidate.next_up();
+        if off(candidate) < best.0 {
+            best = (off(candidate), candidate);
+        }
+    }
+    best.1
+}
+
+/// Neighbours that are tried, and the relative error of the stiffness that is small enough.
+const NEIGHBOURS: usize = 64;
+const EXACT: f64 = 3e-7;
+
+/// The joints of one element: its damper alone, where that is to be solved before all springs, and its spring with the
+/// damper otherwise.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Joints {
+    damper: Option<(ImpulseJointHandle, SoftJoint)>,
+    spring: Option<(ImpulseJointHandle, SoftJoint)>,
+}
+
+/// What an element's joints are to be.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Wanted {
+    pub damper: Option<SoftJoint>,
+    pub spring: SoftJoint,
+}
+
+fn fits(known: &Option<(ImpulseJointHandle, SoftJoint)>, wanted: Option<&SoftJoint>) -> bool {
+    match (known, wanted) {
+        (None, None) => true,
+        (Some((_, known)), Some(wanted)) => {
+            known.bodies == wanted.bodies && known.along == wanted.along
+        }
+        _ => false,
+    }
+}
+
+fn insert(
+    set: &mut ImpulseJointSet,
+    wanted: &SoftJoint,
+) -> Option<(ImpulseJointHandle, SoftJoint)> {
+    let [a, b] = wanted.bodies;
+    Some((set.insert(a, b, wanted.data(), false), *wanted))
+}
+
+fn update(
+    set: &mut ImpulseJointSet,
+    known: &mut Option<(ImpulseJointHandle, SoftJoint)>,
+    wanted: &SoftJoint,
+) {
+    if let Some((handle, known)) = known
+        && known != wanted
+        && let Some(joint) = set.get_mut(*handle, false)
+    {
+        joint.data = wanted.data();
+        *known = *wanted;
+    }
+}
+
+impl Joints {
+    /// How many there are.
+    pub(super) fn count(&self) -> usize {
+        usize::from(self.damper.is_some()) + usize::from(self.spring.is_some())
+    }
+
+    /// Whether other numbers are all that these need.
+    pub(super) fn fit(&self, wanted: &Wanted, set: &ImpulseJointSet) -> bool {
+        let there = |known: &Option<(ImpulseJointHandle, SoftJoint)>| {
+            known.is_none_or(|(handle, _)| set.contains(handle))
+        };
+        self.spring.is_some()
+            && fits(&self.spring, Some(&wanted.spring))
+            && fits(&self.damper, wanted.damper.as_ref())
+            && there(&self.spring)
+            && there(&self.damper)
+    }
+
+    /// Takes them out of the engine.
+    pub(super) fn remove(&mut self, set: &mut ImpulseJointSet) {
+        for (handle, _) in [self.damper.take(), self.spring.take()]
+            .into_iter()
+            .flatten()
+        {
+            set.remove(handle, false);
+        }
+    }
+
+    /// Dampers that go before all springs are put in first: Rapier solves in that order.
+    pub(super) fn put_damper(&mut self, wanted: &Wanted, set: &mut ImpulseJointSet) {
+        self.damper = wanted
+            .damper
+            .as_ref()
+            .and_then(|damper| insert(set, damper));
+    }
+
+    pub(super) fn put_spring(&mut self, wanted: &Wanted, set: &mut ImpulseJointSet) {
+        self.spring = insert(set, &wanted.spring);
+    }
+
+    /// Other numbers.
+    pub(super) fn update(&mut self, wanted: &Wanted, set: &mut ImpulseJointSet) {
+        if let Some(damper) = &wanted.damper {
+            update(set, &mut self.damper, damper);
+        }
+        update(set, &mut self.spring, &wanted.spring);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_rapier_makes_of_the_order_is_what_was_wanted() {
+        let model = MotorModel::ForceBased;
+        for substep in [1.0 / 960.0_f32, 1.0 / 3840.0, 1.0 / 240.0] {
+            for stiffness in [1.0_f32, 777.0, 30e3, 1.234e6] {
+                for damping in [5e-4 * substep * stiffness, 0.1, 2e3] {
+                    let ordered = ordered_damping(stiffness, damping, substep);
+                    let (bias, _, gain) = model.combine_coefficients(substep, stiffness, ordered);
+                    // Force for a stretch, and for a speed.
+                    let (bias, gain) = (f64::from(bias), f64::from(gain));
+                    let springs = bias / gain / f64::from(substep) / f64::from(stiffness);
+                    let dampens = 1.0 / (gain * f64::from(substep)) / f64::from(damping);
+                    assert!(
+                        (springs - 1.0).abs() < 2e-5,
+                        "{stiffness} {damping}: {springs}"
+                    );
+                    assert!(
+                        (dampens - 1.0).abs() < 0.01,
+                        "{stiffness} {damping}: {dampens}"
+                    );
+                }
+            }
+        }
+    }
+}

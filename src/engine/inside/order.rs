@@ -1,0 +1,166 @@
+//! What one element is to do inside the engine's solver, and the joints that make it do so.
+
+use super::joint::{Along, SoftJoint, Wanted};
+use super::twist::Turn;
+use crate::dynamics::element::Element;
+use crate::dynamics::guide::Guide;
+use crate::dynamics::line::Line;
+use crate::dynamics::soft::{self, Tangent};
+use crate::engine::scene::{ElementRow, Held};
+use bevy::math::{DQuat, DVec3, Quat, Vec3};
+use bevy_rapier3d::rapier::dynamics::RigidBodyHandle;
+
+/// Damping that is nothing, as a share of mass over substep: the engine divides by it.
+const NOTHING: f64 = 1e-6;
+
+/// One element that acts.
+pub(super) struct Order {
+    /// Index of its row.
+    pub row: usize,
+    pub element: Element,
+    pub line: Line,
+    /// Rotations of what holds both ends.
+    pub facings: [DQuat; 2],
+    pub tangent: Tangent,
+    /// Bound on the stiffest mode that it takes part in, rad/s.
+    pub omega: f64,
+    /// A contact touches what it holds.
+    pub touched: bool,
+    /// Of a torsion element.
+    pub turn: Option<Turn>,
+}
+
+struct Frame {
+    bodies: [RigidBodyHandle; 2],
+    anchors: [Vec3; 2],
+    rotations: [Quat; 2],
+    along: Along,
+}
+
+impl Order {
+    /// How much more the joint's own coordinate weighs than the element's: that of a twist is an angle about its gradient.
+    fn leverage(&self) -> f64 {
+        self.turn.as_ref().map_or(1.0, |turn| turn.leverage)
+    }
+
+    /// Stiffness of the joint's coordinate.
+    pub(super) fn stiffness(&self) -> f64 {
+        self.leverage().powi(2) * self.tangent.stiffness
+    }
+
+    /// The joints that make it act in substeps of so long; none where there is no force. `holders` are the bodies at
+    /// both ends.
+    pub(super) fn joints(
+        &mut self,
+        row: &ElementRow,
+        holders: [RigidBodyHandle; 2],
+        substep: f64,
+        time: f64,
+    ) -> Option<Wanted> {
+        let Tangent {
+            stiffness, damping, ..
+        } = self.tangent;
+        let from = self.line.distance();
+        let force = self.tangent.elastic(from);
+        if stiffness == 0.0 && damping == 0.0 && force == 0.0 {
+            return None;
+        }
+        let law = self.element.law.as_ref();
+        let limit = law.map_or(f64::INFINITY, |law| law.most());
+        let across = self
+            .turn
+            .as_ref()
+            .map_or(0.0, |turn| turn.across_damping(time));
+        let floor = across * stiffness.abs();
+        // Joints answer a spring only after it is solved, so a damper must not see what springs do to bodies that joints
+        // hold: it is solved before all springs. Contacts are warm-started: they have answered by then.
+        let apart = damping > 0.0 && !self.touched && limit == f64::INFINITY;
+        let left = Tangent {
+            damping: if apart { 0.0 } else { damping },
+            ..self.tangent
+        };
+        let acting = soft::damping(&left, self.omega, substep).max(floor);
+        if let Some(turn) = &mut self.turn {
+            turn.damping = acting + if apart { damping } else { 0.0 };
+        }
+        // A linear force is the same in every step; others are measured from where they are now.
+        let (target, offset) = match (law, self.turn.is_some()) {
+            (_, true) => (0.0, force),
+            (None, false) => (self.element.rest_length, 0.0),
+            (Some(_), false) => (from, force),
+        };
+        let scale = self.leverage();
+        let inverse_mass: f64 = self.line.holds.iter().map(|h| h.most_inverse_mass()).sum();
+        let nothing = NOTHING / (inverse_mass * substep).max(f64::MIN_POSITIVE);
+        let frame = self.frame(row, holders);
+        let joint = |stiffness: f64, damping: f64, force: f64| SoftJoint {
+            bodies: frame.bodies,
+            anchors: frame.anchors,
+            rotations: frame.rotations,
+            along: frame.along,
+            substep: substep as f32,
+            stiffness: (scale * scale * stiffness) as f32,
+            damping: (scale * scale * damping).max(nothing) as f32,
+            target: target as f32,
+            force: (scale * force) as f32,
+            most: (scale * limit).min(f64::from(f32::MAX)) as f32,
+        };
+        Some(Wanted {
+            damper: apart.then(|| joint(0.0, damping, 0.0)),
+            spring: joint(stiffness, acting, offset),
+        })
+    }
+
+    fn frame(&self, row: &ElementRow, holders: [RigidBodyHandle; 2]) -> Frame {
+        let anchors = row.held.map(|held| match held {
+            Held::Body { local, .. } => local.as_vec3(),
+            Held::Path { .. } => Vec3::ZERO,
+        });
+        let mut frame = Frame {
+            bodies: holders,
+            anchors,
+            rotations: [Quat::IDENTITY; 2],
+            along: Along::Distance,
+        };
+        let x_to = |axis: DVec3| DQuat::from_rotation_arc(DVec3::X, axis);
+        match self.element.guide {
+            Guide::Centres => {}
+            Guide::OfA(axis) => {
+                frame.along = Along::Slide;
+                frame.rotations[0] = x_to(axis).as_quat();
+            }
+            Guide::World(axis) => {
+                frame.along = Along::Slide;
+                let [a, b] = self.facings;
+                // Rapier pushes both bodies at the second anchor, so that one is on a body that can be turned.
+                if self.line.holds[1].body.is_none() {
+                    frame.bodies.swap(0, 1);
+                    frame.anchors.swap(0, 1);
+                    frame.rotations[0] = x_to(b.inverse() * -axis).as_quat();
+                } else {
+                    frame.rotations[0] = x_to(a.inverse() * axis).as_quat();
+                }
+            }
+            Guide::Twist(_) => {
+                frame.along = Along::Twist;
+                if let Some(turn) = &self.turn {
+                    let first = x_to(turn.axis);
+                    let second = turn.relative.inverse() * first;
+                    frame.rotations = [first.as_quat(), second.as_quat()];
+                }
+            }
+        }
+        frame
+    }
+
+    /// What Rapier's joint along an axis of the world turns body A too much by, N m: it pushes it where body B is.
+    pub(super) fn excess_torque(&self) -> Option<(usize, DVec3)> {
+        let Guide::World(axis) = self.element.guide else {
+            return None;
+        };
+        let [a, b] = &self.line.holds;
+        let (index, _) = (a.body?, b.body?);
+        let force = self.tangent.elastic(self.line.distance()) * axis;
+        Some((index, (b.position - a.position).cross(force)))
+    }
+}

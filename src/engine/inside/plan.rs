@@ -1,0 +1,158 @@
+//! What the engine's solver is to be given for a component: read from its bodies and elements, before anything is written.
+
+use super::Inside;
+use super::order::Order;
+use super::twist::Turn;
+use crate::dynamics::body::Body;
+use crate::dynamics::element::Element;
+use crate::dynamics::guide::Guide;
+use crate::dynamics::line::Line;
+use crate::dynamics::soft::Tangent;
+use crate::engine::assembly::Members;
+use crate::engine::body::read;
+use crate::engine::element::element;
+use crate::engine::scene::{BodyRow, ElementRow};
+use crate::engine::step::Step;
+use bevy_rapier3d::rapier::dynamics::RigidBodySet;
+use std::mem::take;
+
+/// A component before its step.
+#[derive(Default)]
+pub(super) struct Plan {
+    pub group: usize,
+    pub bodies: Vec<Body>,
+    pub orders: Vec<Order>,
+    /// Bound on its stiffest mode, rad/s.
+    pub omega: f64,
+    /// Something about it is new: it must not sleep.
+    pub disturbed: bool,
+    /// For each body, the stiffness of its elements over its mass.
+    sums: Vec<f64>,
+}
+
+impl Plan {
+    /// Reads a component; says whether all its bodies can be moved.
+    pub(super) fn read(
+        &mut self,
+        step: &Step,
+        members: &Members,
+        elements: &mut [ElementRow],
+        bodies: &mut [BodyRow],
+        set: &RigidBodySet,
+        stale: &mut bool,
+    ) -> bool {
+        self.bodies.clear();
+        self.orders.clear();
+        self.disturbed = false;
+        for (slot, b) in members.bodies.iter().enumerate() {
+            let row = &mut bodies[*b];
+            row.slot = slot;
+            let Some(body) = step.movable(set, row.handle, stale) else {
+                return false;
+            };
+            self.bodies
+                .push(read(body, step.engine.gravity, &row.user, true));
+        }
+        let time = step.plan.time;
+        for e in members.elements {
+            let row = &mut elements[*e];
+            let has_moved = step.has_moved(row, set);
+            self.disturbed |= row.changed || has_moved;
+            take(&mut row.refitted);
+            let ends = [0, 1].map(|end| step.end(row, end, bodies, set));
+            let Some(element) = element(row, ends, &self.bodies) else {
+                continue;
+            };
+            let Some(line) = element.line(&self.bodies) else {
+                continue;
+            };
+            if has_moved {
+                row.account_for_leap(line.distance());
+            }
+            let on = row.on.iter().flatten();
+            let touched = on.fold(false, |any, b| any | bodies[*b as usize].touched);
+            let inside = row.inside.get_or_insert_default();
+            inside.context = members.bodies.first().map(|b| bodies[*b].context);
+            let order = self.order(*e, inside, element, line, touched, time);
+            self.orders.push(order);
+        }
+        self.bound();
+        true
+    }
+
+    /// What an element does over the step.
+    fn order(
+        &self,
+        row: usize,
+        inside: &mut Inside,
+        element: Element,
+        line: Line,
+        touched: bool,
+        time: f64,
+    ) -> Order {
+        let from = line.distance();
+        let rate = line.motion(&element, &self.bodies, 0.0).axial;
+        // As the last steps went on: the engine's own velocities are those of its last substep.
+        let [last, before] = inside.rates.unwrap_or([rate; 2]);
+        let ahead = 2.0 * last - before;
+        let mut tangent = match &element.law {
+            None => Tangent::linear(element.stiffness, element.damping, element.rest_length),
+            Some(law) => {
+                let way = [from, from + time * ahead];
+                Tangent::of(law, element.rest_length, way, ahead)
+            }
+        };
+        if inside.debt > 0.0 && last != 0.0 && line.inverse_mass > 0.0 {
+            // At most what stops the motion within the step.
+            let most = 1.0 / (line.inverse_mass * time);
+            tangent.damping += (inside.debt / (last * last * time)).min(most);
+        }
+        let facings = element
+            .ends
+            .each_ref()
+            .map(|end| end.rotation(&self.bodies));
+        inside.begin(from, tangent, &line, facings);
+        let turn = match element.guide {
+            Guide::Twist(_) => Turn::of(&element, &self.bodies, time),
+            _ => None,
+        };
+        Order {
+            row,
+            facings,
+            element,
+            line,
+            tangent,
+            omega: 0.0,
+            touched,
+            turn,
+        }
+    }
+
+    /// Bounds on the stiffest mode: ω² is at most the sum over both ends of an element of their elements' stiffness over
+    /// mass, as for the Laplacian of a graph (W. Anderson and T. Morley, 1985).
+    fn bound(&mut self) {
+        self.sums.clear();
+        self.sums.resize(self.bodies.len(), 0.0);
+        for order in &self.orders {
+            for hold in &order.line.holds {
+                if let Some(body) = hold.body {
+                    self.sums[body] += order.stiffness().abs() * hold.most_inverse_mass();
+                }
+            }
+        }
+        self.omega = 0.0;
+        for order in &mut self.orders {
+            let ends = order.line.holds.iter().filter_map(|hold| hold.body);
+            order.omega = ends.map(|body| self.sums[body]).sum::<f64>().sqrt();
+            self.omega = self.omega.max(order.omega);
+        }
+    }
+
+    /// Whether its joints may be solved in finer substeps than they are made for.
+    pub(super) fn stands_finer(&self, substep: f64, finest: f64) -> bool {
+        self.orders.iter().all(|order| {
+            let tangent = &order.tangent;
+            tangent.damping > (substep - finest) * tangent.stiffness
+        })
+    }
+}

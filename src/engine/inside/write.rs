@@ -1,0 +1,386 @@
+//! Into the engine: joints, substeps, and what a body needs besides them.
+
+use super::Inside;
+use super::joint::Wanted;
+use super::plan::Plan;
+use crate::dynamics::soft::Fineness;
+use crate::engine::assembly::Members;
+use crate::engine::body::Push;
+use crate::engine::group::Groups;
+use crate::engine::scene::{BodyRow, ElementRow, Held};
+use crate::engine::step::Step;
+use bevy::math::Vec3;
+use bevy_rapier3d::prelude::RapierContextJoints;
+use bevy_rapier3d::rapier::dynamics::{
+    IslandManager, RigidBody as RapierBody, RigidBodyBuilder, RigidBodyHandle, RigidBodySet,
+};
+use bevy_rapier3d::rapier::geometry::ColliderSet;
+use std::sync::atomic::Ordering;
+
+/// Least substeps of a step. With Rapier's own four, contacts of a wheel that rolls at 12 m/s are off by a twentieth of
+/// what it carries. Pinned by `ground::rolling`.
+const LEAST: u32 = 16;
+
+/// ω·dt above which a body's contacts have to be seen a step ahead: the engine pushes what it finds too late out of the
+/// ground, and that compresses a stiff spring. Pinned by `ground::feet`.
+const STIFF: f64 = 0.3;
+
+/// How far ahead, in steps.
+const AHEAD: f32 = 1.5;
+
+/// What of a Rapier context is written.
+pub(in crate::engine) struct Engine<'a> {
+    pub bodies: &'a mut RigidBodySet,
+    pub joints: &'a mut RapierContextJoints,
+    pub islands: &'a mut IslandManager,
+    pub colliders: &'a mut ColliderSet,
+}
+
+/// What a body is given besides forces while the engine solves its elements, and what the user had ordered.
+#[derive(Clone, Copy, Debug, Default)]
+pub(in crate::engine) struct Raised {
+    iterations: usize,
+    users_iterations: usize,
+    prediction: f32,
+    users_prediction: f32,
+}
+
+/// The components of a context that the engine solves.
+#[derive(Default)]
+pub(in crate::engine) struct Solver {
+    plans: Vec<Plan>,
+    used: usize,
+    wanted: Vec<Option<Wanted>>,
+}
+
+impl Inside {
+    /// Takes all that it has out of the engine.
+    pub(in crate::engine) fn remove(&mut self, engine: &mut Engine) {
+        self.joints.remove(&mut engine.joints.impulse_joints);
+        for handle in self.hidden.iter_mut().filter_map(Option::take) {
+            engine.bodies.remove(
+                handle,
+                engine.islands,
+                engine.colliders,
+                &mut engine.joints.impulse_joints,
+                &mut engine.joints.multibody_joints,
+                true,
+            );
+        }
+        self.active = false;
+    }
+
+    /// The body of the engine at an end.
+    fn holder(&mut self, end: usize, held: &Held, engine: &mut Engine) -> RigidBodyHandle {
+        let (from, to) = match *held {
+            Held::Body { handle, .. } => return handle,
+            Held::Path { from, to } => (from.as_vec3(), to.as_vec3()),
+        };
+        let known = self.hidden[end].filter(|handle| engine.bodies.contains(*handle));
+        let handle = known.unwrap_or_else(|| {
+            let body = RigidBodyBuilder::kinematic_position_based().translation(from);
+            engine.bodies.insert(body)
+        });
+        self.hidden[end] = Some(handle);
+        if let Some(body) = engine.bodies.get_mut(handle) {
+            if body.translation() != from {
+                body.set_translation(from, true);
+            }
+            if to != from {
+                body.set_next_kinematic_translation(to);
+            }
+        }
+        handle
+    }
+}
+
+impl Raised {
+    /// Gives a body back what the user had ordered.
+    pub(in crate::engine) fn give_back(&self, body: &mut RapierBody) {
+        if body.additional_solver_iterations() == self.iterations {
+            body.set_additional_solver_iterations(self.users_iterations);
+        }
+        if body.soft_ccd_prediction() == self.prediction {
+            body.set_soft_ccd_prediction(self.users_prediction);
+        }
+    }
+
+    /// Solver iterations more than the engine's own.
+    pub(in crate::engine) fn iterations(&self) -> usize {
+        self.iterations
+    }
+}
+
+impl BodyRow {
+    /// Has the engine solve it in so many iterations more, and see contacts so far ahead.
+    fn raise(&mut self, body: &mut RapierBody, iterations: usize, prediction: f32) {
+        let known = self.raised.get_or_insert_default();
+        let (now, seen) = (
+            body.additional_solver_iterations(),
+            body.soft_ccd_prediction(),
+        );
+        if now != known.iterations {
+            known.users_iterations = now;
+        }
+        if seen != known.prediction {
+            known.users_prediction = seen;
+        }
+        known.iterations = iterations.max(known.users_iterations);
+        known.prediction = prediction.max(known.users_prediction);
+        if now != known.iterations {
+            body.set_additional_solver_iterations(known.iterations);
+        }
+        if seen != known.prediction {
+            body.set_soft_ccd_prediction(known.prediction);
+        }
+    }
+}
+
+impl Solver {
+    pub(in crate::engine) fn clear(&mut self) {
+        self.used = 0;
+    }
+
+    /// Reads a component that is held; says whether it is awake.
+    pub(in crate::engine) fn read(
+        &mut self,
+        step: &Step,
+        group: usize,
+        members: &Members,
+        elements: &mut [ElementRow],
+        bodies: &mut [BodyRow],
+        set: &mut RigidBodySet,
+        stale: &mut bool,
+    ) -> bool {
+        if self.plans.len() <= self.used {
+            self.plans.push(Plan::default());
+        }
+        let plan = &mut self.plans[self.used];
+        plan.group = group;
+        let there = plan.read(step, members, elements, bodies, set, stale);
+        let omega = plan.omega as f32;
+        let awake = there && step.is_awake(bodies, members.bodies, omega, set, plan.disturbed);
+        for e in members.elements {
+            elements[*e].active = awake;
+        }
+        self.used += usize::from(awake);
+        awake
+    }
+
+    /// Gives the engine what it needs to solve all components that have been read. `finest` are the most iterations that
+    /// any body has by its user.
+    pub(in crate::engine) fn write(
+        &mut self,
+        step: &Step,
+        groups: &mut Groups,
+        elements: &mut [ElementRow],
+        bodies: &mut [BodyRow],
+        engine: &mut Engine,
+        finest: usize,
+    ) {
+        let (time, calls) = (step.plan.time, step.plan.pipeline_steps.max(1));
+        let own = step.engine.iterations;
+        let least = LEAST.saturating_mul(step.accuracy.fineness());
+        let fineness: Vec<_> = self.plans[..self.used]
+            .iter()
+            .map(|plan| Fineness::of(plan.omega, time, least, step.most_substeps))
+            .collect();
+        let iterations = |f: &Fineness| (f.substeps.div_ceil(calls) as usize).max(own);
+        let most = fineness.iter().map(iterations).max().unwrap_or(own);
+        let most = most.max(own + finest);
+        let substep = |iterations: usize| time / (iterations as f64 * f64::from(calls));
+        for (plan, fineness) in self.plans[..self.used].iter_mut().zip(fineness) {
+            let mut chosen = iterations(&fineness);
+            if chosen < most && !plan.stands_finer(substep(chosen), substep(most)) {
+                // What it touches may be solved more finely than it is, and then it would be too.
+                chosen = most;
+            }
+            let group = &groups.list()[plan.group];
+            let members = groups.members(group);
+            let h = substep(chosen);
+            let substeps = chosen as u32 * calls;
+            if !group.inside {
+                stagger(plan, -0.5 * h, &members, bodies, engine.bodies);
+            }
+            join(
+                plan,
+                &mut self.wanted,
+                &members,
+                elements,
+                engine,
+                [h, time],
+            );
+            for e in members.elements {
+                let row = &mut elements[*e];
+                let active = row.inside.as_ref().is_some_and(|inside| inside.active);
+                row.outcome = if active {
+                    fineness.outcome(substeps)
+                } else {
+                    Default::default()
+                };
+            }
+            let stiff = plan.omega * time > STIFF;
+            let excess = plan.orders.iter().filter_map(|o| o.excess_torque());
+            for (slot, b) in members.bodies.iter().enumerate() {
+                let row = &mut bodies[*b];
+                row.substep = h;
+                (row.is_fresh, row.is_alone) = (true, false);
+                let Some(body) = engine.bodies.get_mut(row.handle) else {
+                    continue;
+                };
+                let way = if stiff && row.can_touch {
+                    AHEAD * body.linvel().length() * time as f32 / calls as f32
+                } else {
+                    0.0
+                };
+                row.raise(body, chosen - own, way);
+                let too_much = excess.clone().filter(|(of, _)| *of == slot);
+                let torque = -too_much.map(|(_, torque)| torque.as_vec3()).sum::<Vec3>();
+                if torque != Vec3::ZERO || row.carries_share {
+                    let push = Push {
+                        share: [Vec3::ZERO, torque],
+                        ..Push::default()
+                    };
+                    row.give(&push, body);
+                    row.carries_share = torque != Vec3::ZERO;
+                }
+            }
+            groups.at(plan.group).inside = true;
+            step.delivered.store(true, Ordering::Relaxed);
+        }
+        self.clear();
+    }
+
+    /// Takes a component out of the engine's solver again; it has been read last.
+    pub(in crate::engine) fn release(
+        &mut self,
+        groups: &mut Groups,
+        elements: &mut [ElementRow],
+        bodies: &mut [BodyRow],
+        engine: &mut Engine,
+    ) {
+        let Some(used) = self.used.checked_sub(1) else {
+            return;
+        };
+        self.used = used;
+        let plan = &mut self.plans[used];
+        let members = groups.members(&groups.list()[plan.group]);
+        let substep = members.bodies.first().map_or(0.0, |b| bodies[*b].substep);
+        stagger(plan, 0.5 * substep, &members, bodies, engine.bodies);
+        leave(&members, elements, bodies, engine);
+        groups.at(plan.group).inside = false;
+    }
+}
+
+/// Takes the joints of a component out of the engine, and gives back what its bodies had.
+pub(in crate::engine) fn leave(
+    members: &Members,
+    elements: &mut [ElementRow],
+    bodies: &mut [BodyRow],
+    engine: &mut Engine,
+) {
+    for e in members.elements {
+        if let Some(mut inside) = elements[*e].inside.take() {
+            inside.remove(engine);
+        }
+    }
+    for b in members.bodies {
+        let row = &mut bodies[*b];
+        if let Some(body) = engine.bodies.get_mut(row.handle)
+            && let Some(raised) = row.raised.take()
+        {
+            raised.give_back(body);
+        }
+    }
+}
+
+/// In the engine's solver velocities are those of half a substep ago. Takes those of a component there, or back again, by
+/// what acts on its bodies; but for bodies that contacts press, of which only the engine knows what acts.
+fn stagger(plan: &Plan, by: f64, members: &Members, bodies: &[BodyRow], set: &mut RigidBodySet) {
+    let mut moved = plan.bodies.clone();
+    for body in &mut moved {
+        let inverse_inertia = body.inverse_inertia();
+        body.apply_external(by, inverse_inertia);
+    }
+    for order in &plan.orders {
+        let rate = order.line.motion(&order.element, &plan.bodies, 0.0).axial;
+        let tension = order.tangent.elastic(order.line.distance()) + order.tangent.damping * rate;
+        let impulse = -by * tension * order.line.direction;
+        order.line.impulse(&mut moved, impulse);
+    }
+    for (b, moved) in members.bodies.iter().zip(&moved) {
+        let row = &bodies[*b];
+        let spin = moved.angular_velocity();
+        if let Some(body) = set.get_mut(row.handle)
+            && !row.pressed
+            && (moved.velocity + spin).is_finite()
+        {
+            body.set_linvel(moved.velocity.as_vec3(), false);
+            body.set_angvel(spin.as_vec3(), false);
+        }
+    }
+}
+
+/// Makes or changes the joints of a component.
+fn join(
+    plan: &mut Plan,
+    wanted: &mut Vec<Option<Wanted>>,
+    members: &Members,
+    elements: &mut [ElementRow],
+    engine: &mut Engine,
+    [substep, time]: [f64; 2],
+) {
+    for e in members.elements {
+        if let Some(inside) = &mut elements[*e].inside {
+            inside.active = false;
+        }
+    }
+    wanted.clear();
+    for order in &mut plan.orders {
+        let row = &mut elements[order.row];
+        let held = row.held;
+        let inside = row.inside.get_or_insert_default();
+        let holders = [0, 1].map(|end| inside.holder(end, &held[end], engine));
+        wanted.push(order.joints(row, holders, substep, time));
+        if let Some(inside) = &mut row.inside {
+            inside.active = true;
+            inside.turn = order.turn;
+        }
+    }
+    let set = &mut engine.joints.impulse_joints;
+    let mut fit = true;
+    for (order, wanted) in plan.orders.iter().zip(&*wanted) {
+        if let Some(inside) = &elements[order.row].inside {
+            fit &= match wanted {
+                Some(wanted) => inside.joints.fit(wanted, set),
+                None => inside.joints.count() == 0,
+            };
+        }
+    }
+    for e in members.elements {
+        if let Some(inside) = &mut elements[*e].inside
+            && !(fit && inside.active)
+        {
+            inside.joints.remove(set);
+        }
+    }
+    let each = |elements: &mut [ElementRow], act: &mut dyn FnMut(&mut Inside, &Wanted)| {
+        for (order, wanted) in plan.orders.iter().zip(&*wanted) {
+            if let (Some(inside), Some(wanted)) = (&mut elements[order.row].inside, wanted) {
+                act(inside, wanted);
+            }
+        }
+    };
+    if fit {
+        each(elements, &mut |inside, wanted| {
+            inside.joints.update(wanted, set)
+        });
+    } else {
+        each(elements, &mut |inside, wanted| {
+            inside.joints.put_damper(wanted, set)
+        });
+        each(elements, &mut |inside, wanted| {
+            inside.joints.put_spring(wanted, set)
+        });
+    }
+}
