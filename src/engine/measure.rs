@@ -55,8 +55,9 @@ pub(crate) fn measure(
             if tuned {
                 commands.entity(row.entity).try_remove::<SpringTuning>();
             }
+            let wound = row.memory.angle;
             let seen = row.extent(points, time, &sets);
-            let seen = row.arrive(seen, points, time, &mut look);
+            let seen = row.arrive(seen, wound, points, time, &mut look);
             if led {
                 row.account_for_moved(seen, time);
             }
@@ -266,11 +267,20 @@ impl ElementRow {
     fn arrive(
         &mut self,
         (length, rate): (f64, f64),
+        wound: f64,
         points: [(DVec3, DVec3); 2],
         time: f64,
         look: &mut Look,
     ) -> (f64, f64) {
-        let Some(inside) = self.inside.take_if(|inside| inside.active) else {
+        let Some(mut inside) = self.inside.take_if(|inside| inside.active) else {
+            if self
+                .inside
+                .as_ref()
+                .is_some_and(|inside| inside.has_slipped())
+            {
+                self.memory.angle = wound;
+                return (wound, 0.0);
+            }
             return (length, rate);
         };
         let facings = self.held.map(|held| match held {

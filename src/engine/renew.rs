@@ -110,8 +110,9 @@ impl Scene {
         self.enter_bodies(&mut scratch, modified);
         let entered = |body: &&BodyRow| self.index.contains_key(&body.entity);
         let gone = scratch.bodies.iter().filter(|body| !entered(body));
+        let raised = gone.filter(|row| row.raised.is_any());
         self.unloaded
-            .extend(gone.filter_map(|row| Some((row.context, row.handle, row.raised?))));
+            .extend(raised.map(|row| (row.context, row.handle, row.raised)));
         let found_all = self.elements.iter_mut().zip(&scratch.found);
         for (index, (row, found)) in found_all.enumerate() {
             let Some(found) = found else { continue };

@@ -159,8 +159,10 @@ pub(super) struct BodyRow {
     pub rest: Rest,
     /// The torque of its share.
     pub torque: Vec3,
-    /// What it has besides forces while the engine solves its elements.
-    pub raised: Option<Raised>,
+    /// What it has been given besides forces.
+    pub raised: Raised,
+    /// Of all its elements, N/m.
+    pub stiffness: f64,
     /// The engine's substep then, s.
     pub substep: f64,
     /// Index within its component.
@@ -201,7 +203,8 @@ impl BodyRow {
             is_fresh: false,
             rest: Rest::default(),
             torque: Vec3::ZERO,
-            raised: None,
+            raised: Raised::default(),
+            stiffness: 0.0,
             substep: 0.0,
             now: (DVec3::ZERO, Vec3::ZERO),
             turned: 0,

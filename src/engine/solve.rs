@@ -4,9 +4,9 @@ use super::assembly::Assembly;
 use super::body::{Engine, FARTHEST_TURN};
 use super::forces::{self, SpringLoad};
 use super::group::{Group, Groups};
-use super::inside::{EngineParts, Solver, Surroundings};
+use super::inside::{Crowd, EngineParts, Solver, Surroundings};
 use super::lone::{FLOCK, Flock, Handled, call_up};
-use super::scene::{BodyRow, Scene};
+use super::scene::{BodyRow, ElementRow, Scene};
 use super::step::Step;
 use super::timestep::Plan;
 use crate::settings::CoiloverSettings;
@@ -139,7 +139,7 @@ pub(crate) fn solve(
             }
             !here
         });
-        scene.unloaded.retain(|(of, handle, raised)| {
+        scene.unloaded.retain_mut(|(of, handle, raised)| {
             let here = *of == context;
             if let Some(body) = engine.bodies.get_mut(*handle).filter(|_| here) {
                 raised.give_back(body);
@@ -184,6 +184,12 @@ impl Scene {
         } = self;
         let mut all_asleep = true;
         solver.clear();
+        if !self.changed.is_empty() || self.renewed {
+            add_up(elements, bodies);
+        }
+        let time = step.plan.time / f64::from(step.plan.pipeline_steps.max(1));
+        let new = |row: &BodyRow| row.is_new && row.context == context;
+        let crowd = bodies.iter().any(new).then(|| Crowd::new(engine.colliders));
         for g in 0..groups.list().len() {
             let group = &groups.list()[g];
             if group.context != context {
@@ -198,14 +204,15 @@ impl Scene {
             {
                 continue;
             }
-            let around = Surroundings::new(narrow, engine.joints);
+            let around = Surroundings::new(narrow, engine.joints, engine.colliders, crowd.as_ref());
             let mut held = false;
             for b in members.bodies {
                 let row = &mut bodies[*b];
                 if (row.can_touch || around.any_joints || row.lingers > 0.0)
-                    && let Some(body) = engine.bodies.get(row.handle)
+                    && let Some(body) = engine.bodies.get_mut(row.handle)
                 {
                     held |= around.look(row, body, step.plan.time);
+                    row.look_ahead(body, time);
                 }
             }
             held &= !members.elements.is_empty();
@@ -229,7 +236,7 @@ impl Scene {
         solver.write(step, groups, elements, bodies, engine, finest);
         let links = engine.joints.multibody_joints.multibodies().next();
         step.alike = links.map(|_| {
-            let more = |row: &BodyRow| row.raised.map_or(0, |raised| raised.iterations());
+            let more = |row: &BodyRow| row.raised.iterations();
             bodies.iter().map(more).max().unwrap_or(0).max(finest)
         });
         all_asleep
@@ -310,6 +317,26 @@ impl Scene {
             groups.promote(group, assemblies);
         }
         all_asleep
+    }
+}
+
+/// Of each body the stiffness of all its elements.
+fn add_up(elements: &[ElementRow], bodies: &mut [BodyRow]) {
+    for row in bodies.iter_mut() {
+        row.stiffness = 0.0;
+    }
+    for row in elements
+        .iter()
+        .filter(|row| !row.companion.guide.is_twist())
+    {
+        for body in row.on.iter().flatten() {
+            let stiffness = match row.companion.law {
+                // It may be anything where it bends.
+                Some(_) => f64::INFINITY,
+                None => f64::from(row.parameters.stiffness),
+            };
+            bodies[*body as usize].stiffness += stiffness;
+        }
     }
 }
 

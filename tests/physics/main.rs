@@ -16,6 +16,7 @@ mod elastic_pendulum;
 mod ends;
 mod engine_settings;
 mod free_fall;
+mod ground;
 mod hard_cases;
 mod joints;
 mod laws;

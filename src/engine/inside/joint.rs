@@ -4,7 +4,7 @@
 //! where s is the length at the start and ṡ its rate at the end. So a damping of C is ordered as C − h k; what is left is
 //! the symplectic Euler rule with an implicit damper.
 
-use bevy::math::{DVec3, Quat, Vec3};
+use bevy::math::{Quat, Vec3};
 use bevy_rapier3d::rapier::dynamics::{
     GenericJoint, GenericJointBuilder, ImpulseJoint, ImpulseJointHandle, ImpulseJointSet,
     JointAxesMask, JointAxis, MotorModel, RigidBodyHandle,

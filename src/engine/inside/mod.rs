@@ -8,12 +8,14 @@
 mod joint;
 mod order;
 mod plan;
+mod raise;
 mod touch;
 mod twist;
 mod write;
 
-pub(super) use touch::Surroundings;
-pub(super) use write::{Engine as EngineParts, Raised, Solver};
+pub(super) use raise::Raised;
+pub(super) use touch::{Crowd, Surroundings};
+pub(super) use write::{Engine as EngineParts, Solver};
 
 use super::scene::ElementRow;
 use crate::dynamics::body::shortest;
@@ -50,6 +52,8 @@ pub(super) struct Inside {
     /// Energy that its bodies have been given beyond what the law has, J.
     debt: f64,
     turn: Option<Turn>,
+    /// Its twist is not what the bodies show: see [`twist`].
+    slipped: bool,
 }
 
 impl Inside {
@@ -65,17 +69,25 @@ impl Inside {
     /// The length after a step that seems to have led there, with what holds both ends turned like this: that of a
     /// torsion element is what it has been wound up to.
     pub(super) fn wound(
-        &self,
+        &mut self,
         facings: [DQuat; 2],
         seen: f64,
         time: f64,
         energy: impl Fn(f64) -> f64,
     ) -> f64 {
         let relative = facings[0].inverse() * facings[1];
-        match &self.turn {
-            Some(turn) => turn.arrive(self.from, relative, seen, time, energy),
-            None => seen,
-        }
+        let Some(turn) = &self.turn else {
+            return seen;
+        };
+        let (length, slipped) =
+            turn.arrive([self.from, seen], relative, self.slipped, time, energy);
+        self.slipped = slipped;
+        length
+    }
+
+    /// Whether its twist is another than its bodies show.
+    pub(super) fn has_slipped(&self) -> bool {
+        self.slipped
     }
 
     /// How far an end has been moved over the step that is there now, or what holds it has been turned.

@@ -19,6 +19,8 @@ pub(super) struct Order {
     pub row: usize,
     pub element: Element,
     pub line: Line,
+    /// Length at the start of the step.
+    pub from: f64,
     /// Rotations of what holds both ends.
     pub facings: [DQuat; 2],
     pub tangent: Tangent,
@@ -60,7 +62,7 @@ impl Order {
         let Tangent {
             stiffness, damping, ..
         } = self.tangent;
-        let from = self.line.distance();
+        let from = self.from;
         let force = self.tangent.elastic(from);
         if stiffness == 0.0 && damping == 0.0 && force == 0.0 {
             return None;

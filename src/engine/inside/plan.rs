@@ -5,7 +5,6 @@ use super::order::Order;
 use super::twist::Turn;
 use crate::dynamics::body::Body;
 use crate::dynamics::element::Element;
-use crate::dynamics::guide::Guide;
 use crate::dynamics::line::Line;
 use crate::dynamics::soft::Tangent;
 use crate::engine::assembly::Members;
@@ -60,10 +59,17 @@ impl Plan {
             self.disturbed |= row.changed || has_moved;
             take(&mut row.refitted);
             let ends = [0, 1].map(|end| step.end(row, end, bodies, set));
-            let Some(element) = element(row, ends, &self.bodies) else {
-                continue;
-            };
-            let Some(line) = element.line(&self.bodies) else {
+            let is_twist = row.companion.guide.is_twist();
+            let found = element(row, ends, &self.bodies).and_then(|element| {
+                let line = element.line(&self.bodies)?;
+                let turn = Turn::of(&element, &line, &self.bodies, time);
+                (turn.is_some() || !is_twist).then_some((element, line, turn))
+            });
+            let Some((element, line, turn)) = found else {
+                if let Some(inside) = &mut row.inside {
+                    // Where a twist has no meaning, it keeps the one that it had.
+                    inside.slipped = is_twist;
+                }
                 continue;
             };
             if has_moved {
@@ -73,7 +79,7 @@ impl Plan {
             let touched = on.fold(false, |any, b| any | bodies[*b as usize].touched);
             let inside = row.inside.get_or_insert_default();
             inside.context = members.bodies.first().map(|b| bodies[*b].context);
-            let order = self.order(*e, inside, element, line, touched, time);
+            let order = self.order(*e, inside, (element, line, turn), touched, time);
             self.orders.push(order);
         }
         self.bound();
@@ -85,12 +91,16 @@ impl Plan {
         &self,
         row: usize,
         inside: &mut Inside,
-        element: Element,
-        line: Line,
+        (element, line, turn): (Element, Line, Option<Turn>),
         touched: bool,
         time: f64,
     ) -> Order {
-        let from = line.distance();
+        // A torsion element that has slipped is wound up otherwise than its bodies show.
+        let from = if inside.slipped {
+            element.angle
+        } else {
+            line.distance()
+        };
         let rate = line.motion(&element, &self.bodies, 0.0).axial;
         // As the last steps went on: the engine's own velocities are those of its last substep.
         let [last, before] = inside.rates.unwrap_or([rate; 2]);
@@ -112,12 +122,9 @@ impl Plan {
             .each_ref()
             .map(|end| end.rotation(&self.bodies));
         inside.begin(from, tangent, &line, facings);
-        let turn = match element.guide {
-            Guide::Twist(_) => Turn::of(&element, &self.bodies, time),
-            _ => None,
-        };
         Order {
             row,
+            from,
             facings,
             element,
             line,

@@ -3,28 +3,101 @@
 use super::joint::is_ours;
 use crate::engine::scene::BodyRow;
 use bevy::math::Vec3;
+use bevy_rapier3d::parry;
+use bevy_rapier3d::parry::bounding_volume::BoundingVolume;
+use bevy_rapier3d::parry::partitioning::{Bvh, BvhBuildStrategy};
 use bevy_rapier3d::prelude::RapierContextJoints;
 use bevy_rapier3d::rapier::dynamics::{RigidBody as RapierBody, RigidBodyHandle};
-use bevy_rapier3d::rapier::geometry::NarrowPhase;
+use bevy_rapier3d::rapier::geometry::{Collider, ColliderHandle, ColliderSet, NarrowPhase};
 
 /// How long a body counts as held after the last contact, s: a wheel that hops and a foot that drums need not change
 /// between the two ways of being solved in every step. Pinned by `ground::drumming`.
 const LINGER: f32 = 0.1;
 
+/// Nearer than this counts as touching before the first step, m.
+const NEAR: f32 = 0.005;
+
+/// All colliders, for bodies that the engine has not stepped yet: it finds contacts only within a step, and a stiff spring
+/// has to know before the first.
+pub(in crate::engine) struct Crowd {
+    tree: Bvh,
+    parents: Vec<Option<RigidBodyHandle>>,
+    /// Those without bounds, such as half-spaces.
+    boundless: Vec<ColliderHandle>,
+}
+
+impl Crowd {
+    pub(in crate::engine) fn new(colliders: &ColliderSet) -> Self {
+        let (mut parents, mut boundless, mut bounds) = (Vec::new(), Vec::new(), Vec::new());
+        let solid = |c: &Collider| c.is_enabled() && !c.is_sensor();
+        for (handle, collider) in colliders.iter().filter(|(_, c)| solid(c)) {
+            let own = collider.compute_aabb();
+            if own.extents().max_element() < BOUNDLESS {
+                bounds.push(own);
+                parents.push(collider.parent());
+            } else {
+                boundless.push(handle);
+            }
+        }
+        Self {
+            tree: Bvh::from_leaves(BvhBuildStrategy::Binned, &bounds),
+            parents,
+            boundless,
+        }
+    }
+
+    /// Whether anything else is so near that it may touch a body in its first step.
+    fn is_near(&self, handle: RigidBodyHandle, body: &RapierBody, all: &ColliderSet) -> bool {
+        let others = |parent: Option<RigidBodyHandle>| parent != Some(handle);
+        body.colliders()
+            .iter()
+            .filter_map(|own| all.get(*own))
+            .any(|own| {
+                let bounds = own.compute_aabb().loosened(NEAR);
+                let mut near = self.tree.intersect_aabb(&bounds);
+                near.any(|leaf| others(self.parents[leaf as usize]))
+                    || self
+                        .boundless
+                        .iter()
+                        .filter_map(|other| all.get(*other))
+                        .any(|other| {
+                            let [a, b] = [own, other].map(|c| (c.position(), c.shape()));
+                            let touches = parry::query::contact(a.0, a.1, b.0, b.1, NEAR);
+                            others(other.parent()) && !matches!(touches, Ok(None))
+                        })
+            })
+    }
+}
+
+/// Steps of a body's motion within which a contact that the engine has seen ahead counts.
+const REACH: f32 = 3.0;
+
+/// Extents above which a collider counts as boundless, m.
+const BOUNDLESS: f32 = 1e6;
+
 /// What can hold bodies in a Rapier context.
 pub(in crate::engine) struct Surroundings<'a> {
-    pub narrow: &'a NarrowPhase,
-    pub joints: &'a RapierContextJoints,
+    narrow: &'a NarrowPhase,
+    joints: &'a RapierContextJoints,
+    colliders: &'a ColliderSet,
+    crowd: Option<&'a Crowd>,
     /// There are joints at all.
     pub any_joints: bool,
 }
 
 impl<'a> Surroundings<'a> {
-    pub(in crate::engine) fn new(narrow: &'a NarrowPhase, joints: &'a RapierContextJoints) -> Self {
+    pub(in crate::engine) fn new(
+        narrow: &'a NarrowPhase,
+        joints: &'a RapierContextJoints,
+        colliders: &'a ColliderSet,
+        crowd: Option<&'a Crowd>,
+    ) -> Self {
         let links = joints.multibody_joints.multibodies().next().is_some();
         Self {
             narrow,
             joints,
+            colliders,
+            crowd,
             any_joints: links || !joints.impulse_joints.is_empty(),
         }
     }
@@ -45,13 +118,18 @@ impl<'a> Surroundings<'a> {
                 .any(|(_, _, _, joint)| !is_ours(joint))
     }
 
-    /// Whether anything touches a body, or will in the coming step as far as the engine has looked ahead; and whether it
-    /// has pushed it in the last one.
-    fn touch(&self, body: &RapierBody) -> (bool, bool) {
+    /// Whether anything touches a body, or will in the coming step of `time` seconds as far as the engine has looked
+    /// ahead; and whether it has pushed it in the last one.
+    fn touch(&self, body: &RapierBody, time: f64) -> (bool, bool) {
         let (mut touched, mut pressed) = (false, false);
+        // Distances are those at the start of the last step, and the other body moves too.
+        let way = NEAR + REACH * body.linvel().length() * time as f32;
         for collider in body.colliders() {
             for pair in self.narrow.contact_pairs_with(*collider) {
-                touched |= pair.has_any_active_contact();
+                touched |= pair.has_any_active_contact()
+                    && pair
+                        .find_deepest_contact()
+                        .is_some_and(|(_, contact)| contact.dist < way);
                 pressed |= pair.total_impulse() != Vec3::ZERO;
             }
         }
@@ -62,15 +140,17 @@ impl<'a> Surroundings<'a> {
     pub(in crate::engine) fn look(&self, row: &mut BodyRow, body: &RapierBody, time: f64) -> bool {
         row.can_touch = !body.colliders().is_empty();
         row.jointed = self.is_jointed(row.handle);
-        (row.touched, row.pressed) = self.touch(body);
+        (row.touched, row.pressed) = self.touch(body, time);
         if row.jointed || row.touched {
             row.lingers = LINGER;
         } else {
             row.lingers = (row.lingers - time as f32).max(0.0);
         }
-        // Contacts are found only within a step: before its first one it may touch anything.
-        let unknown = std::mem::take(&mut row.is_new) && row.can_touch;
-        row.pressed |= unknown;
-        row.lingers > 0.0 || unknown
+        let near = std::mem::take(&mut row.is_new)
+            && self
+                .crowd
+                .is_some_and(|crowd| crowd.is_near(row.handle, body, self.colliders));
+        row.pressed |= near;
+        row.lingers > 0.0 || near
     }
 }

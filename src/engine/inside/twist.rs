@@ -7,6 +7,7 @@
 
 use crate::dynamics::body::{Body, shortest, turn};
 use crate::dynamics::element::Element;
+use crate::dynamics::line::Line;
 use bevy::math::{DQuat, DVec3};
 use std::f64::consts::TAU;
 
@@ -22,6 +23,9 @@ const ACROSS: f64 = 1.0;
 /// Leverage up to which a twist is true whatever it is: 120° of tilt. Pinned by `ground::torsion`.
 const UPRIGHT: f64 = 2.0;
 
+/// Share of the energy of the bodies' turning that a step may be off by, whatever it was. Pinned by `ground::torsion`.
+const SURE: f64 = 1e-3;
+
 /// What a torsion element is to do in a step.
 #[derive(Clone, Copy, Debug, Default)]
 pub(in crate::engine) struct Turn {
@@ -33,13 +37,15 @@ pub(in crate::engine) struct Turn {
     pub leverage: f64,
     /// How far the bodies turn across it in the step, rad.
     across: f64,
+    /// Energy of their turning, J.
+    motion: f64,
     /// Damping that is ordered, N m s/rad.
     pub damping: f64,
 }
 
 impl Turn {
     /// The gradient of an element's twist in the middle of a step; none where it has no meaning.
-    pub(super) fn of(element: &Element, bodies: &[Body], time: f64) -> Option<Self> {
+    pub(super) fn of(element: &Element, line: &Line, bodies: &[Body], time: f64) -> Option<Self> {
         let [a, b] = element
             .ends
             .each_ref()
@@ -56,6 +62,8 @@ impl Turn {
             axis,
             leverage: length.min(LEVERAGE),
             across: time * across.length(),
+            motion: 0.5 * relative.length_squared() * line.direction.length_squared()
+                / line.inverse_mass.max(f64::MIN_POSITIVE),
             damping: 0.0,
         })
     }
@@ -71,31 +79,39 @@ impl Turn {
         2.0 * by.xyz().dot(self.axis).clamp(-1.0, 1.0).asin()
     }
 
-    /// The twist after a step that began with `before`, where it now seems to be `seen` within some turns. `energy` is
-    /// what the element stores at a twist.
-    pub(in crate::engine) fn arrive(
+    /// The twist after a step that began with `before`, where it now seems to be `seen` within some turns, and whether it
+    /// still is another one. `slipped` if it was before the step; `energy` is what the element stores at a twist.
+    pub(super) fn arrive(
         &self,
-        before: f64,
+        [before, seen]: [f64; 2],
         relative: DQuat,
-        seen: f64,
+        slipped: bool,
         time: f64,
         energy: impl Fn(f64) -> f64,
-    ) -> f64 {
+    ) -> (f64, bool) {
         let by = self.turned(relative);
         let carried = before + self.leverage * by;
         let off = seen - carried;
         let off = off - TAU * (off / TAU).round();
         let whole = carried + off;
-        if self.leverage <= UPRIGHT {
-            return whole;
-        }
         // What would be won has to come from what its damping took.
         let won = energy(whole) - energy(carried);
         let taken = self.damping * (self.leverage * by).powi(2) / time;
-        if won <= taken {
-            whole
+        let upright = self.leverage <= UPRIGHT;
+            println!(
+                "dbg before {before:.4} by {by:.4} lev {:.3} carried {carried:.4} seen {seen:.4} off {off:.4} won {won:.3} taken {taken:.3} slipped {slipped} across {:.3} damping {:.3}",
+                self.leverage, self.across, self.damping
+            );
+        }
+        let spare = if upright && !slipped {
+            SURE * self.motion
         } else {
-            carried + off * (taken / won)
+            0.0
+        };
+        if won <= taken + spare {
+            (whole, !upright)
+        } else {
+            (carried + off * (taken / won), true)
         }
     }
 }

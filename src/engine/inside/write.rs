@@ -12,7 +12,7 @@ use crate::engine::step::Step;
 use bevy::math::Vec3;
 use bevy_rapier3d::prelude::RapierContextJoints;
 use bevy_rapier3d::rapier::dynamics::{
-    IslandManager, RigidBody as RapierBody, RigidBodyBuilder, RigidBodyHandle, RigidBodySet,
+    IslandManager, RigidBodyBuilder, RigidBodyHandle, RigidBodySet,
 };
 use bevy_rapier3d::rapier::geometry::ColliderSet;
 use std::sync::atomic::Ordering;
@@ -21,28 +21,12 @@ use std::sync::atomic::Ordering;
 /// what it carries. Pinned by `ground::rolling`.
 const LEAST: u32 = 16;
 
-/// ω·dt above which a body's contacts have to be seen a step ahead: the engine pushes what it finds too late out of the
-/// ground, and that compresses a stiff spring. Pinned by `ground::feet`.
-const STIFF: f64 = 0.3;
-
-/// How far ahead, in steps.
-const AHEAD: f32 = 1.5;
-
 /// What of a Rapier context is written.
 pub(in crate::engine) struct Engine<'a> {
     pub bodies: &'a mut RigidBodySet,
     pub joints: &'a mut RapierContextJoints,
     pub islands: &'a mut IslandManager,
     pub colliders: &'a mut ColliderSet,
-}
-
-/// What a body is given besides forces while the engine solves its elements, and what the user had ordered.
-#[derive(Clone, Copy, Debug, Default)]
-pub(in crate::engine) struct Raised {
-    iterations: usize,
-    users_iterations: usize,
-    prediction: f32,
-    users_prediction: f32,
 }
 
 /// The components of a context that the engine solves.
@@ -91,48 +75,6 @@ impl Inside {
             }
         }
         handle
-    }
-}
-
-impl Raised {
-    /// Gives a body back what the user had ordered.
-    pub(in crate::engine) fn give_back(&self, body: &mut RapierBody) {
-        if body.additional_solver_iterations() == self.iterations {
-            body.set_additional_solver_iterations(self.users_iterations);
-        }
-        if body.soft_ccd_prediction() == self.prediction {
-            body.set_soft_ccd_prediction(self.users_prediction);
-        }
-    }
-
-    /// Solver iterations more than the engine's own.
-    pub(in crate::engine) fn iterations(&self) -> usize {
-        self.iterations
-    }
-}
-
-impl BodyRow {
-    /// Has the engine solve it in so many iterations more, and see contacts so far ahead.
-    fn raise(&mut self, body: &mut RapierBody, iterations: usize, prediction: f32) {
-        let known = self.raised.get_or_insert_default();
-        let (now, seen) = (
-            body.additional_solver_iterations(),
-            body.soft_ccd_prediction(),
-        );
-        if now != known.iterations {
-            known.users_iterations = now;
-        }
-        if seen != known.prediction {
-            known.users_prediction = seen;
-        }
-        known.iterations = iterations.max(known.users_iterations);
-        known.prediction = prediction.max(known.users_prediction);
-        if now != known.iterations {
-            body.set_additional_solver_iterations(known.iterations);
-        }
-        if seen != known.prediction {
-            body.set_soft_ccd_prediction(known.prediction);
-        }
     }
 }
 
@@ -219,7 +161,6 @@ impl Solver {
                     Default::default()
                 };
             }
-            let stiff = plan.omega * time > STIFF;
             let excess = plan.orders.iter().filter_map(|o| o.excess_torque());
             for (slot, b) in members.bodies.iter().enumerate() {
                 let row = &mut bodies[*b];
@@ -228,12 +169,7 @@ impl Solver {
                 let Some(body) = engine.bodies.get_mut(row.handle) else {
                     continue;
                 };
-                let way = if stiff && row.can_touch {
-                    AHEAD * body.linvel().length() * time as f32 / calls as f32
-                } else {
-                    0.0
-                };
-                row.raise(body, chosen - own, way);
+                row.raised.raise(body, chosen - own);
                 let too_much = excess.clone().filter(|(of, _)| *of == slot);
                 let torque = -too_much.map(|(_, torque)| torque.as_vec3()).sum::<Vec3>();
                 if torque != Vec3::ZERO || row.carries_share {
@@ -286,10 +222,8 @@ pub(in crate::engine) fn leave(
     }
     for b in members.bodies {
         let row = &mut bodies[*b];
-        if let Some(body) = engine.bodies.get_mut(row.handle)
-            && let Some(raised) = row.raised.take()
-        {
-            raised.give_back(body);
+        if let Some(body) = engine.bodies.get_mut(row.handle) {
+            row.raised.raise(body, 0);
         }
     }
 }

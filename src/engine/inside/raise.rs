@@ -1,0 +1,88 @@
+//! What a body is given besides forces, and what its user had ordered instead.
+
+use crate::engine::scene::BodyRow;
+use bevy_rapier3d::rapier::dynamics::RigidBody as RapierBody;
+
+/// ω·dt of a body's springs above which its contacts have to be seen a step ahead. What the engine finds too late it pushes
+/// out of the ground, or stops at its surface, and either compresses a stiff spring. Pinned by `ground::feet` and
+/// `ground::nets`.
+const STIFF: f64 = 0.3;
+
+/// How far ahead, in steps.
+const AHEAD: f64 = 1.5;
+
+/// Such orders, and what stood there before.
+#[derive(Clone, Copy, Debug, Default)]
+pub(in crate::engine) struct Raised {
+    iterations: Option<Replaced<usize>>,
+    prediction: Option<Replaced<f32>>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Replaced<T> {
+    ours: T,
+    users: T,
+}
+
+impl<T: Copy + Default + PartialEq + PartialOrd> Replaced<T> {
+    /// Notes what stands there now, and says what is to stand there.
+    fn order(known: &mut Option<Self>, now: T, wanted: T) -> T {
+        let users = match *known {
+            Some(known) if known.ours == now => known.users,
+            _ => now,
+        };
+        let ours = if wanted > users { wanted } else { users };
+        *known = (ours != users).then_some(Self { ours, users });
+        ours
+    }
+}
+
+impl Raised {
+    /// Has the engine solve a body in so many iterations more than its own, or as many as its user asks for.
+    pub(super) fn raise(&mut self, body: &mut RapierBody, iterations: usize) {
+        let now = body.additional_solver_iterations();
+        let ours = Replaced::order(&mut self.iterations, now, iterations);
+        if ours != now {
+            body.set_additional_solver_iterations(ours);
+        }
+    }
+
+    /// Has the engine see its contacts so far ahead, m.
+    fn look_ahead(&mut self, body: &mut RapierBody, way: f32) {
+        let now = body.soft_ccd_prediction();
+        let ours = Replaced::order(&mut self.prediction, now, way);
+        if ours != now {
+            body.set_soft_ccd_prediction(ours);
+        }
+    }
+
+    /// Gives back what the user had ordered.
+    pub(in crate::engine) fn give_back(&mut self, body: &mut RapierBody) {
+        self.raise(body, 0);
+        self.look_ahead(body, 0.0);
+    }
+
+    /// Solver iterations more than the engine's own.
+    pub(in crate::engine) fn iterations(&self) -> usize {
+        self.iterations.map_or(0, |iterations| iterations.ours)
+    }
+
+    /// Whether there is anything to give back.
+    pub(in crate::engine) fn is_any(&self) -> bool {
+        self.iterations.is_some() || self.prediction.is_some()
+    }
+}
+
+impl BodyRow {
+    /// Has the engine see contacts of a body ahead that stiff springs push, in steps of `time` seconds.
+    pub(in crate::engine) fn look_ahead(&mut self, body: &mut RapierBody, time: f64) {
+        let inverse_mass = f64::from(body.mass_properties().local_mprops.inv_mass);
+        let stiff = self.stiffness * inverse_mass * time * time > STIFF * STIFF;
+        let way = if stiff && self.can_touch {
+            AHEAD * time * f64::from(body.linvel().length())
+        } else {
+            0.0
+        };
+        self.raised.look_ahead(body, way as f32);
+    }
+}

@@ -1,0 +1,101 @@
+//! Light balls on stiff springs, dropped.
+
+use super::stand::*;
+use crate::harness::*;
+use bevy::prelude::*;
+use bevy_coilover::prelude::*;
+use bevy_rapier3d::prelude::*;
+
+/// Balls of 0.2 kg, `n` along each edge, springs to all near neighbours, 0.4 m above the ground.
+fn net(plugin: CoiloverPlugin, n: [usize; 3], k: f32, zeta: f32) -> Stand {
+    let mut scene = Stand::new(plugin, Engine::default());
+    scene.ground();
+    let (apart, radius, mass) = (0.3_f32, 0.05_f32, 0.2_f32);
+    let mut balls = Vec::new();
+    for x in 0..n[0] {
+        for y in 0..n[1] {
+            for z in 0..n[2] {
+                let at = Vec3::new(
+                    x as f32 * apart + 0.02 * y as f32,
+                    0.4 + radius + y as f32 * apart,
+                    z as f32 * apart,
+                );
+                balls.push(scene.body(
+                    Transform::from_translation(at),
+                    (Collider::ball(radius), ColliderMassProperties::Mass(mass)),
+                ));
+            }
+        }
+    }
+    let c = 2.0 * zeta * (0.5 * mass * k).sqrt();
+    for i in 0..balls.len() {
+        for j in 0..i {
+            let ends = [balls[i], balls[j]];
+            if scene.distance(ends, [Vec3::ZERO; 2]) < 1.5 * apart {
+                scene.coil(ends, [Vec3::ZERO; 2], [k, c], None);
+            }
+        }
+    }
+    scene
+}
+
+#[test]
+fn nets_of_light_balls_win_nothing_when_they_land() {
+    let base = |scene: &Stand| scene.bodies.len() as f64 * 0.2 * GRAVITY * 0.05;
+    for n in [[2, 1, 1], [3, 1, 1], [3, 3, 3], [5, 5, 5]] {
+        let mut line = String::new();
+        for k in [2e3, 2e4, 1e5, 1e6, 1e7] {
+            if n[0] == 5 && k > 1e5 {
+                continue;
+            }
+            let mut scene = net(CoiloverPlugin::default(), n, k, 0.0);
+            scene.lab.tick();
+            let base = base(&scene);
+            let first = scene.energy() - base;
+            let most = (scene.most(5.0) - base) / first;
+            line += &format!(" {most:.3}");
+            assert!(most < 1.02, "{n:?} at {k} N/m: E × {most}");
+        }
+        println!("net of {n:?}, 2e3, 2e4, 1e5, 1e6, 1e7 N/m: E ×{line}");
+    }
+}
+
+#[test]
+fn in_every_way_of_stepping() {
+    for (name, way) in ways() {
+        for (n, k) in [([2, 1, 1], 2e4), ([3, 3, 3], 1e5)] {
+            let mut scene = net(way, n, k, 0.02);
+            scene.lab.tick();
+            let base = scene.bodies.len() as f64 * 0.2 * GRAVITY * 0.05;
+            let first = scene.energy() - base;
+            let most = (scene.most(5.0) - base) / first;
+            println!("net of {n:?}, {name} micro-steps: E × {most:.3}");
+            assert!(most < 1.02, "{name} {n:?}: E × {most}");
+        }
+    }
+}
+
+#[test]
+fn zz_probe() {
+    let k: f32 = std::env::var("K").map_or(2e3, |k| k.parse().unwrap());
+    let mut scene = net(CoiloverPlugin::default(), [3, 3, 3], k, 0.0);
+    scene.lab.tick();
+    let mut last = scene.energy();
+    for i in 0..300 {
+        scene.lab.tick();
+        let e = scene.energy();
+        let r = scene.lab.readout(scene.coils[0].element);
+        if (e - last).abs() > 0.3 || i % 30 == 0 {
+            println!(
+                "{i} E {e:.2} d {:.2} motion {:.2} stored {:.2} {:?} {} wdt {:.2}",
+                e - last,
+                scene.motion(),
+                scene.stored(),
+                r.method,
+                r.microsteps,
+                r.omega_dt
+            );
+        }
+        last = e;
+    }
+}

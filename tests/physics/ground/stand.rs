@@ -1,0 +1,175 @@
+//! A lab with its bodies and springs kept in mind, so that its energy can be told from geometry alone.
+
+use crate::harness::*;
+use bevy::prelude::*;
+use bevy_coilover::prelude::*;
+use bevy_rapier3d::prelude::*;
+
+/// A spring of the scene.
+#[derive(Clone, Copy)]
+pub struct Coil {
+    pub element: Entity,
+    pub ends: [Entity; 2],
+    pub anchors: [Vec3; 2],
+    pub stiffness: f32,
+    pub rest_length: f32,
+}
+
+pub struct Stand {
+    pub lab: Lab,
+    pub bodies: Vec<Entity>,
+    pub coils: Vec<Coil>,
+    pub gravity: f64,
+}
+
+/// How elements are stepped: the ways that have to be alike in all that holds them.
+pub fn ways() -> [(&'static str, CoiloverPlugin); 5] {
+    let plain = CoiloverPlugin::default;
+    [
+        ("1", plain()),
+        ("4", plain().with_microsteps(4)),
+        ("16", plain().with_microsteps(16)),
+        ("extrapolated", plain().with_extrapolation()),
+        ("by tolerance", plain().with_tolerance(1e-3)),
+    ]
+}
+
+impl Stand {
+    pub fn new(plugin: CoiloverPlugin, engine: Engine) -> Self {
+        Self {
+            gravity: f64::from(engine.gravity.length()),
+            lab: Lab::with(plugin, engine),
+            bodies: Vec::new(),
+            coils: Vec::new(),
+        }
+    }
+
+    /// A half-space with some friction.
+    pub fn ground(&mut self) -> Entity {
+        self.lab.spawn((
+            Collider::halfspace(Vec3::Y).expect("up"),
+            Friction::new(0.8),
+            Transform::default(),
+        ))
+    }
+
+    pub fn body(&mut self, at: impl Into<Transform>, bundle: impl Bundle) -> Entity {
+        let entity = self.lab.spawn((
+            RigidBody::Dynamic,
+            at.into(),
+            Velocity::default(),
+            Sleeping::default(),
+            ReadMassProperties::default(),
+        ));
+        self.lab.app.world_mut().entity_mut(entity).insert(bundle);
+        self.bodies.push(entity);
+        entity
+    }
+
+    /// A spring between two points, at rest as it is unless told otherwise.
+    pub fn coil(
+        &mut self,
+        ends: [Entity; 2],
+        anchors: [Vec3; 2],
+        [stiffness, damping]: [f32; 2],
+        rest_length: Option<f32>,
+    ) -> Entity {
+        let rest_length = rest_length.unwrap_or_else(|| self.distance(ends, anchors));
+        let element = self.lab.spawn((
+            SpringDamper::new(ends[0], ends[1])
+                .with_stiffness(stiffness)
+                .with_damping(damping)
+                .with_rest_length(rest_length),
+            Anchors::new(anchors[0], anchors[1]),
+        ));
+        self.coils.push(Coil {
+            element,
+            ends,
+            anchors,
+            stiffness,
+            rest_length,
+        });
+        element
+    }
+
+    pub fn distance(&self, ends: [Entity; 2], anchors: [Vec3; 2]) -> f32 {
+        let [a, b] = [0, 1].map(|end| {
+            self.lab
+                .get::<Transform>(ends[end])
+                .transform_point(anchors[end])
+        });
+        a.distance(b)
+    }
+
+    pub fn length(&self, coil: &Coil) -> f64 {
+        f64::from(self.distance(coil.ends, coil.anchors))
+    }
+
+    /// Of the bodies' motion, J.
+    pub fn motion(&self) -> f64 {
+        let of = |body: &Entity| {
+            let m = self.lab.get::<ReadMassProperties>(*body).get();
+            let (v, turn) = (
+                self.lab.get::<Velocity>(*body),
+                self.lab.get::<Transform>(*body),
+            );
+            let axes = turn.rotation * m.principal_inertia_local_frame;
+            let spin = axes.inverse() * v.angular;
+            let linear = f64::from(m.mass) * f64::from(v.linear.length_squared());
+            0.5 * (linear + f64::from((m.principal_inertia * spin).dot(spin)))
+        };
+        self.bodies.iter().map(of).sum()
+    }
+
+    /// In all springs, J.
+    pub fn stored(&self) -> f64 {
+        let of = |coil: &Coil| {
+            let stretch = self.length(coil) - f64::from(coil.rest_length);
+            0.5 * f64::from(coil.stiffness) * stretch * stretch
+        };
+        self.coils.iter().map(of).sum()
+    }
+
+    /// Motion, weight above the ground and springs together, J.
+    pub fn energy(&self) -> f64 {
+        let weight = |body: &Entity| {
+            let m = self.lab.get::<ReadMassProperties>(*body).get();
+            f64::from(m.mass) * self.gravity * f64::from(self.lab.position(*body).y)
+        };
+        self.motion() + self.stored() + self.bodies.iter().map(weight).sum::<f64>()
+    }
+
+    /// Runs for a time; the greatest energy on the way.
+    pub fn most(&mut self, seconds: f64) -> f64 {
+        let mut most = f64::NEG_INFINITY;
+        for _ in 0..self.lab.ticks(seconds) {
+            self.lab.tick();
+            most = most.max(self.energy());
+        }
+        most
+    }
+
+    /// How far any body goes in a time, m.
+    pub fn wander(&mut self, seconds: f64) -> f64 {
+        let start: Vec<_> = self.bodies.iter().map(|b| self.lab.position(*b)).collect();
+        let mut far = 0.0_f32;
+        for _ in 0..self.lab.ticks(seconds) {
+            self.lab.tick();
+            for (body, start) in self.bodies.iter().zip(&start) {
+                far = far.max(self.lab.position(*body).distance(*start));
+            }
+        }
+        f64::from(far)
+    }
+
+    /// Greatest speed of a body, m/s.
+    pub fn speed(&self) -> f64 {
+        let of = |body: &Entity| f64::from(self.lab.velocity(*body).length());
+        self.bodies.iter().map(of).fold(0.0, f64::max)
+    }
+
+    pub fn awake(&self) -> usize {
+        let awake = |body: &&Entity| !self.lab.is_sleeping(**body);
+        self.bodies.iter().filter(awake).count()
+    }
+}
