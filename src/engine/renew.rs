@@ -145,6 +145,14 @@ impl Scene {
             .iter()
             .any(|row| row.trouble.lasting().is_none() && row.moves() == 0);
         self.groups.find(&self.elements, &self.bodies);
+        self.handles.clear();
+        for (g, group) in self.groups.list().iter().enumerate() {
+            for b in self.groups.members(group).bodies {
+                let row = &mut self.bodies[*b];
+                row.group = g as u32;
+                self.handles.insert((row.context, row.handle), *b as u32);
+            }
+        }
         self.groups
             .furnish(&mut self.assemblies, &self.elements, &self.bodies);
         scratch.clear();

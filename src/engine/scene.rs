@@ -14,6 +14,7 @@ use crate::dynamics::kick::Memo;
 use crate::dynamics::tolerance::{Controller, Outcome};
 use bevy::ecs::entity::{EntityHashMap, EntityHashSet};
 use bevy::math::{DQuat, DVec3, Vec3};
+use bevy::platform::collections::HashMap;
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::ExternalForce;
 use bevy_rapier3d::rapier::dynamics::{RigidBody as RapierBody, RigidBodyHandle};
@@ -165,7 +166,9 @@ pub(super) struct BodyRow {
     pub stiffness: f64,
     /// The engine's substep then, s.
     pub substep: f64,
-    /// Index within its component.
+    /// Index of its component,
+    pub group: u32,
+    /// and its own within that.
     pub slot: usize,
     /// How many elements act on it.
     pub elements: u32,
@@ -187,6 +190,7 @@ impl BodyRow {
             elements: 0,
             signature: 0,
             disturbed: true,
+            group: u32::MAX,
             slot: 0,
             is_new: true,
             can_touch: true,
@@ -262,6 +266,8 @@ pub struct Scene {
     /// In the order of their entities.
     pub(super) bodies: Vec<BodyRow>,
     pub(super) index: EntityHashMap<usize>,
+    /// Indices of the bodies by what the engine calls them.
+    pub(super) handles: HashMap<(Entity, RigidBodyHandle), u32>,
     pub(super) scratch: Scratch,
     /// Bodies that hold elements, but that these cannot move.
     pub(super) walls: EntityHashSet,

@@ -4,7 +4,7 @@ use super::assembly::Assembly;
 use super::body::{Engine, FARTHEST_TURN};
 use super::forces::{self, SpringLoad};
 use super::group::{Group, Groups};
-use super::inside::{Crowd, EngineParts, Solver, Surroundings};
+use super::inside::{Crowd, EngineParts, Outlook, Solver, Surroundings};
 use super::lone::{FLOCK, Flock, Handled, call_up};
 use super::scene::{BodyRow, ElementRow, Scene};
 use super::step::Step;
@@ -16,7 +16,7 @@ use bevy::prelude::*;
 use bevy::tasks::ComputeTaskPool;
 use bevy_rapier3d::prelude::*;
 use bevy_rapier3d::rapier::dynamics::{RigidBody as RapierBody, RigidBodySet};
-use bevy_rapier3d::rapier::geometry::NarrowPhase;
+use bevy_rapier3d::rapier::geometry::{DefaultBroadPhase, NarrowPhase};
 use std::num::NonZeroUsize;
 use std::sync::LazyLock;
 use std::sync::atomic::AtomicBool;
@@ -151,7 +151,7 @@ pub(crate) fn solve(
         let held_asleep = scene.step_held(
             context,
             &mut step,
-            &simulation.narrow_phase,
+            (&simulation.narrow_phase, &simulation.broad_phase),
             &mut engine,
             finest,
             &mut spare.inside,
@@ -169,7 +169,7 @@ impl Scene {
         &mut self,
         context: Entity,
         step: &mut Step,
-        narrow: &NarrowPhase,
+        (narrow, broad): (&NarrowPhase, &DefaultBroadPhase),
         engine: &mut EngineParts,
         finest: usize,
         solver: &mut Solver,
@@ -178,6 +178,7 @@ impl Scene {
             elements,
             bodies,
             groups,
+            handles,
             assemblies,
             stale,
             ..
@@ -205,16 +206,36 @@ impl Scene {
                 continue;
             }
             let around = Surroundings::new(narrow, engine.joints, engine.colliders, crowd.as_ref());
-            let mut held = false;
+            let (mut held, mut stiff) = (false, false);
             for b in members.bodies {
                 let row = &mut bodies[*b];
                 if (row.can_touch || around.any_joints || row.lingers > 0.0)
                     && let Some(body) = engine.bodies.get_mut(row.handle)
                 {
                     held |= around.look(row, body, step.plan.time);
-                    row.look_ahead(body, time);
+                    stiff |= row.look_ahead(body, time) && row.can_touch;
                 }
             }
+            if stiff && !held && group.clear == 0 {
+                let outlook = Outlook {
+                    broad,
+                    bodies: engine.bodies,
+                    colliders: engine.colliders,
+                    time: step.plan.time as f32,
+                };
+                let rows: Vec<_> = members.bodies.iter().map(|b| &bodies[*b]).collect();
+                let (near, clear) = outlook.look(&rows, |handle| {
+                    let row = handles
+                        .get(&(context, handle))
+                        .map(|b| &bodies[*b as usize]);
+                    row.is_some_and(|row| row.group == g as u32)
+                });
+                held = near;
+                groups.at(g).clear = clear;
+            } else {
+                groups.at(g).clear = group.clear.saturating_sub(1);
+            }
+            let members = groups.members(&groups.list()[g]);
             held &= !members.elements.is_empty();
             if !(held || was_inside) {
                 groups.at(g).held = false;

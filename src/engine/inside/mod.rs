@@ -6,6 +6,7 @@
 //! [`order`] says what one element is to do, [`twist`] what a torsion element is, [`joint`] how Rapier is told.
 
 mod joint;
+mod near;
 mod order;
 mod plan;
 mod raise;
@@ -13,6 +14,7 @@ mod touch;
 mod twist;
 mod write;
 
+pub(super) use near::Outlook;
 pub(super) use raise::Raised;
 pub(super) use touch::{Crowd, Surroundings};
 pub(super) use write::{Engine as EngineParts, Solver};

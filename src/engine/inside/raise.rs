@@ -75,7 +75,8 @@ impl Raised {
 
 impl BodyRow {
     /// Has the engine see contacts of a body ahead that stiff springs push, in steps of `time` seconds.
-    pub(in crate::engine) fn look_ahead(&mut self, body: &mut RapierBody, time: f64) {
+    /// Says whether they are stiff.
+    pub(in crate::engine) fn look_ahead(&mut self, body: &mut RapierBody, time: f64) -> bool {
         let inverse_mass = f64::from(body.mass_properties().local_mprops.inv_mass);
         let stiff = self.stiffness * inverse_mass * time * time > STIFF * STIFF;
         let way = if stiff && self.can_touch {
@@ -84,5 +85,6 @@ impl BodyRow {
             0.0
         };
         self.raised.look_ahead(body, way as f32);
+        stiff
     }
 }

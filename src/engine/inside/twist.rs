@@ -98,11 +98,6 @@ impl Turn {
         let won = energy(whole) - energy(carried);
         let taken = self.damping * (self.leverage * by).powi(2) / time;
         let upright = self.leverage <= UPRIGHT;
-            println!(
-                "dbg before {before:.4} by {by:.4} lev {:.3} carried {carried:.4} seen {seen:.4} off {off:.4} won {won:.3} taken {taken:.3} slipped {slipped} across {:.3} damping {:.3}",
-                self.leverage, self.across, self.damping
-            );
-        }
         let spare = if upright && !slipped {
             SURE * self.motion
         } else {
