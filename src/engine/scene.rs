@@ -146,6 +146,8 @@ pub(super) struct BodyRow {
     pub touched: bool,
     /// and pushes it,
     pub pressed: bool,
+    /// so that it may go on creeping: see [`super::sleep`];
+    pub creeps: bool,
     /// or did so a moment ago: it counts as held for so long still, s.
     pub lingers: f32,
     pub user: ExternalForce,
@@ -197,6 +199,7 @@ impl BodyRow {
             jointed: false,
             touched: false,
             pressed: false,
+            creeps: false,
             lingers: 0.0,
             user: ExternalForce::default(),
             share: None,

@@ -16,6 +16,13 @@ use bevy_rapier3d::rapier::dynamics::{RigidBody as RapierBody, RigidBodySet};
 /// Speed (m/s, rad/s; times the engine's length unit) that counts as rest.
 const REST: f32 = 2e-4;
 
+/// The same of what contacts or joints hold. Pinned by `ground::heap`.
+const HELD_REST: f32 = 5e-3;
+
+/// Speed at which a body counts as resting that contacts press, or that hangs in balance between such bodies: under a
+/// lasting side load Rapier's friction lets them creep on for ever. Pinned by `ground::heap`.
+const CREEP: f32 = 2e-3;
+
 /// How long it has to last, s. At a turning point of amplitude A and frequency ω it lasts
 /// 2·REST/(A ω²), so what falls asleep has accelerations below REST·2/QUIET.
 const QUIET: f32 = 2.0;
@@ -44,8 +51,10 @@ fn is_restless(
     let (position, rotation) = (body.position().translation, body.position().rotation);
     let place = position.abs().max_element() * f32::EPSILON;
     let noise = ROUNDING * omega;
-    let slow = body.linvel().length() < REST * length_unit + noise * place
-        && body.angvel().length() < REST + noise * f32::EPSILON;
+    // Of what is held only its place tells: the engine's velocities are those of its last substep.
+    let rest = if row.lingers > 0.0 { HELD_REST } else { REST };
+    let slow = body.linvel().length() < rest * length_unit + noise * place
+        && body.angvel().length() < rest + noise * f32::EPSILON;
     if !slow {
         row.rests = false;
         return true;
@@ -60,8 +69,9 @@ fn is_restless(
     }
     let rest = &mut row.rest;
     // Trembling may be rounding; going somewhere is not.
-    let strayed = rest.position.distance(position) > REST * QUIET * length_unit + ROUNDING * place
-        || (rest.rotation.inverse() * rotation).xyz().length() > 0.5 * REST * QUIET;
+    let creep = if row.creeps { CREEP } else { REST };
+    let strayed = rest.position.distance(position) > creep * QUIET * length_unit + ROUNDING * place
+        || (rest.rotation.inverse() * rotation).xyz().length() > 0.5 * creep * QUIET;
     if strayed {
         row.rests = false;
         return true;

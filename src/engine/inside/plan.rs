@@ -12,8 +12,13 @@ use crate::engine::body::read;
 use crate::engine::element::element;
 use crate::engine::scene::{BodyRow, ElementRow};
 use crate::engine::step::Step;
+use bevy::math::DVec3;
 use bevy_rapier3d::rapier::dynamics::RigidBodySet;
 use std::mem::take;
+
+/// Speed below which what rests on contacts is brought to rest, m/s or rad/s: undamped springs would tremble on for ever.
+/// Pinned by `ground::heap`.
+const CALM: f64 = 5e-3;
 
 /// A component before its step.
 #[derive(Default)]
@@ -25,9 +30,16 @@ pub(super) struct Plan {
     pub omega: f64,
     /// Something about it is new: it must not sleep.
     pub disturbed: bool,
-    /// For each body, the stiffness of its elements over its mass.
+    /// It rests on something, but for a trembling that nobody sees.
+    calm: bool,
+    /// For each body, the stiffness of its elements over its mass,
     sums: Vec<f64>,
+    /// and its acceleration by all springs and outside forces, beside the sum of their sizes.
+    forces: Vec<(DVec3, f64)>,
 }
+
+/// Share of all forces on a body that may be left of them where they are in balance. Pinned by `ground::heap`.
+const BALANCE: f64 = 5e-3;
 
 impl Plan {
     /// Reads a component; says whether all its bodies can be moved.
@@ -52,6 +64,12 @@ impl Plan {
             self.bodies
                 .push(read(body, step.engine.gravity, &row.user, true));
         }
+        let slowly = CALM * f64::from(step.engine.length_unit);
+        let still = |body: &Body| {
+            body.velocity.length() < slowly && body.angular_velocity().length() < CALM
+        };
+        let pressed = members.bodies.iter().any(|b| bodies[*b].pressed);
+        self.calm = pressed && self.bodies.iter().all(still);
         let time = step.plan.time;
         for e in members.elements {
             let row = &mut elements[*e];
@@ -83,7 +101,30 @@ impl Plan {
             self.orders.push(order);
         }
         self.bound();
+        self.balance(members, bodies);
         true
+    }
+
+    /// Finds which bodies are pressed, or hang in balance: where they go, others take them.
+    fn balance(&mut self, members: &Members, bodies: &mut [BodyRow]) {
+        self.forces.clear();
+        let weight = |body: &Body| (body.acceleration, body.acceleration.length());
+        self.forces.extend(self.bodies.iter().map(weight));
+        for order in &self.orders {
+            let tension = order.tangent.elastic(order.from);
+            for (hold, sign) in order.line.holds.iter().zip([1.0, -1.0]) {
+                if let Some(body) = hold.body.filter(|_| !hold.twist) {
+                    let pull = hold.inverse_mass * (sign * tension * order.line.direction);
+                    self.forces[body].0 += pull;
+                    self.forces[body].1 += pull.length();
+                }
+            }
+        }
+        let rests = members.bodies.iter().any(|b| bodies[*b].pressed);
+        for (b, (net, all)) in members.bodies.iter().zip(&self.forces) {
+            let row = &mut bodies[*b];
+            row.creeps = row.pressed || (rests && net.length() < BALANCE * all);
+        }
     }
 
     /// What an element does over the step.
@@ -131,6 +172,7 @@ impl Plan {
             tangent,
             omega: 0.0,
             touched,
+            calm: self.calm,
             turn,
         }
     }

@@ -73,7 +73,7 @@ fn without_damping_it_wins_nothing_either() {
 fn it_comes_to_rest_at_the_right_height_and_sleeps() {
     for phase in [1.0, 3.0, 6.0] {
         let mut scene = foot(CoiloverPlugin::default(), phase, 0.3);
-        scene.lab.run(10.0);
+        scene.lab.run(40.0);
         let coil = scene.coils[0];
         let sag = f64::from(coil.rest_length) - scene.length(&coil);
         let wanted = 300.0 * GRAVITY / f64::from(coil.stiffness);
