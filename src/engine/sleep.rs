@@ -17,11 +17,11 @@ use bevy_rapier3d::rapier::dynamics::{RigidBody as RapierBody, RigidBodySet};
 const REST: f32 = 2e-4;
 
 /// The same of what contacts or joints hold. Pinned by `ground::heap`.
-const HELD_REST: f32 = 5e-3;
+const HELD_REST: f32 = 2e-2;
 
 /// Speed at which a body counts as resting that contacts press, or that hangs in balance between such bodies: under a
 /// lasting side load Rapier's friction lets them creep on for ever. Pinned by `ground::heap`.
-const CREEP: f32 = 2e-3;
+const CREEP: f32 = 1e-2;
 
 /// How long it has to last, s. At a turning point of amplitude A and frequency ω it lasts
 /// 2·REST/(A ω²), so what falls asleep has accelerations below REST·2/QUIET.
@@ -31,12 +31,14 @@ const QUIET: f32 = 2.0;
 /// of them with a speed of ω times that.
 const ROUNDING: f32 = 4.0;
 
-/// A body at rest: since when, and where that was.
+/// A body at rest: for how long, and where it has been so.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Rest {
     position: Vec3,
     rotation: Quat,
     seconds: f32,
+    /// It has been so for long enough.
+    is_long: bool,
 }
 
 /// Whether a body moves, or has not rested long enough yet. `omega` is the natural frequency of the
@@ -64,7 +66,7 @@ fn is_restless(
         row.rest = Rest {
             position,
             rotation,
-            seconds: 0.0,
+            ..Rest::default()
         };
     }
     let rest = &mut row.rest;
@@ -77,7 +79,16 @@ fn is_restless(
         return true;
     }
     rest.seconds += time;
-    rest.seconds < QUIET
+    if rest.seconds >= QUIET {
+        // Others may have to come to rest yet: what has gone far in many such spans has not moved in any.
+        *rest = Rest {
+            position,
+            rotation,
+            seconds: 0.0,
+            is_long: true,
+        };
+    }
+    !rest.is_long
 }
 
 /// Whether a step would set a sleeping body moving: an acceleration that within a second is not rest.
