@@ -127,11 +127,10 @@ impl Fineness {
 }
 
 /// The damping with which an element is to act in substeps of so long, where the stiffest mode that it takes part in has
-/// so many rad/s. What is `calm` is damped as by the implicit rule, so that it comes to rest.
-pub(crate) fn damping(tangent: &Tangent, omega: f64, substep: f64, calm: bool) -> f64 {
+/// so many rad/s.
+pub(crate) fn damping(tangent: &Tangent, omega: f64, substep: f64) -> f64 {
     let [from, to] = UNRESOLVED;
-    let least = if calm { 1.0 } else { LEAST };
-    let share = ((omega * substep - from) / (to - from)).clamp(least, 1.0);
+    let share = ((omega * substep - from) / (to - from)).clamp(LEAST, 1.0);
     tangent
         .damping
         .max(share * substep * tangent.stiffness.abs())
@@ -191,8 +190,7 @@ mod tests {
         assert_eq!((stiff.substeps, stiff.capped), (64, true));
         let tangent = Tangent::linear(100.0, 0.0, 1.0);
         let h = time / 64.0;
-        assert!(damping(&tangent, 1e5, h, false) >= h * 100.0);
-        assert!(damping(&tangent, 10.0, h, false) <= 1e-3 * h * 100.0);
-        assert!(damping(&tangent, 10.0, h, true) >= h * 100.0);
+        assert!(damping(&tangent, 1e5, h) >= h * 100.0);
+        assert!(damping(&tangent, 10.0, h) <= 1e-3 * h * 100.0);
     }
 }

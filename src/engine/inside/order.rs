@@ -28,8 +28,6 @@ pub(super) struct Order {
     pub omega: f64,
     /// A contact touches what it holds.
     pub touched: bool,
-    /// Its component rests on something, but for a trembling that nobody sees.
-    pub calm: bool,
     /// Of a torsion element.
     pub turn: Option<Turn>,
 }
@@ -83,7 +81,7 @@ impl Order {
             damping: if apart { 0.0 } else { damping },
             ..self.tangent
         };
-        let acting = soft::damping(&left, self.omega, substep, self.calm).max(floor);
+        let acting = soft::damping(&left, self.omega, substep).max(floor);
         if let Some(turn) = &mut self.turn {
             turn.damping = acting + if apart { damping } else { 0.0 };
         }

@@ -16,10 +16,6 @@ use bevy::math::DVec3;
 use bevy_rapier3d::rapier::dynamics::RigidBodySet;
 use std::mem::take;
 
-/// Speed below which what rests on contacts is brought to rest, m/s or rad/s: undamped springs would tremble on for ever.
-/// Pinned by `ground::heap`.
-const CALM: f64 = 5e-3;
-
 /// A component before its step.
 #[derive(Default)]
 pub(super) struct Plan {
@@ -30,8 +26,6 @@ pub(super) struct Plan {
     pub omega: f64,
     /// Something about it is new: it must not sleep.
     pub disturbed: bool,
-    /// It rests on something, but for a trembling that nobody sees.
-    calm: bool,
     /// For each body, the stiffness of its elements over its mass,
     sums: Vec<f64>,
     /// and its acceleration by all springs and outside forces, beside the sum of their sizes.
@@ -64,12 +58,6 @@ impl Plan {
             self.bodies
                 .push(read(body, step.engine.gravity, &row.user, true));
         }
-        let slowly = CALM * f64::from(step.engine.length_unit);
-        let still = |body: &Body| {
-            body.velocity.length() < slowly && body.angular_velocity().length() < CALM
-        };
-        let pressed = members.bodies.iter().any(|b| bodies[*b].pressed);
-        self.calm = pressed && self.bodies.iter().all(still);
         let time = step.plan.time;
         for e in members.elements {
             let row = &mut elements[*e];
@@ -172,7 +160,6 @@ impl Plan {
             tangent,
             omega: 0.0,
             touched,
-            calm: self.calm,
             turn,
         }
     }

@@ -74,28 +74,3 @@ fn in_every_way_of_stepping() {
         }
     }
 }
-
-#[test]
-fn zz_probe() {
-    let k: f32 = std::env::var("K").map_or(2e3, |k| k.parse().unwrap());
-    let mut scene = net(CoiloverPlugin::default(), [3, 3, 3], k, 0.0);
-    scene.lab.tick();
-    let mut last = scene.energy();
-    for i in 0..300 {
-        scene.lab.tick();
-        let e = scene.energy();
-        let r = scene.lab.readout(scene.coils[0].element);
-        if (e - last).abs() > 0.3 || i % 30 == 0 {
-            println!(
-                "{i} E {e:.2} d {:.2} motion {:.2} stored {:.2} {:?} {} wdt {:.2}",
-                e - last,
-                scene.motion(),
-                scene.stored(),
-                r.method,
-                r.microsteps,
-                r.omega_dt
-            );
-        }
-        last = e;
-    }
-}

@@ -33,7 +33,7 @@ fn ground(scene: &mut Stand, kind: Ground) {
             Collider::trimesh(points, vec![[0, 2, 1], [0, 3, 2]]).expect("a plane")
         }
         Ground::HeightField => {
-            Collider::heightfield(vec![0.0; 2 * 401], 2, 401, Vec3::new(800.0, 1.0, 10.0))
+            Collider::heightfield(vec![0.0; 6 * 401], 6, 401, Vec3::new(800.0, 1.0, 10.0))
         }
     };
     scene
@@ -60,7 +60,8 @@ fn sag(
         Transform::from_xyz(0.0, RADIUS + REST, 0.0),
         (
             AdditionalMassProperties::Mass(LOAD),
-            LockedAxes::ROTATION_LOCKED,
+            // Edges between triangles push a wheel aside.
+            LockedAxes::ROTATION_LOCKED | LockedAxes::TRANSLATION_LOCKED_Z,
             Velocity::linear(Vec3::X * speed),
         ),
     );
@@ -137,6 +138,10 @@ fn whatever_it_rolls_on_and_whatever_its_shape() {
                 sag(plain, kind, wheel.clone(), 20.0, speed, [40e3, 3e3])
             });
             println!("{name} on {kind:?}: sag over theory at 3, 12, 25 m/s {sags:.3?}");
+            // The engine corrects how deep a corner has sunk without a speed that a damper could see: a wheel with corners
+            // stands up to 3.3 % of its sag too high.
+            let most = if *name == "convex" { 0.035 } else { 0.03 };
+            assert!(sags.iter().all(|sag| (sag - 1.0).abs() < most), "{sags:?}");
         }
     }
 }

@@ -7,7 +7,7 @@ use bevy_rapier3d::prelude::*;
 
 /// A spring of the scene.
 #[derive(Clone, Copy)]
-pub struct Coil {
+pub struct SceneSpring {
     pub element: Entity,
     pub ends: [Entity; 2],
     pub anchors: [Vec3; 2],
@@ -18,7 +18,7 @@ pub struct Coil {
 pub struct Stand {
     pub lab: Lab,
     pub bodies: Vec<Entity>,
-    pub coils: Vec<Coil>,
+    pub coils: Vec<SceneSpring>,
     pub gravity: f64,
 }
 
@@ -82,7 +82,7 @@ impl Stand {
                 .with_rest_length(rest_length),
             Anchors::new(anchors[0], anchors[1]),
         ));
-        self.coils.push(Coil {
+        self.coils.push(SceneSpring {
             element,
             ends,
             anchors,
@@ -101,7 +101,7 @@ impl Stand {
         a.distance(b)
     }
 
-    pub fn length(&self, coil: &Coil) -> f64 {
+    pub fn length(&self, coil: &SceneSpring) -> f64 {
         f64::from(self.distance(coil.ends, coil.anchors))
     }
 
@@ -123,7 +123,7 @@ impl Stand {
 
     /// In all springs, J.
     pub fn stored(&self) -> f64 {
-        let of = |coil: &Coil| {
+        let of = |coil: &SceneSpring| {
             let stretch = self.length(coil) - f64::from(coil.rest_length);
             0.5 * f64::from(coil.stiffness) * stretch * stretch
         };

@@ -3,7 +3,6 @@
 use super::stand::*;
 use crate::harness::*;
 use bevy::prelude::*;
-use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
 
 #[test]
