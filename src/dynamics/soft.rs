@@ -22,6 +22,17 @@ const RESOLVED: f64 = 0.5;
 /// the most substeps do not resolve a mode. Pinned by `ground::nets`.
 const UNRESOLVED: [f64; 2] = [1.5, 2.0];
 
+/// The same for elements without damping of their own, so that they keep their energy too; and the most substeps that this
+/// is worth. Pinned by `ground::hinge`.
+const KEPT: f64 = 0.05;
+const WORTH: u32 = 32;
+
+/// ω h above which velocities at the end of a step are so far from the positions there, half a substep, that energy would
+/// seem to be won by turns, up to where damping makes up for it; and that damping, as a share of that of the implicit rule.
+/// Pinned by `ground::hinge`.
+const STAGGERED: [f64; 2] = [0.05, 0.1];
+const SETTLING: f64 = 0.25;
+
 /// Least damping, as a share of h·stiffness. The engine divides by the damping, so it must not be zero; a damping ratio
 /// of ω h / 4000 costs an undamped door 0.1 % of its amplitude in eight seconds. Pinned by `joints::door`.
 const LEAST: f64 = 5e-4;
@@ -41,6 +52,11 @@ pub(crate) struct Tangent {
 }
 
 impl Tangent {
+    /// Whether substeps of so long would damp it more than it does by itself, where they do not resolve it finely.
+    pub(crate) fn is_undamped(&self, substep: f64) -> bool {
+        self.damping < SETTLING * substep * self.stiffness
+    }
+
     /// Of a linear element.
     pub(crate) const fn linear(stiffness: f64, damping: f64, rest_length: f64) -> Self {
         Self {
@@ -97,16 +113,17 @@ pub(crate) struct Fineness {
 }
 
 impl Fineness {
-    /// For a step of `time` seconds and a stiffest mode of at most `omega` rad/s.
-    pub(crate) fn of(omega: f64, time: f64, least: u32, most: u32) -> Self {
-        let wanted = (omega * time / RESOLVED).ceil();
+    /// For a step of `time` seconds, a stiffest mode of at most `omega` rad/s, and one of at most `undamped` of those
+    /// elements that no damper slows.
+    pub(crate) fn of(omega: f64, undamped: f64, time: f64, least: u32, most: u32) -> Self {
         // In few sizes, so that a little more stiffness does not have everything set up anew.
-        let wanted = if wanted > f64::from(most) {
-            most
-        } else {
-            (wanted as u32).next_multiple_of(8)
+        let wanted = |phase: f64, most: u32| {
+            let wanted = phase.ceil().min(f64::from(most));
+            (wanted as u32).next_multiple_of(8).min(most)
         };
-        let substeps = wanted.max(least).min(most.max(1));
+        let resolved = wanted(omega * time / RESOLVED, most);
+        let kept = wanted(undamped * time / KEPT, WORTH);
+        let substeps = resolved.max(kept).max(least).min(most.max(1));
         Self {
             substeps,
             capped: omega * time > UNRESOLVED[0] * f64::from(substeps),
@@ -126,11 +143,14 @@ impl Fineness {
     }
 }
 
-/// The damping with which an element is to act in substeps of so long, where the stiffest mode that it takes part in has
-/// so many rad/s.
-pub(crate) fn damping(tangent: &Tangent, omega: f64, substep: f64) -> f64 {
-    let [from, to] = UNRESOLVED;
-    let share = ((omega * substep - from) / (to - from)).clamp(LEAST, 1.0);
+/// The damping with which an element is to act in substeps of so long. `omega` is that of the stiffest mode that it takes
+/// part in, rad/s, and `lively` the same where contacts hold what they press on.
+pub(crate) fn damping(tangent: &Tangent, [omega, lively]: [f64; 2], substep: f64) -> f64 {
+    let ramp =
+        |omega: f64, [from, to]: [f64; 2]| ((omega * substep - from) / (to - from)).clamp(0.0, 1.0);
+    let share = ramp(omega, UNRESOLVED)
+        .max(SETTLING * ramp(lively, STAGGERED))
+        .max(LEAST);
     tangent
         .damping
         .max(share * substep * tangent.stiffness.abs())
@@ -183,14 +203,16 @@ mod tests {
     #[test]
     fn substeps_resolve_the_stiffest_mode_or_say_that_they_cannot() {
         let time = 1.0 / 60.0;
-        assert_eq!(Fineness::of(10.0, time, 16, 64).substeps, 16);
-        let fine = Fineness::of(900.0, time, 16, 64);
+        assert_eq!(Fineness::of(10.0, 10.0, time, 16, 64).substeps, 16);
+        let fine = Fineness::of(900.0, 0.0, time, 16, 64);
         assert!(900.0 * time / f64::from(fine.substeps) <= RESOLVED && !fine.capped);
-        let stiff = Fineness::of(1e5, time, 16, 64);
+        let stiff = Fineness::of(1e5, 0.0, time, 16, 64);
         assert_eq!((stiff.substeps, stiff.capped), (64, true));
+        assert_eq!(Fineness::of(90.0, 90.0, time, 16, 64).substeps, 32);
+        assert_eq!(Fineness::of(90.0, 90.0, time, 16, 20).substeps, 20);
         let tangent = Tangent::linear(100.0, 0.0, 1.0);
         let h = time / 64.0;
-        assert!(damping(&tangent, 1e5, h) >= h * 100.0);
-        assert!(damping(&tangent, 10.0, h) <= 1e-3 * h * 100.0);
+        assert!(damping(&tangent, [1e5, 0.0], h) >= h * 100.0);
+        assert!(damping(&tangent, [10.0; 2], h) <= 1e-3 * h * 100.0);
     }
 }

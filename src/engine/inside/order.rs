@@ -26,6 +26,8 @@ pub(super) struct Order {
     pub tangent: Tangent,
     /// Bound on the stiffest mode that it takes part in, rad/s.
     pub omega: f64,
+    /// The same where what presses on a body holds it still.
+    pub lively: f64,
     /// A contact touches what it holds.
     pub touched: bool,
     /// Of a torsion element.
@@ -81,7 +83,7 @@ impl Order {
             damping: if apart { 0.0 } else { damping },
             ..self.tangent
         };
-        let acting = soft::damping(&left, self.omega, substep).max(floor);
+        let acting = soft::damping(&left, [self.omega, self.lively], substep).max(floor);
         if let Some(turn) = &mut self.turn {
             turn.damping = acting + if apart { damping } else { 0.0 };
         }

@@ -88,7 +88,7 @@ impl Plan {
             let order = self.order(*e, inside, (element, line, turn), touched, time);
             self.orders.push(order);
         }
-        self.bound();
+        self.bound(members, bodies);
         self.balance(members, bodies);
         true
     }
@@ -159,6 +159,7 @@ impl Plan {
             line,
             tangent,
             omega: 0.0,
+            lively: 0.0,
             touched,
             turn,
         }
@@ -166,7 +167,7 @@ impl Plan {
 
     /// Bounds on the stiffest mode: ω² is at most the sum over both ends of an element of their elements' stiffness over
     /// mass, as for the Laplacian of a graph (W. Anderson and T. Morley, 1985).
-    fn bound(&mut self) {
+    fn bound(&mut self, members: &Members, bodies: &[BodyRow]) {
         self.sums.clear();
         self.sums.resize(self.bodies.len(), 0.0);
         for order in &self.orders {
@@ -179,9 +180,20 @@ impl Plan {
         self.omega = 0.0;
         for order in &mut self.orders {
             let ends = order.line.holds.iter().filter_map(|hold| hold.body);
-            order.omega = ends.map(|body| self.sums[body]).sum::<f64>().sqrt();
+            order.omega = ends.clone().map(|body| self.sums[body]).sum::<f64>().sqrt();
+            let lifted = ends.filter(|body| !bodies[members.bodies[*body]].pressed);
+            order.lively = lifted.map(|body| self.sums[body]).sum::<f64>().sqrt();
             self.omega = self.omega.max(order.omega);
         }
+    }
+
+    /// Bound on the stiffest mode of those elements that have too little damping for substeps of so long, rad/s.
+    pub(super) fn undamped(&self, substep: f64) -> f64 {
+        let orders = self.orders.iter();
+        orders
+            .filter(|order| order.tangent.is_undamped(substep))
+            .map(|order| order.lively)
+            .fold(0.0, f64::max)
     }
 
     /// Whether its joints may be solved in finer substeps than they are made for.

@@ -125,7 +125,10 @@ impl Solver {
         let least = LEAST.saturating_mul(step.accuracy.fineness());
         let fineness: Vec<_> = self.plans[..self.used]
             .iter()
-            .map(|plan| Fineness::of(plan.omega, time, least, step.most_substeps))
+            .map(|plan| {
+                let undamped = plan.undamped(time / f64::from(least));
+                Fineness::of(plan.omega, undamped, time, least, step.most_substeps)
+            })
             .collect();
         let iterations = |f: &Fineness| (f.substeps.div_ceil(calls) as usize).max(own);
         let most = fineness.iter().map(iterations).max().unwrap_or(own);

