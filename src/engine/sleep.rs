@@ -41,6 +41,13 @@ pub(super) struct Rest {
     is_long: bool,
 }
 
+/// Its greatest radius of gyration, but a metre at most and two centimetres at least, m.
+fn size_of(body: &RapierBody) -> f32 {
+    let properties = &body.mass_properties().local_mprops;
+    let inertia = properties.principal_inertia().max_element();
+    (inertia * properties.inv_mass).sqrt().clamp(0.02, 1.0)
+}
+
 /// Whether a body moves, or has not rested long enough yet. `omega` is the natural frequency of the
 /// stiffest element on it.
 fn is_restless(
@@ -53,10 +60,13 @@ fn is_restless(
     let (position, rotation) = (body.position().translation, body.position().rotation);
     let place = position.abs().max_element() * f32::EPSILON;
     let noise = ROUNDING * omega;
+    let held = row.lingers > 0.0;
     // Of what is held only its place tells: the engine's velocities are those of its last substep.
-    let rest = if row.lingers > 0.0 { HELD_REST } else { REST };
+    let rest = if held { HELD_REST } else { REST };
+    // A small body that turns in what holds it does not go far by that.
+    let size = if held { size_of(body) } else { 1.0 };
     let slow = body.linvel().length() < rest * length_unit + noise * place
-        && body.angvel().length() < rest + noise * f32::EPSILON;
+        && body.angvel().length() * size < rest + noise * f32::EPSILON;
     if !slow {
         row.rests = false;
         return true;
@@ -73,7 +83,7 @@ fn is_restless(
     // Trembling may be rounding; going somewhere is not.
     let creep = if row.creeps { CREEP } else { REST };
     let strayed = rest.position.distance(position) > creep * QUIET * length_unit + ROUNDING * place
-        || (rest.rotation.inverse() * rotation).xyz().length() > 0.5 * creep * QUIET;
+        || (rest.rotation.inverse() * rotation).xyz().length() * size > 0.5 * creep * QUIET;
     if strayed {
         row.rests = false;
         return true;

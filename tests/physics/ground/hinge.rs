@@ -56,30 +56,3 @@ fn a_stiff_spring_on_a_hinged_arm_wins_nothing() {
         }
     }
 }
-
-#[test]
-fn zz_series() {
-    for phase in [1.0, 5.0, 10.0] {
-        let mut scene = arm(CoiloverPlugin::default(), phase, 0.0);
-        for i in 0..40 {
-            scene.lab.tick();
-            let e = scene.energy() + 2.0 * GRAVITY;
-            let b = scene.bodies[0];
-            let hinge = scene
-                .lab
-                .get::<Transform>(b)
-                .transform_point(Vec3::NEG_X * 0.5);
-            let v = scene.lab.get::<Velocity>(b);
-            let x = scene.lab.get::<Transform>(b).rotation * Vec3::X;
-            println!(
-                "{phase} {i} E {e:.2} motion {:.2} stored {:.2} hinge {:.1e} v/w {:.4} angle {:.5} n {}",
-                scene.motion(),
-                scene.stored(),
-                hinge.length(),
-                v.linear.length() / v.angular.length().max(1e-9),
-                x.y.atan2(x.x),
-                scene.lab.readout(scene.coils[0].element).microsteps
-            );
-        }
-    }
-}

@@ -98,6 +98,7 @@ fn a_ragdoll_falls_wins_nothing_and_lies_still() {
                 scene.speed()
             );
             assert!(most < 1.02, "{muscle:?}, {name}: E × {most}");
+            assert_eq!(scene.awake(), 0, "{muscle:?}, {name}");
         }
     }
 }
