@@ -226,7 +226,8 @@ mod tests {
         let model = MotorModel::ForceBased;
         for substep in [1.0 / 960.0_f32, 1.0 / 3840.0, 1.0 / 240.0] {
             for stiffness in [1.0_f32, 777.0, 30e3, 1.234e6] {
-                for damping in [5e-4 * substep * stiffness, 0.1, 2e3] {
+                let least = 5e-4 * substep * stiffness;
+                for damping in [least, least.max(0.1), least.max(2e3)] {
                     let ordered = ordered_damping(stiffness, damping, substep);
                     let (bias, _, gain) = model.combine_coefficients(substep, stiffness, ordered);
                     // Force for a stretch, and for a speed.
