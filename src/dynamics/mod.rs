@@ -2,7 +2,7 @@
 //!
 //! Read in the order in which a step runs. [`tolerance`] decides how finely to step, [`step`] holds what has
 //! to be solved together. [`body`] drifts, [`element`] has the [`line`] between its ends (or
-//! what [`guide`] gives instead), [`poles`] gives
+//! what [`guide`] gives instead, and the [`linkage`] that holds their bodies), [`poles`] gives
 //! the exact coefficients; [`kick`] acts for a lone element, [`pair`] for one on bodies that do not turn, four of them [`abreast`],
 //! [`shock`] for one of those with a force [`law`] of its own, [`network`] for elements that share bodies,
 //! with the linear algebra in [`system`] and [`strut`], and [`points`] for those that turn none. [`guard`] keeps strong
@@ -20,6 +20,7 @@ pub(crate) mod guide;
 pub(crate) mod kick;
 pub(crate) mod law;
 pub(crate) mod line;
+pub(crate) mod linkage;
 pub(crate) mod network;
 pub(crate) mod pair;
 pub(crate) mod points;

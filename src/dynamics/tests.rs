@@ -30,7 +30,7 @@ pub(super) fn point(mass: f64, position: DVec3, gravity: DVec3) -> Body {
     }
 }
 
-fn turning(mut body: Body, inertia: DVec3, velocity: DVec3) -> Body {
+pub(super) fn turning(mut body: Body, inertia: DVec3, velocity: DVec3) -> Body {
     body.inertia = inertia;
     body.spin = Spin::Free {
         momentum: DVec3::ZERO,

@@ -1,12 +1,14 @@
 use bevy::prelude::*;
 use std::f32::consts::TAU;
 
-/// Stiffness and damping of an element by what one sees of them. At the first step the element acts they are
+/// Stiffness and damping of an element by what one sees of them. At the first step that the element acts they are
 /// worked out with the effective mass that its ends have then, written into its fields, and this component is
 /// removed: they stay what they are when masses change, as a real spring does.
 ///
-/// Both ends count as free, whatever they stand on: for a chassis over a wheel on the ground, take
-/// [`SpringTuning::coefficients`] for the mass that the spring carries.
+/// The effective mass is what joints and contacts leave: the arm of a lamp on a hinge counts with its inertia about the
+/// hinge, and a wheel that stands on the ground does not move. The engine knows contacts only after a step, so where a
+/// body has colliders they are worked out once more before the second step. What falls freely then counts as free: for
+/// what will land later, take [`SpringTuning::coefficients`] for the mass that the spring is to carry.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]

@@ -21,6 +21,8 @@ pub(crate) struct Finder<'w, 's> {
         (
             &'static mut RapierRigidBodySet,
             &'static RapierContextColliders,
+            &'static RapierContextJoints,
+            &'static RapierContextSimulation,
         ),
     >,
     pub(super) configurations: Query<'w, 's, &'static RapierConfiguration>,
@@ -137,7 +139,7 @@ impl Finder<'_, '_> {
             field,
             "has a rigid body that the physics engine does not know",
         );
-        let (mut set, colliders) = self.sets.get_mut(context).map_err(|_| missing)?;
+        let (mut set, colliders, ..) = self.sets.get_mut(context).map_err(|_| missing)?;
         // Read first: a mutable look marks the body as modified in the engine.
         let body = set.bodies.get(handle).ok_or(missing)?;
         if !is_movable(body) {

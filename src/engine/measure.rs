@@ -52,7 +52,7 @@ pub(crate) fn measure(
             if (std::mem::take(&mut row.captured) && row.trouble.passing().is_none()) || tuned {
                 write_back(row, tuned, &mut springs);
             }
-            if tuned {
+            if tuned && !row.tuned_again {
                 commands.entity(row.entity).try_remove::<SpringTuning>();
             }
             let wound = row.memory.angle;

@@ -63,7 +63,7 @@ pub(crate) fn prepare(
             row.user = user;
             continue;
         }
-        let engine = finder.sets.get(row.context).ok().and_then(|(set, _)| {
+        let engine = finder.sets.get(row.context).ok().and_then(|(set, ..)| {
             let body = set.bodies.get(row.handle)?;
             Some(ExternalForce {
                 force: body.user_force(),

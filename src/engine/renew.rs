@@ -80,11 +80,12 @@ impl Scene {
                 let found = finder.find(&parameters, guide, &mut row.memory.scales, modified)?;
                 if let Some(tuning) = companions.tuning(entity) {
                     let mut tuned = parameters;
-                    finder.tune(tuning, guide, &found.places, &mut tuned)?;
+                    let can_touch = finder.tune(tuning, guide, &found.places, &mut tuned)?;
                     tuned.check()?;
                     companion = companions.of(entity, &tuned)?;
                     row.parameters = tuned;
                     row.tuned = true;
+                    row.tuned_again = can_touch && !row.tuned_again;
                 }
                 row.change(|row| row.companion = companion);
                 Ok(found)
@@ -236,6 +237,7 @@ impl ElementRow {
             refitted: false,
             captured: false,
             tuned: false,
+            tuned_again: false,
             active: false,
             memory: Memory::default(),
             inverse_mass: 0.0,

@@ -53,6 +53,8 @@ pub(super) struct ElementRow {
     pub captured: bool,
     /// The coefficients were worked out in this tick and have to be written back.
     pub tuned: bool,
+    /// They are to be worked out once more: contacts are known only after the first step.
+    pub tuned_again: bool,
     /// Whether some body of it was stepped, or none can be: then there is something to read out.
     pub active: bool,
     /// Which ends have to be looked for in every tick: what is not a body itself can be moved by the game.

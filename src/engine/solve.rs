@@ -241,7 +241,7 @@ impl Scene {
                 groups.at(g).held = false;
                 continue;
             }
-            let awake = solver.read(step, g, &members, elements, bodies, engine.bodies, stale);
+            let awake = solver.read(step, g, &members, elements, bodies, engine, narrow, stale);
             if !held && awake {
                 solver.release(groups, elements, bodies, engine);
             }

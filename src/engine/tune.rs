@@ -3,21 +3,32 @@
 use super::check::{Fault, Parameters};
 use super::ends::Place;
 use super::find::Finder;
+use super::inside::{Holding, inverse_mass};
 use crate::dynamics::element::{Element, End, Path};
 use crate::dynamics::guide::Guide;
 use crate::element::SpringTuning;
 use bevy::math::DVec3;
 use bevy::prelude::*;
 
+/// What an element acts on.
+struct Lever {
+    /// Of both ends along the line, with what joints and contacts leave, 1/kg.
+    inverse_mass: f64,
+    /// The Rapier context.
+    context: Entity,
+    /// A body of it has colliders.
+    can_touch: bool,
+}
+
 impl Finder<'_, '_> {
-    /// Puts the coefficients that a tuning asks for into an element's numbers.
+    /// Puts the coefficients that a tuning asks for into an element's numbers; says whether contacts may hold its ends.
     pub(super) fn tune(
         &mut self,
         tuning: SpringTuning,
         guide: Guide,
         places: &[Place; 2],
         parameters: &mut Parameters,
-    ) -> Result<(), Fault> {
+    ) -> Result<bool, Fault> {
         let fault = |reason| Err(Fault::new("SpringTuning", reason));
         let (value, ratio) = match tuning {
             SpringTuning::Frequency {
@@ -32,7 +43,12 @@ impl Finder<'_, '_> {
         if parameters.names.stiffness.is_empty() {
             return fault("stands on a damper without a spring");
         }
-        let Some((inverse_mass, context)) = self.inverse_mass(guide, places) else {
+        let Some(Lever {
+            inverse_mass,
+            context,
+            can_touch,
+        }) = self.lever(guide, places)
+        else {
             return fault("stands on an element whose ends cannot move or coincide");
         };
         let gravity = self
@@ -45,13 +61,13 @@ impl Finder<'_, '_> {
         if !parameters.names.damping.is_empty() {
             parameters.damping = damping;
         }
-        Ok(())
+        Ok(can_touch)
     }
 
-    /// Of the ends together along the line, and the Rapier context that they are in.
-    fn inverse_mass(&mut self, guide: Guide, places: &[Place; 2]) -> Option<(f64, Entity)> {
-        let mut bodies = Vec::new();
+    fn lever(&mut self, guide: Guide, places: &[Place; 2]) -> Option<Lever> {
+        let (mut bodies, mut handles) = (Vec::new(), Vec::new());
         let mut context = None;
+        let mut can_touch = false;
         let ends = places.map(|place| match place {
             Place::Point(at) => End::Path(Path::straight(at, DVec3::ZERO)),
             Place::OnBody {
@@ -61,7 +77,7 @@ impl Finder<'_, '_> {
                 ..
             } => {
                 let set = self.sets.get(here).ok();
-                let Some(body) = set.as_ref().and_then(|(set, _)| set.bodies.get(handle)) else {
+                let Some(body) = set.as_ref().and_then(|parts| parts.0.bodies.get(handle)) else {
                     return End::Path(Path::straight(DVec3::ZERO, DVec3::ZERO));
                 };
                 if !super::body::is_movable(body) {
@@ -71,6 +87,8 @@ impl Finder<'_, '_> {
                     return End::Path(path);
                 }
                 context = Some(here);
+                can_touch |= !body.colliders().is_empty();
+                handles.push(handle);
                 let none = bevy_rapier3d::prelude::ExternalForce::default();
                 bodies.push(super::body::read(body, Vec3::ZERO, &none, true));
                 End::Body {
@@ -93,6 +111,20 @@ impl Finder<'_, '_> {
             stiff_damper: false,
         };
         let line = element.line(&bodies)?;
-        Some((line.inverse_mass, context?)).filter(|(w, _)| *w > 0.0)
+        let context = context?;
+        let (set, colliders, joints, simulation) = self.sets.get(context).ok()?;
+        let all = Holding {
+            bodies: &set.bodies,
+            joints,
+            colliders: &colliders.colliders,
+            narrow: &simulation.narrow_phase,
+        };
+        let inverse_mass = inverse_mass(&line, |body| handles[body], all);
+        let lever = Lever {
+            inverse_mass,
+            context,
+            can_touch,
+        };
+        Some(lever).filter(|lever| lever.inverse_mass > 0.0)
     }
 }

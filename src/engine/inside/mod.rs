@@ -3,9 +3,10 @@
 //! A force that is worked out for a whole step, before the engine knows of contact and joint, is explicit to them, however
 //! exact it is in free flight. So each element of such a component is a soft constraint of the engine's own solver, in as
 //! many substeps as it needs. A step runs [`touch`] → [`plan`] → [`write`] → (Rapier steps) → [`Inside::arrive`].
-//! [`order`] says what one element is to do, [`twist`] what a torsion element is, [`joint`] how Rapier is told.
+//! [`order`] says what one element is to do, [`linkage`] what mass it has then, [`twist`] what a torsion element is, [`joint`] how Rapier is told.
 
 mod joint;
+mod linkage;
 mod near;
 mod order;
 mod plan;
@@ -14,6 +15,7 @@ mod touch;
 mod twist;
 mod write;
 
+pub(super) use linkage::{Holding, inverse_mass};
 pub(super) use near::Outlook;
 pub(super) use raise::Raised;
 pub(super) use touch::{Crowd, Surroundings};
@@ -56,6 +58,40 @@ pub(super) struct Inside {
     turn: Option<Turn>,
     /// Its twist is not what the bodies show: see [`twist`].
     slipped: bool,
+    leeway: Leeway,
+}
+
+/// What joints and contacts have left of an element's inverse mass.
+#[derive(Clone, Copy, Debug, Default)]
+struct Leeway {
+    /// 1/kg.
+    left: f64,
+    /// It is that of a step in which all that holds it was known.
+    known: bool,
+    /// What held its ends then,
+    by: [(bool, bool); 2],
+    /// and how many steps ago that was.
+    age: u32,
+}
+
+/// Steps after which it is looked for anew, for what holds an element shifts; and after how few, where something has let
+/// go of it: a foot that drums does so in every other step.
+const OLD: u32 = 64;
+const YOUNG: u32 = 8;
+
+impl Leeway {
+    /// Takes a step; says whether it is to be looked for anew, with such holds.
+    fn is_due(&mut self, by: [(bool, bool); 2], known: bool) -> bool {
+        self.age += 1;
+        let mut ends = self.by.iter().zip(by);
+        let more = ends.any(|(old, new)| (new.0 && !old.0) || (new.1 && !old.1));
+        let fewer = self.age >= YOUNG && self.by != by;
+        let due = !self.known || self.age >= OLD || more || fewer;
+        if due {
+            (self.by, self.age, self.known) = (by, 0, known);
+        }
+        due
+    }
 }
 
 impl Inside {

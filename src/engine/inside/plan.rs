@@ -1,6 +1,7 @@
 //! What the engine's solver is to be given for a component: read from its bodies and elements, before anything is written.
 
 use super::Inside;
+use super::linkage::{Holding, inverse_mass};
 use super::order::Order;
 use super::twist::Turn;
 use crate::dynamics::body::Body;
@@ -13,7 +14,6 @@ use crate::engine::element::element;
 use crate::engine::scene::{BodyRow, ElementRow};
 use crate::engine::step::Step;
 use bevy::math::DVec3;
-use bevy_rapier3d::rapier::dynamics::RigidBodySet;
 use std::mem::take;
 
 /// A component before its step.
@@ -43,9 +43,10 @@ impl Plan {
         members: &Members,
         elements: &mut [ElementRow],
         bodies: &mut [BodyRow],
-        set: &RigidBodySet,
+        all: Holding,
         stale: &mut bool,
     ) -> bool {
+        let set = all.bodies;
         self.bodies.clear();
         self.orders.clear();
         self.disturbed = false;
@@ -85,6 +86,20 @@ impl Plan {
             let touched = on.fold(false, |any, b| any | bodies[*b as usize].touched);
             let inside = row.inside.get_or_insert_default();
             inside.context = members.bodies.first().map(|b| bodies[*b].context);
+            let by = row.on.map(|on| {
+                on.map_or((false, false), |b| {
+                    let body = &bodies[b as usize];
+                    (body.jointed, body.pressed)
+                })
+            });
+            if by != [(false, false); 2] {
+                // Before its first step the engine knows no contacts.
+                if inside.leeway.is_due(by, inside.rates.is_some()) {
+                    let on = |body: usize| bodies[members.bodies[body]].handle;
+                    inside.leeway.left = inverse_mass(&line, on, all);
+                }
+                row.inverse_mass = inside.leeway.left;
+            }
             let order = self.order(*e, inside, (element, line, turn), touched, time);
             self.orders.push(order);
         }

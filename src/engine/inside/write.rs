@@ -2,6 +2,7 @@
 
 use super::Inside;
 use super::joint::Wanted;
+use super::linkage::Holding;
 use super::plan::Plan;
 use crate::dynamics::soft::Fineness;
 use crate::engine::assembly::Members;
@@ -14,7 +15,7 @@ use bevy_rapier3d::prelude::RapierContextJoints;
 use bevy_rapier3d::rapier::dynamics::{
     IslandManager, RigidBodyBuilder, RigidBodyHandle, RigidBodySet,
 };
-use bevy_rapier3d::rapier::geometry::ColliderSet;
+use bevy_rapier3d::rapier::geometry::{ColliderSet, NarrowPhase};
 use std::sync::atomic::Ordering;
 
 /// Least substeps of a step. With Rapier's own four, contacts of a wheel that rolls at 12 m/s are off by a twentieth of
@@ -91,7 +92,8 @@ impl Solver {
         members: &Members,
         elements: &mut [ElementRow],
         bodies: &mut [BodyRow],
-        set: &mut RigidBodySet,
+        engine: &mut Engine,
+        narrow: &NarrowPhase,
         stale: &mut bool,
     ) -> bool {
         if self.plans.len() <= self.used {
@@ -99,9 +101,16 @@ impl Solver {
         }
         let plan = &mut self.plans[self.used];
         plan.group = group;
-        let there = plan.read(step, members, elements, bodies, set, stale);
-        let omega = plan.omega as f32;
-        let awake = there && step.is_awake(bodies, members.bodies, omega, set, plan.disturbed);
+        let all = Holding {
+            bodies: engine.bodies,
+            joints: engine.joints,
+            colliders: engine.colliders,
+            narrow,
+        };
+        let there = plan.read(step, members, elements, bodies, all, stale);
+        let (omega, disturbed) = (plan.omega as f32, plan.disturbed);
+        let set = &mut *engine.bodies;
+        let awake = there && step.is_awake(bodies, members.bodies, omega, set, disturbed);
         for e in members.elements {
             elements[*e].active = awake;
         }

@@ -69,3 +69,105 @@ fn wire_and_coil_give_the_stiffness_of_the_handbook() {
     let stiffness = bevy_coilover::wire_stiffness(0.012, 0.1, 6.0, 79.3e9);
     assert!((stiffness - 34_257.6).abs() < 1.0, "{stiffness}");
 }
+
+/// The arm of a lamp, 0.4 m and 0.3 kg with 0.5 kg at its end, level on a hinge, and a spring from 5 cm along it up to a
+/// post.
+fn lamp(element: impl FnOnce(Entity, Entity) -> SpringDamper) -> (Lab, Entity, Entity) {
+    let mut lab = Lab::new();
+    let post = lab.spawn((RigidBody::Fixed, Transform::default()));
+    let (mass, middle) = (0.8, (0.3 * 0.2 + 0.5 * 0.4) / 0.8);
+    let about_the_hinge = 0.3 * 0.4 * 0.4 / 3.0 + 0.5 * 0.4 * 0.4;
+    let own = about_the_hinge - mass * middle * middle;
+    let arm = lab.spawn((
+        brick(mass, Vec3::new(1e-4, own, own), Vec3::X * middle),
+        ImpulseJoint::new(
+            post,
+            RevoluteJointBuilder::new(Vec3::Z).local_anchor2(Vec3::NEG_X * middle),
+        ),
+    ));
+    let element = element(post, arm);
+    let anchors = Anchors::new(Vec3::new(0.05, 0.2, 0.0), Vec3::X * (0.05 - middle));
+    let element = lab.spawn((element, anchors));
+    (lab, arm, element)
+}
+
+/// Of the arm about its hinge, at the spring.
+const LAMP: f32 = (0.3 * 0.4 * 0.4 / 3.0 + 0.5 * 0.4 * 0.4) / (0.05 * 0.05);
+
+#[test]
+fn on_a_hinge_the_effective_mass_is_what_the_hinge_leaves() {
+    let (mut lab, _, element) = lamp(|post, arm| {
+        SpringDamper::new(post, arm)
+            .with_stiffness(1200.0)
+            .with_rest_length(0.2)
+    });
+    lab.tick();
+    let readout = lab.readout(element);
+    assert!(
+        (readout.effective_mass / LAMP - 1.0).abs() < 1e-3,
+        "{readout:?}"
+    );
+    let omega_dt = (1200.0 / LAMP).sqrt() * DT;
+    assert!(
+        (readout.omega_dt / omega_dt - 1.0).abs() < 1e-3,
+        "{readout:?}"
+    );
+}
+
+#[test]
+fn a_lamp_tuned_to_two_hertz_swings_twice_a_second() {
+    let (mut lab, arm, element) =
+        lamp(|post, arm| SpringDamper::new(post, arm).with_rest_length(0.195));
+    let world = lab.app.world_mut();
+    world
+        .entity_mut(element)
+        .insert(SpringTuning::frequency(2.0, 0.0));
+    lab.tick();
+    let k = lab.get::<SpringDamper>(element).stiffness;
+    assert!(
+        (k / (LAMP * (2.0 * TAU) * (2.0 * TAU)) - 1.0).abs() < 1e-3,
+        "{k}"
+    );
+    assert!(lab.app.world().get::<SpringTuning>(element).is_none());
+    // Through the middle upward.
+    let mut heights = Vec::new();
+    for _ in 0..lab.ticks(4.0) {
+        lab.tick();
+        heights.push(lab.position(arm).y);
+    }
+    let mean = heights.iter().sum::<f32>() / heights.len() as f32;
+    let up = heights.windows(2).filter(|h| h[0] < mean && h[1] >= mean);
+    let times = up.count();
+    assert!((7..=9).contains(&times), "{times} in four seconds");
+}
+
+#[test]
+fn over_a_wheel_on_the_ground_it_is_the_load_that_swings() {
+    let mut lab = Lab::new();
+    lab.spawn((
+        Collider::halfspace(Vec3::Y).expect("up"),
+        Transform::default(),
+    ));
+    let load = lab.spawn((
+        body(300.0, Vec3::Y * 0.8),
+        LockedAxes::ROTATION_LOCKED
+            | LockedAxes::TRANSLATION_LOCKED_X
+            | LockedAxes::TRANSLATION_LOCKED_Z,
+    ));
+    let wheel = lab.spawn((
+        RigidBody::Dynamic,
+        Transform::from_xyz(0.0, 0.3, 0.0),
+        Collider::ball(0.3),
+        ColliderMassProperties::Mass(20.0),
+    ));
+    let element = lab.spawn((
+        SpringDamper::new(load, wheel).with_rest_length(0.5),
+        SpringTuning::frequency(1.5, 0.3),
+    ));
+    lab.run(0.1);
+    let k = lab.get::<SpringDamper>(element).stiffness;
+    let wanted = 300.0 * (1.5 * TAU) * (1.5 * TAU);
+    assert!((k / wanted - 1.0).abs() < 0.01, "{k} against {wanted}");
+    assert!((lab.readout(element).effective_mass / 300.0 - 1.0).abs() < 0.01);
+    assert!(lab.app.world().get::<SpringTuning>(element).is_none());
+}

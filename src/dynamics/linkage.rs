@@ -1,0 +1,192 @@
+//! What joints and contacts leave of the mobility of bodies.
+//!
+//! With inverse masses W and constraints J v = 0, a push e moves a point along itself by
+//! e W eᵀ − e W Jᵀ (J W Jᵀ)⁻¹ J W eᵀ per impulse: the Schur complement of the saddle-point system (for instance
+//! D. Baraff, "Linear-time dynamics using Lagrange multipliers", 1996).
+
+use super::body::Body;
+use super::line::Line;
+use bevy::math::{DMat3, DVec3};
+use nalgebra::{DMatrix, DVector};
+
+/// Share of the greatest diagonal entry that is added to all of them: constraints may say the same twice. Pinned by
+/// `a_constraint_that_is_said_twice_counts_once`.
+const TWICE: f64 = 1e-9;
+
+/// One equation on velocities: the sum over its sides of linear · v + angular · ω is zero.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Constraint {
+    pub sides: [Option<Side>; 2],
+}
+
+/// What it says of one body.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Side {
+    pub body: usize,
+    pub linear: DVec3,
+    pub angular: DVec3,
+}
+
+impl Constraint {
+    /// The points of two bodies at `at` do not part along an axis.
+    pub(crate) fn along(axis: DVec3, at: DVec3, bodies: [Option<(usize, &Body)>; 2]) -> Self {
+        let side = |(end, sign): (usize, f64)| {
+            let (index, body) = bodies[end]?;
+            Some(Side {
+                body: index,
+                linear: sign * axis,
+                angular: (at - body.position).cross(sign * axis),
+            })
+        };
+        Self {
+            sides: [(0, -1.0), (1, 1.0)].map(side),
+        }
+    }
+
+    /// Two bodies do not turn against each other about an axis.
+    pub(crate) fn about(axis: DVec3, bodies: [Option<usize>; 2]) -> Self {
+        let side = |(end, sign): (usize, f64)| {
+            Some(Side {
+                body: bodies[end]?,
+                linear: DVec3::ZERO,
+                angular: sign * axis,
+            })
+        };
+        Self {
+            sides: [(0, -1.0), (1, 1.0)].map(side),
+        }
+    }
+
+    /// What an element pushes.
+    fn of_line(line: &Line) -> Self {
+        let side = |(end, sign): (usize, f64)| {
+            let hold = &line.holds[end];
+            let push = sign * line.direction;
+            let (linear, angular) = if hold.twist {
+                (DVec3::ZERO, push)
+            } else {
+                (push, hold.arm.cross(push))
+            };
+            Some(Side {
+                body: hold.body?,
+                linear,
+                angular,
+            })
+        };
+        Self {
+            sides: [(0, -1.0), (1, 1.0)].map(side),
+        }
+    }
+}
+
+/// Bodies, and what holds them.
+#[derive(Debug, Default)]
+pub(crate) struct Linkage {
+    pub bodies: Vec<Body>,
+    pub constraints: Vec<Constraint>,
+}
+
+impl Linkage {
+    /// What is left of the inverse mass of a line between two of the bodies, 1/kg.
+    pub(crate) fn inverse_mass(&self, line: &Line) -> f64 {
+        let inertia: Vec<DMat3> = self.bodies.iter().map(Body::inverse_inertia).collect();
+        let coupling = |a: &Constraint, b: &Constraint| -> f64 {
+            let mut sum = 0.0;
+            for x in a.sides.iter().flatten() {
+                for y in b.sides.iter().flatten().filter(|y| y.body == x.body) {
+                    sum += (self.bodies[x.body].inverse_mass * x.linear).dot(y.linear);
+                    sum += (inertia[x.body] * x.angular).dot(y.angular);
+                }
+            }
+            sum
+        };
+        let own = Constraint::of_line(line);
+        let free = coupling(&own, &own);
+        let count = self.constraints.len();
+        let mut matrix = DMatrix::from_fn(count, count, |i, j| {
+            coupling(&self.constraints[i], &self.constraints[j])
+        });
+        let most = matrix.diagonal().iter().fold(0.0_f64, |m, x| m.max(*x));
+        for i in 0..count {
+            matrix[(i, i)] += TWICE * most + f64::MIN_POSITIVE;
+        }
+        let side = DVector::from_fn(count, |i, _| coupling(&self.constraints[i], &own));
+        let held = matrix
+            .cholesky()
+            .map_or(0.0, |factors| side.dot(&factors.solve(&side)));
+        // What is held altogether leaves nothing but rounding.
+        let left = free - held;
+        if left > 10.0 * TWICE.sqrt() * free {
+            left
+        } else {
+            0.0
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::element::{End, Path};
+    use super::super::tests::{element, point, turning};
+    use super::*;
+
+    /// A rod of 1 m and 2 kg that lies along x, and a spring upward at its end.
+    fn rod() -> (Linkage, Line) {
+        let inertia = DVec3::new(1e-3, 2.0 / 12.0, 2.0 / 12.0);
+        let rod = point(2.0, DVec3::X * 0.5, DVec3::ZERO);
+        let bodies = vec![turning(rod, inertia, DVec3::ZERO)];
+        let hook = End::Path(Path::straight(DVec3::new(1.0, 1.0, 0.0), DVec3::ZERO));
+        let arm = DVec3::X * 0.5;
+        let element = element(hook, End::Body { index: 0, arm }, 1.0, 0.0, 1.0);
+        let line = element.line(&bodies).expect("a line");
+        let linkage = Linkage {
+            bodies,
+            constraints: Vec::new(),
+        };
+        (linkage, line)
+    }
+
+    #[test]
+    fn a_free_rod_has_the_mass_of_its_end() {
+        let (linkage, line) = rod();
+        let left = linkage.inverse_mass(&line);
+        assert!((left - line.inverse_mass).abs() < 1e-12);
+        assert!((left - 2.0).abs() < 1e-9, "1/m + (l/2)²/I: {left}");
+    }
+
+    #[test]
+    fn on_a_hinge_it_has_a_third_of_its_mass_at_the_end() {
+        let (mut linkage, line) = rod();
+        let body = linkage.bodies[0];
+        for axis in DVec3::AXES {
+            let on = [None, Some((0, &body))];
+            linkage
+                .constraints
+                .push(Constraint::along(axis, DVec3::ZERO, on));
+        }
+        for axis in [DVec3::X, DVec3::Y] {
+            linkage
+                .constraints
+                .push(Constraint::about(axis, [None, Some(0)]));
+        }
+        let left = linkage.inverse_mass(&line);
+        assert!((left - 1.5).abs() < 1e-6, "{left}");
+    }
+
+    #[test]
+    fn a_constraint_that_is_said_twice_counts_once() {
+        let (mut linkage, line) = rod();
+        let body = linkage.bodies[0];
+        for axis in DVec3::AXES.into_iter().chain(DVec3::AXES) {
+            let on = [None, Some((0, &body))];
+            linkage
+                .constraints
+                .push(Constraint::along(axis, DVec3::ZERO, on));
+        }
+        let left = linkage.inverse_mass(&line);
+        assert!((left - 1.5).abs() < 1e-6, "{left}");
+        let weld = DVec3::AXES.map(|axis| Constraint::about(axis, [None, Some(0)]));
+        linkage.constraints.extend(weld);
+        assert_eq!(linkage.inverse_mass(&line), 0.0, "a weld leaves nothing");
+    }
+}
