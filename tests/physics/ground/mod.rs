@@ -4,6 +4,7 @@
 
 mod bridge;
 mod cloth;
+mod drive;
 mod feet;
 mod heap;
 mod hinge;
