@@ -56,6 +56,30 @@ fn frames(c: &mut Criterion) {
     group.finish();
 }
 
+/// Cars on a road, which contacts and joints hold: whole frames, and our own systems.
+fn road(c: &mut Criterion) {
+    for (name, scene, count) in [
+        ("rolling", Scene::Rolling, 100),
+        ("parked", Scene::Parked, 1_000),
+    ] {
+        let mut group = c.benchmark_group(format!("road/{name}"));
+        group.sample_size(10);
+        group.throughput(Throughput::Elements(u64::from(count)));
+        for link in [Link::Ours, Link::Joint] {
+            let mut lazy = Lazy::new(|| scene.app(count, link, 1));
+            group.bench_function(BenchmarkId::new(format!("{link:?}"), count), |b| {
+                let app = lazy.app();
+                b.iter(|| app.update());
+            });
+        }
+        let mut lazy = Lazy::new(|| scene.app(count, Link::Ours, 1));
+        group.bench_function(BenchmarkId::new("own", count), |b| {
+            b.iter_custom(|frames| lazy.own(frames, |_| {}));
+        });
+        group.finish();
+    }
+}
+
 fn isolated(c: &mut Criterion) {
     let mut group = c.benchmark_group("own/isolated");
     group.sample_size(10);
@@ -121,5 +145,5 @@ fn churn(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, frames, isolated, networks, churn);
+criterion_group!(benches, frames, road, isolated, networks, churn);
 criterion_main!(benches);

@@ -1,5 +1,7 @@
 //! Scenes of many springs, and a clock around our own systems.
 
+mod road;
+
 use bevy::ecs::schedule::SingleThreadedExecutor;
 use bevy::prelude::*;
 use bevy::time::TimeUpdateStrategy;
@@ -75,6 +77,10 @@ pub enum Scene {
     Lattice,
     /// Many chassis, each on four springs held at its corners, with a wheel below each.
     Cars,
+    /// Cars of five bodies that roll on a road, one for each of `count`,
+    Rolling,
+    /// or stand there, asleep.
+    Parked,
 }
 
 /// What has come last and is the next to go.
@@ -127,6 +133,7 @@ impl Scene {
                 let n = edge(count);
                 3 * n * n * (n - 1)
             }
+            Self::Rolling | Self::Parked => 4 * count,
             _ => count,
         }
     }
@@ -183,12 +190,14 @@ impl Scene {
             }
             Self::Chain => chain(app.world_mut(), count, link),
             Self::Cars => cars(app.world_mut(), count),
+            Self::Rolling => road::cars(app.world_mut(), count, link, 3.0),
+            Self::Parked => road::cars(app.world_mut(), count, link, 0.0),
             Self::Lattice => lattice(app.world_mut(), count, link),
         }
-        let settle = if matches!(self, Self::Asleep | Self::AllButOne) {
-            200
-        } else {
-            20
+        let settle = match self {
+            Self::Asleep | Self::AllButOne => 200,
+            Self::Parked => 600,
+            _ => 20,
         };
         for _ in 0..settle {
             app.update();

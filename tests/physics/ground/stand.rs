@@ -8,7 +8,6 @@ use bevy_rapier3d::prelude::*;
 /// A spring of the scene.
 #[derive(Clone, Copy)]
 pub struct SceneSpring {
-    pub element: Entity,
     pub ends: [Entity; 2],
     pub anchors: [Vec3; 2],
     pub stiffness: f32,
@@ -83,7 +82,6 @@ impl Stand {
             Anchors::new(anchors[0], anchors[1]),
         ));
         self.coils.push(SceneSpring {
-            element,
             ends,
             anchors,
             stiffness,
