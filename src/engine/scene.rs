@@ -6,7 +6,7 @@ use super::companions::Companion;
 use super::energy::EnergyLedger;
 use super::forces::Share;
 use super::group::Groups;
-use super::inside::{Inside, Raised};
+use super::inside::{Inside, Raised, Sweeps};
 use super::renew::{Scratch, mix};
 use super::sleep::Rest;
 use super::still::Still;
@@ -301,6 +301,8 @@ pub struct Scene {
     pub(super) left: Vec<(Entity, Box<Inside>)>,
     /// Bodies that no element moves any more, and what they have besides forces.
     pub(super) unloaded: Vec<(Entity, RigidBodyHandle, Raised)>,
+    /// What contexts have been told besides.
+    pub(super) sweeps: EntityHashMap<Sweeps>,
 }
 
 impl Scene {

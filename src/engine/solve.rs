@@ -157,6 +157,11 @@ pub(crate) fn solve(
             &mut spare.inside,
         );
         let all_asleep = scene.step(context, &step, engine.bodies, spare) && held_asleep;
+        let sweeps = &mut simulation
+            .integration_parameters
+            .num_internal_pgs_iterations;
+        let told = scene.sweeps.entry(context).or_default();
+        told.raise(sweeps, spare.inside.sweeps());
         scene.still.note(context, all_asleep);
         scene.delivered |= step.delivered.into_inner();
     }

@@ -114,6 +114,7 @@ impl Finder<'_, '_> {
         let context = context?;
         let (set, colliders, joints, simulation) = self.sets.get(context).ok()?;
         let all = Holding {
+            contacts: true,
             bodies: &set.bodies,
             joints,
             colliders: &colliders.colliders,

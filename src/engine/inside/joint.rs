@@ -196,7 +196,7 @@ impl Joints {
         }
     }
 
-    /// Dampers that go before all springs are put in first: Rapier solves in that order.
+    /// A damper that is solved before all springs.
     pub(super) fn put_damper(&mut self, wanted: &Wanted, set: &mut ImpulseJointSet) {
         self.damper = wanted
             .damper

@@ -20,6 +20,8 @@ const POINTS: usize = 3;
 /// A Rapier context, as far as it holds bodies.
 #[derive(Clone, Copy)]
 pub(in crate::engine) struct Holding<'a> {
+    /// Contacts count too.
+    pub contacts: bool,
     pub bodies: &'a RigidBodySet,
     pub joints: &'a RapierContextJoints,
     pub colliders: &'a ColliderSet,
@@ -133,7 +135,7 @@ impl Found<'_> {
                 self.joint(&link.joint.data, [a, b]);
             }
         }
-        let Some(body) = all.bodies.get(handle) else {
+        let Some(body) = all.bodies.get(handle).filter(|_| all.contacts) else {
             return;
         };
         for collider in body.colliders() {

@@ -17,7 +17,7 @@ mod write;
 
 pub(super) use linkage::{Holding, inverse_mass};
 pub(super) use near::Outlook;
-pub(super) use raise::Raised;
+pub(super) use raise::{Raised, Sweeps};
 pub(super) use touch::{Crowd, Surroundings};
 pub(super) use write::{Engine as EngineParts, Solver};
 
@@ -62,10 +62,12 @@ pub(super) struct Inside {
 }
 
 /// What joints and contacts have left of an element's inverse mass.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 struct Leeway {
     /// 1/kg.
     left: f64,
+    /// Share of it that joints alone would leave.
+    jointed: f64,
     /// It is that of a step in which all that holds it was known.
     known: bool,
     /// What held its ends then,
@@ -78,6 +80,18 @@ struct Leeway {
 /// go of it: a foot that drums does so in every other step.
 const OLD: u32 = 64;
 const YOUNG: u32 = 8;
+
+impl Default for Leeway {
+    fn default() -> Self {
+        Self {
+            left: 0.0,
+            jointed: 1.0,
+            known: false,
+            by: Default::default(),
+            age: 0,
+        }
+    }
+}
 
 impl Leeway {
     /// Takes a step; says whether it is to be looked for anew, with such holds.

@@ -32,6 +32,8 @@ pub(super) struct Order {
     pub touched: bool,
     /// Of a torsion element.
     pub turn: Option<Turn>,
+    /// Share that joints leave of its inverse mass.
+    pub jointed: f64,
 }
 
 struct Frame {

@@ -35,6 +35,12 @@ pub(super) struct Plan {
 /// Share of all forces on a body that may be left of them where they are in balance. Pinned by `ground::heap`.
 const BALANCE: f64 = 5e-3;
 
+/// Share that joints leave of a damper's inverse mass below which a substep's one sweep over all joints is not enough,
+/// where without joints it would take more than such a share of its ends' speed in one substep. Pinned by
+/// `ground::hinge`.
+const LIGHT: f64 = 0.7;
+const DAMPED: f64 = 0.02;
+
 impl Plan {
     /// Reads a component; says whether all its bodies can be moved.
     pub(super) fn read(
@@ -97,6 +103,9 @@ impl Plan {
                 if inside.leeway.is_due(by, inside.rates.is_some()) {
                     let on = |body: usize| bodies[members.bodies[body]].handle;
                     inside.leeway.left = inverse_mass(&line, on, all);
+                    let contacts = false;
+                    let jointed = inverse_mass(&line, on, Holding { contacts, ..all });
+                    inside.leeway.jointed = jointed / line.inverse_mass;
                 }
                 row.inverse_mass = inside.leeway.left;
             }
@@ -177,6 +186,7 @@ impl Plan {
             lively: 0.0,
             touched,
             turn,
+            jointed: inside.leeway.jointed,
         }
     }
 
@@ -209,6 +219,15 @@ impl Plan {
             .filter(|order| order.tangent.is_undamped(substep))
             .map(|order| order.lively)
             .fold(0.0, f64::max)
+    }
+
+    /// Whether joints are to be solved more than once in substeps of so long: a damper is to know what they leave of a push.
+    pub(super) fn needs_more_sweeps(&self, substep: f64) -> bool {
+        self.orders.iter().any(|order| {
+            let damped = order.tangent.damping * order.line.inverse_mass * substep;
+            // Where contacts press, the engine's warm start has brought their answer already.
+            order.jointed < LIGHT && damped > DAMPED && !order.touched
+        })
     }
 
     /// Whether its joints may be solved in finer substeps than they are made for.

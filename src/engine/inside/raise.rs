@@ -1,4 +1,4 @@
-//! What a body is given besides forces, and what its user had ordered instead.
+//! What bodies and contexts are given besides forces, and what their user had ordered instead.
 
 use crate::engine::scene::BodyRow;
 use bevy_rapier3d::rapier::dynamics::RigidBody as RapierBody;
@@ -10,6 +10,17 @@ const STIFF: f64 = 0.3;
 
 /// How far ahead, in steps.
 const AHEAD: f64 = 1.5;
+
+/// Sweeps over all joints and contacts in a substep that a context has been told, and what stood there before.
+#[derive(Clone, Copy, Debug, Default)]
+pub(in crate::engine) struct Sweeps(Option<Replaced<usize>>);
+
+impl Sweeps {
+    /// Has a context's substeps make so many, or as many as its user asks for.
+    pub(in crate::engine) fn raise(&mut self, now: &mut usize, wanted: usize) {
+        *now = Replaced::order(&mut self.0, *now, wanted);
+    }
+}
 
 /// Such orders, and what stood there before.
 #[derive(Clone, Copy, Debug, Default)]

@@ -13,7 +13,7 @@ use crate::engine::step::Step;
 use bevy::math::Vec3;
 use bevy_rapier3d::prelude::RapierContextJoints;
 use bevy_rapier3d::rapier::dynamics::{
-    IslandManager, RigidBodyBuilder, RigidBodyHandle, RigidBodySet,
+    IslandManager, RigidBody as RapierBody, RigidBodyBuilder, RigidBodyHandle, RigidBodySet,
 };
 use bevy_rapier3d::rapier::geometry::{ColliderSet, NarrowPhase};
 use std::sync::atomic::Ordering;
@@ -21,6 +21,10 @@ use std::sync::atomic::Ordering;
 /// Least substeps of a step. With Rapier's own four, contacts of a wheel that rolls at 12 m/s are off by a twentieth of
 /// what it carries. Pinned by `ground::rolling`.
 const LEAST: u32 = 16;
+
+/// Sweeps over all joints and contacts in a substep where a damper has to know what joints leave of a push: with one, a
+/// lamp's arm rests where its damper still pushes. Pinned by `ground::hinge`.
+const SWEEPS: usize = 2;
 
 /// What of a Rapier context is written.
 pub(in crate::engine) struct Engine<'a> {
@@ -36,6 +40,8 @@ pub(in crate::engine) struct Solver {
     plans: Vec<Plan>,
     used: usize,
     wanted: Vec<Option<Wanted>>,
+    /// Sweeps over all joints and contacts that a substep needs.
+    sweeps: usize,
 }
 
 impl Inside {
@@ -81,7 +87,12 @@ impl Inside {
 
 impl Solver {
     pub(in crate::engine) fn clear(&mut self) {
-        self.used = 0;
+        (self.used, self.sweeps) = (0, 1);
+    }
+
+    /// Sweeps over all joints and contacts that a substep of what has been written needs.
+    pub(in crate::engine) fn sweeps(&self) -> usize {
+        self.sweeps
     }
 
     /// Reads a component that is held; says whether it is awake.
@@ -102,6 +113,7 @@ impl Solver {
         let plan = &mut self.plans[self.used];
         plan.group = group;
         let all = Holding {
+            contacts: true,
             bodies: engine.bodies,
             joints: engine.joints,
             colliders: engine.colliders,
@@ -153,6 +165,9 @@ impl Solver {
             let members = groups.members(group);
             let h = substep(chosen);
             let substeps = chosen as u32 * calls;
+            if plan.needs_more_sweeps(h) {
+                self.sweeps = SWEEPS;
+            }
             if !group.inside {
                 stagger(plan, -0.5 * h, &members, bodies, engine.bodies);
             }
@@ -196,7 +211,7 @@ impl Solver {
             groups.at(plan.group).inside = true;
             step.delivered.store(true, Ordering::Relaxed);
         }
-        self.clear();
+        self.used = 0;
     }
 
     /// Takes a component out of the engine's solver again; it has been read last.
@@ -310,7 +325,7 @@ fn join(
             inside.joints.remove(set);
         }
     }
-    let each = |elements: &mut [ElementRow], act: &mut dyn FnMut(&mut Inside, &Wanted)| {
+    let mut each = |act: &mut dyn FnMut(&mut Inside, &Wanted)| {
         for (order, wanted) in plan.orders.iter().zip(&*wanted) {
             if let (Some(inside), Some(wanted)) = (&mut elements[order.row].inside, wanted) {
                 act(inside, wanted);
@@ -318,15 +333,24 @@ fn join(
         }
     };
     if fit {
-        each(elements, &mut |inside, wanted| {
-            inside.joints.update(wanted, set)
-        });
-    } else {
-        each(elements, &mut |inside, wanted| {
-            inside.joints.put_damper(wanted, set)
-        });
-        each(elements, &mut |inside, wanted| {
-            inside.joints.put_spring(wanted, set)
-        });
+        each(&mut |inside, wanted| inside.joints.update(wanted, set));
+        return;
     }
+    let fixed = |wanted: &Wanted| {
+        let mut bodies = wanted.spring.bodies.iter();
+        bodies.any(|body| engine.bodies.get(*body).is_none_or(RapierBody::is_fixed))
+    };
+    // Rapier solves joints of two bodies in the order in which they come, and then those to a fixed one in the reverse
+    // order. Either way dampers are to go first: pinned by `ground::hinge`.
+    let mut put = |damper: bool, to_fixed: bool| {
+        each(&mut |inside, wanted| match () {
+            () if fixed(wanted) != to_fixed => {}
+            () if damper => inside.joints.put_damper(wanted, set),
+            () => inside.joints.put_spring(wanted, set),
+        });
+    };
+    put(true, false);
+    put(false, false);
+    put(false, true);
+    put(true, true);
 }

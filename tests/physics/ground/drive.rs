@@ -191,6 +191,29 @@ fn over(name: &str, mut car: Car, seconds: f64) {
 const LAW: [f32; 2] = [40e3, 3e3];
 
 #[test]
+fn a_car_whose_springs_stand_beside_its_wheels_rests_where_statics_say() {
+    for kind in ["ball", "cylinder"] {
+        let mut car = car(CoiloverPlugin::default(), kind, 0.1, 0.0, LAW);
+        let inward = |anchor: Vec3, corner: Vec3| anchor - Vec3::Z * 0.2 * corner.z.signum();
+        for coil in &mut car.scene.coils {
+            coil.anchors = coil.anchors.map(|anchor| inward(anchor, coil.anchors[0]));
+        }
+        let world = car.scene.lab.app.world_mut();
+        for mut anchors in world.query::<&mut Anchors>().iter_mut(world) {
+            let corner = anchors.a;
+            anchors.a = inward(corner, corner);
+            anchors.b = inward(anchors.b, corner);
+        }
+        car.brake();
+        car.scene.lab.run(20.0);
+        let sag = car.sag() / car.theory();
+        println!("springs beside {kind} wheels: sag × {sag:.5}");
+        assert!((sag - 1.0).abs() < 1e-3, "{kind}: {sag}");
+        assert_eq!(car.scene.awake(), 0, "{kind}: it sleeps");
+    }
+}
+
+#[test]
 fn over_a_kerb_at_twelve_metres_a_second() {
     for kind in ["ball", "cylinder"] {
         let mut car = car(CoiloverPlugin::default(), kind, 0.0, 12.0, LAW);

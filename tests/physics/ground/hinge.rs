@@ -56,3 +56,54 @@ fn a_stiff_spring_on_a_hinged_arm_wins_nothing() {
         }
     }
 }
+
+/// Twist of a torsion bar at rest over what statics say, that carries an arm with a load at its end.
+fn loaded_arm(damping: f32, inertia: f32, on_a_body: bool) -> f64 {
+    const ARM: f32 = 0.7;
+    const LOAD: f32 = 40.0;
+    const BAR: f32 = 700.0;
+    const SET: f32 = 0.45;
+    let mut lab = Lab::new();
+    let frame = if on_a_body {
+        lab.spawn((brick(1e4, Vec3::splat(1e5), Vec3::ZERO), LockedAxes::all()))
+    } else {
+        lab.spawn((RigidBody::Fixed, Transform::default()))
+    };
+    let hinge = RevoluteJointBuilder::new(Vec3::Z).build();
+    let arm = lab.spawn((
+        RigidBody::Dynamic,
+        AdditionalMassProperties::MassProperties(MassProperties {
+            local_center_of_mass: Vec3::X * ARM,
+            mass: LOAD,
+            principal_inertia: Vec3::splat(inertia),
+            ..default()
+        }),
+        Transform::from_rotation(Quat::from_rotation_z(SET)),
+        ImpulseJoint::new(frame, TypedJoint::RevoluteJoint(hinge)),
+    ));
+    let bar = lab.spawn(
+        TorsionSpringDamper::new(frame, arm, Vec3::Z)
+            .with_stiffness(BAR)
+            .with_damping(damping)
+            .with_rest_angle(SET),
+    );
+    lab.run(15.0);
+    let twist = f64::from(SET - lab.readout(bar).length);
+    let moment = f64::from(LOAD * ARM) * GRAVITY * (f64::from(SET) - twist).cos();
+    twist / (moment / f64::from(BAR))
+}
+
+#[test]
+fn an_arm_rests_where_statics_say_however_light_it_is_beside_its_load() {
+    let mut worst = 0.0_f64;
+    for on_a_body in [false, true] {
+        for (damping, inertia) in [(60.0, 0.4), (200.0, 0.4), (60.0, 5.0), (200.0, 5.0)] {
+            let twist = loaded_arm(damping, inertia, on_a_body);
+            println!(
+                "arm, {damping} N m s/rad, {inertia} kg m², on a body {on_a_body}: twist × {twist:.5}"
+            );
+            worst = worst.max((twist - 1.0).abs());
+        }
+    }
+    assert!(worst < 1e-3, "{worst}");
+}
