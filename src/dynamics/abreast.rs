@@ -230,7 +230,7 @@ impl Abreast {
 
 #[cfg(test)]
 mod tests {
-    use super::super::pair::Moving;
+    use super::super::moving::Moving;
     use super::super::tolerance::Motion;
     use super::*;
 

@@ -21,6 +21,7 @@ pub(crate) mod kick;
 pub(crate) mod law;
 pub(crate) mod line;
 pub(crate) mod linkage;
+pub(crate) mod moving;
 pub(crate) mod network;
 pub(crate) mod pair;
 pub(crate) mod points;

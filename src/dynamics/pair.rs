@@ -10,7 +10,6 @@ use super::line;
 use super::poles::{Poles, RESOLVED_PHASE};
 use super::shock::Shock;
 use super::step::EXTRAPOLATION_LIMIT;
-use super::tolerance::{Motion, VELOCITY_COUNTS};
 use bevy::math::DVec3;
 
 /// c h/m above which a step's energy is watched; see [`super::guard`].
@@ -63,68 +62,6 @@ pub(super) struct Line {
     pub pushed: f64,
 }
 
-/// A pair in motion, for [`super::tolerance`] to drive.
-pub(crate) struct Moving<'a> {
-    pub pair: &'a Pair,
-    pub state: Separation,
-    pub memo: &'a mut Memo,
-    saved: [Option<Separation>; 3],
-}
-
-impl<'a> Moving<'a> {
-    pub(crate) fn new(pair: &'a Pair, state: Separation, memo: &'a mut Memo) -> Self {
-        Self {
-            pair,
-            state,
-            memo,
-            saved: [None; 3],
-        }
-    }
-
-    /// What was saved last in a slot.
-    fn saved(&self, slot: usize) -> Separation {
-        self.saved[slot].unwrap_or(self.state)
-    }
-}
-
-impl Motion for Moving<'_> {
-    fn save(&mut self, slot: usize) {
-        self.saved[slot] = Some(self.state);
-    }
-
-    fn load(&mut self, slot: usize) {
-        self.state = self.saved(slot);
-    }
-
-    fn least(&mut self, _: f64) -> u32 {
-        1
-    }
-
-    fn run(&mut self, time: f64, count: u32) {
-        self.pair
-            .microsteps(&mut self.state, time, count, self.memo);
-    }
-
-    fn distance(&self, slot: usize) -> f64 {
-        let (a, b) = (&self.state, self.saved(slot));
-        let (moved, sped) = (a.d - b.d, a.v - b.v);
-        let along = a.direction.unwrap_or(DVec3::ZERO);
-        let axial = sped.dot(along);
-        // Along the line a wrong velocity swings back within a period.
-        let omega = (self.pair.stiffness * self.pair.inverse_mass).sqrt();
-        let counts = VELOCITY_COUNTS.min(omega.recip());
-        moved.length() + counts * axial.abs() + VELOCITY_COUNTS * (sped - axial * along).length()
-    }
-
-    fn extrapolate(&mut self, slot: usize) {
-        self.state.towards(&self.saved(slot));
-    }
-
-    fn is_resolved(&mut self, step: f64) -> bool {
-        self.pair.resolved(&self.state, step)
-    }
-}
-
 impl Separation {
     pub(crate) fn new(d: DVec3, v: DVec3, direction: Option<DVec3>) -> Self {
         Self {
@@ -165,7 +102,13 @@ impl Pair {
         self.rest_length > 0.0 && !self.is_watched(step)
     }
 
-    fn microsteps(&self, state: &mut Separation, time: f64, count: u32, memo: &mut Memo) {
+    pub(super) fn microsteps(
+        &self,
+        state: &mut Separation,
+        time: f64,
+        count: u32,
+        memo: &mut Memo,
+    ) {
         let step = time / f64::from(count);
         let poles = self.poles(step, memo);
         let mut aimed = self.aim(state, step);
@@ -296,7 +239,7 @@ impl Pair {
     }
 
     /// Whether a step resolves oscillation, decay, and the turning of the line.
-    fn resolved(&self, state: &Separation, step: f64) -> bool {
+    pub(super) fn resolved(&self, state: &Separation, step: f64) -> bool {
         let Some(line) = self.line(state) else {
             return false;
         };

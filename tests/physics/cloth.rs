@@ -182,17 +182,17 @@ fn balls_that_fall_on_a_cloth_win_no_energy() {
                  most {:+.3} of the falls' above the first, in the end no point faster than {:.2} m/s",
                 seen.gain, seen.fastest
             );
-            assert!(seen.gain < 0.1, "gained {}", seen.gain);
+            assert!(seen.gain < 1e-3, "gained {}", seen.gain);
             assert!(seen.rise <= 0.0, "rose by {} m", seen.rise);
-            assert!(seen.fastest < 10.0, "{} m/s", seen.fastest);
+            assert!(seen.fastest < 5.0, "{} m/s", seen.fastest);
         }
     }
 }
 
 /// Stiffness beyond what a step resolves (ω·dt of a point 6.7 and 15), under balls that weigh sixty times
-/// as much as what they fall on. Pressed together so hard, Rapier's contacts give energy too; it is taken back.
+/// as much as what they fall on.
 #[test]
-fn a_cloth_too_stiff_for_its_step_calms_down_under_balls() {
+fn a_cloth_too_stiff_for_its_step_wins_nothing_under_balls() {
     for (stiffness, damping, friction) in [
         (1000.0, 0.0, 0.5),
         (1000.0, 1.0, 0.0),
@@ -207,9 +207,8 @@ fn a_cloth_too_stiff_for_its_step_calms_down_under_balls() {
              faster than {:.2} m/s; with SpringJoints {:+.0}, {:+.2} m, {:.0} m/s",
             ours.gain, ours.rise, ours.fastest, joints.gain, joints.rise, joints.fastest
         );
-        assert!(ours.gain < 50.0, "gained {}", ours.gain);
+        assert!(ours.gain < 1e-3, "gained {}", ours.gain);
         assert!(ours.rise <= 0.0, "rose by {} m", ours.rise);
         assert!(ours.fastest < 5.0, "{} m/s", ours.fastest);
-        assert!(10.0 * ours.gain < joints.gain, "SpringJoint is no worse");
     }
 }

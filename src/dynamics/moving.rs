@@ -1,0 +1,68 @@
+//! A lone pair in motion, for [`super::tolerance`] to drive.
+
+use super::kick::Memo;
+use super::pair::{Pair, Separation};
+use super::tolerance::{Motion, VELOCITY_COUNTS};
+use bevy::math::DVec3;
+
+/// A pair in motion, for [`super::tolerance`] to drive.
+pub(crate) struct Moving<'a> {
+    pub pair: &'a Pair,
+    pub state: Separation,
+    pub memo: &'a mut Memo,
+    saved: [Option<Separation>; 3],
+}
+
+impl<'a> Moving<'a> {
+    pub(crate) fn new(pair: &'a Pair, state: Separation, memo: &'a mut Memo) -> Self {
+        Self {
+            pair,
+            state,
+            memo,
+            saved: [None; 3],
+        }
+    }
+
+    /// What was saved last in a slot.
+    fn saved(&self, slot: usize) -> Separation {
+        self.saved[slot].unwrap_or(self.state)
+    }
+}
+
+impl Motion for Moving<'_> {
+    fn save(&mut self, slot: usize) {
+        self.saved[slot] = Some(self.state);
+    }
+
+    fn load(&mut self, slot: usize) {
+        self.state = self.saved(slot);
+    }
+
+    fn least(&mut self, _: f64) -> u32 {
+        1
+    }
+
+    fn run(&mut self, time: f64, count: u32) {
+        self.pair
+            .microsteps(&mut self.state, time, count, self.memo);
+    }
+
+    fn distance(&self, slot: usize) -> f64 {
+        let (a, b) = (&self.state, self.saved(slot));
+        let (moved, sped) = (a.d - b.d, a.v - b.v);
+        let along = a.direction.unwrap_or(DVec3::ZERO);
+        let axial = sped.dot(along);
+        // Along the line a wrong velocity swings back within a period.
+        let omega = (self.pair.stiffness * self.pair.inverse_mass).sqrt();
+        let counts = VELOCITY_COUNTS.min(omega.recip());
+        moved.length() + counts * axial.abs() + VELOCITY_COUNTS * (sped - axial * along).length()
+    }
+
+    fn extrapolate(&mut self, slot: usize) {
+        self.state.towards(&self.saved(slot));
+    }
+
+    fn is_resolved(&mut self, step: f64) -> bool {
+        self.pair.resolved(&self.state, step)
+    }
+}
