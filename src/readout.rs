@@ -73,7 +73,7 @@ pub enum SpringMethod {
 impl SpringReadout {
     /// Spring and damper together, N, tension positive.
     pub const fn force(&self) -> f32 {
-        self.spring_force + self.damper_force
+        (self.spring_force + self.damper_force).clamp(-f32::MAX, f32::MAX)
     }
 
     pub(crate) fn note(&mut self, outcome: &Outcome) {

@@ -33,5 +33,11 @@ mod strut;
 mod system;
 pub(crate) mod tolerance;
 
+/// The nearest number that is finite in single precision: no overflow reaches the engine or a user.
+pub(crate) fn single(number: f64) -> f32 {
+    const MOST: f64 = f32::MAX as f64;
+    number.clamp(-MOST, MOST) as f32
+}
+
 #[cfg(test)]
 mod tests;

@@ -3,6 +3,7 @@
 use super::step::Terms;
 use crate::dynamics::body::{Body, Spin, turn};
 use crate::dynamics::delivery::{Delivery, force_for, torque_for};
+use crate::dynamics::single;
 use bevy::math::{DQuat, DVec3};
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::ExternalForce;
@@ -209,6 +210,11 @@ pub(super) fn straight(
     (linvel, rate)
 }
 
+/// In single precision, and finite whatever it was.
+fn finite(v: DVec3) -> Vec3 {
+    Vec3::from(v.to_array().map(single))
+}
+
 /// What takes a free body from its start to its end.
 pub(super) fn push(
     body: &RapierBody,
@@ -242,7 +248,7 @@ pub(super) fn push(
     Push {
         linvel: Some(linvel),
         angvel,
-        share: [force.as_vec3(), torque.as_vec3()],
+        share: [force, torque].map(finite),
         raised_iterations: terms.raised_iterations,
     }
 }

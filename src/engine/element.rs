@@ -82,6 +82,12 @@ pub(super) fn element(row: &mut ElementRow, ends: [End; 2], bodies: &[Body]) -> 
         row.trouble.set_passing(Some(fault));
         return None;
     };
+    if element.guide.is_twist() && line.inverse_mass == 0.0 {
+        let reason = "acts on nothing, for neither end can be turned about its axis";
+        row.trouble
+            .set_passing(Some(Fault::new(p.names.axis, reason)));
+        return None;
+    }
     let rate = line.motion(&element, bodies, 0.0).axial;
     if !element.is_sound(line.distance(), rate) {
         let fault = Fault::new("ForceLaw", "gives NaN or infinity");

@@ -7,6 +7,7 @@ use super::scene::{BodyRow, ElementRow, Held, Scene, turning_mark};
 use super::step::facing;
 use crate::dynamics::element::{End, Path};
 use crate::dynamics::guide::Guide;
+use crate::dynamics::single;
 use crate::element::{Spring, SpringDamper, SpringTuning, TorsionSpring, TorsionSpringDamper};
 use crate::readout::SpringReadout;
 use bevy::math::{DQuat, DVec3};
@@ -305,19 +306,19 @@ impl ElementRow {
 
     fn read_out(&self, (length, rate): (f64, f64), time: f64) -> SpringReadout {
         let mut readout = SpringReadout {
-            length: length as f32,
-            rate: rate as f32,
-            dissipated_energy: self.ledger.dissipated as f32,
-            work: self.ledger.work as f32,
+            length: single(length),
+            rate: single(rate),
+            dissipated_energy: single(self.ledger.dissipated),
+            work: single(self.ledger.work),
             ..default()
         };
         if self.trouble.passing().is_none() {
             let (elastic, drag) = (self.elastic(length), self.drag(length, rate));
-            readout.spring_force = elastic.force as f32;
-            readout.damper_force = drag as f32;
-            readout.stored_energy = elastic.energy as f32;
-            readout.dissipated_power = (drag * rate) as f32;
-            readout.omega_dt = ((elastic.stiffness * self.inverse_mass).sqrt() * time) as f32;
+            readout.spring_force = single(elastic.force);
+            readout.damper_force = single(drag);
+            readout.stored_energy = single(elastic.energy);
+            readout.dissipated_power = single(drag * rate);
+            readout.omega_dt = single((elastic.stiffness * self.inverse_mass).sqrt() * time);
             readout.effective_mass = self.inverse_mass.recip() as f32;
             readout.note(&self.outcome);
         }

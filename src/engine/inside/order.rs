@@ -5,6 +5,7 @@ use super::twist::Turn;
 use crate::dynamics::element::Element;
 use crate::dynamics::guide::Guide;
 use crate::dynamics::line::Line;
+use crate::dynamics::single;
 use crate::dynamics::soft::{self, Tangent};
 use crate::engine::scene::{ElementRow, Held};
 use bevy::math::{DQuat, DVec3, Quat, Vec3};
@@ -105,11 +106,11 @@ impl Order {
             rotations: frame.rotations,
             along: frame.along,
             substep: substep as f32,
-            stiffness: (scale * scale * stiffness) as f32,
-            damping: (scale * scale * damping).max(nothing) as f32,
-            target: target as f32,
-            force: (scale * force) as f32,
-            most: (scale * limit).min(f64::from(f32::MAX)) as f32,
+            stiffness: single(scale * scale * stiffness),
+            damping: single((scale * scale * damping).max(nothing)),
+            target: single(target),
+            force: single(scale * force),
+            most: single(scale * limit),
         };
         Some(Wanted {
             damper: apart.then(|| joint(0.0, damping, 0.0)),

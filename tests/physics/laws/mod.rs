@@ -5,6 +5,7 @@ mod bad;
 mod blows;
 mod breaking;
 mod driven;
+mod extreme;
 mod given;
 mod ledger;
 mod light;
