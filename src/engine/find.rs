@@ -3,13 +3,14 @@
 use super::body::is_movable;
 use super::check::{Fault, Parameters};
 use super::ends::{Ends, Place};
+use super::renew::mix;
 use crate::dynamics::guide::Guide;
 use bevy::ecs::entity::EntityHashSet;
 use bevy::ecs::system::SystemParam;
 use bevy::math::DVec3;
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
-use bevy_rapier3d::rapier::dynamics::RigidBodyHandle;
+use bevy_rapier3d::rapier::dynamics::{RigidBody as RapierBody, RigidBodyHandle};
 
 /// Finds the ends of elements and judges them.
 #[derive(SystemParam)]
@@ -31,8 +32,17 @@ pub(crate) struct Finder<'w, 's> {
 /// Both ends of a sound element.
 pub(super) struct Found {
     pub(super) places: [Place; 2],
-    /// Whether elements can move the body at each end, and if so whether this one turns it.
-    turns: [Option<bool>; 2],
+    /// The bodies at both ends that elements can move.
+    movable: [Option<Movable>; 2],
+}
+
+/// What is found of a body that elements can move.
+#[derive(Clone, Copy)]
+struct Movable {
+    /// The element turns it.
+    turns: bool,
+    /// See [`Wanted::rank`].
+    rank: u64,
 }
 
 /// A body that elements can move.
@@ -41,6 +51,8 @@ pub(super) struct Wanted {
     pub(super) handle: RigidBodyHandle,
     pub(super) context: Entity,
     pub(super) turns: bool,
+    /// Where it stands among the bodies of a component, whenever it was spawned: a hash of how it was first found.
+    pub(super) rank: u64,
     /// Which elements acted on it before, as a hash.
     pub(super) signature: u64,
 }
@@ -48,8 +60,8 @@ pub(super) struct Wanted {
 impl Found {
     /// The bodies that elements can move.
     pub(super) fn movable(&self) -> impl Iterator<Item = Wanted> {
-        let ends = self.places.iter().zip(self.turns);
-        ends.filter_map(|(place, turns)| match (*place, turns) {
+        let ends = self.places.iter().zip(self.movable);
+        ends.filter_map(|(place, movable)| match (*place, movable) {
             (
                 Place::OnBody {
                     entity,
@@ -57,12 +69,13 @@ impl Found {
                     context,
                     ..
                 },
-                Some(turns),
+                Some(Movable { turns, rank }),
             ) => Some(Wanted {
                 entity,
                 handle,
                 context,
                 turns,
+                rank,
                 signature: 0,
             }),
             _ => None,
@@ -101,7 +114,7 @@ impl Finder<'_, '_> {
                 "is in another Rapier context than body_a",
             ));
         }
-        let mut turns = [None; 2];
+        let mut movable = [None; 2];
         for (i, place) in places.iter().enumerate() {
             let field = parameters.names.ends[i];
             let alone = matches!(place, Place::Point(_));
@@ -111,21 +124,21 @@ impl Finder<'_, '_> {
                     "is not a rigid body, so it has no frame to turn in",
                 ));
             }
-            turns[i] = self.turns(place, field, modified)?;
-            if let Some(turns) = &mut turns[i] {
-                *turns |= guide.turns();
+            movable[i] = self.movable(place, field, modified)?;
+            if let Some(body) = &mut movable[i] {
+                body.turns |= guide.turns();
             }
         }
-        Ok(Found { places, turns })
+        Ok(Found { places, movable })
     }
 
-    /// Whether the body of this end can be moved, and is held off its centre of mass.
-    fn turns(
+    /// The body of this end, if it can be moved, and whether it is held off its centre of mass.
+    fn movable(
         &mut self,
         place: &Place,
         field: &'static str,
         modified: &EntityHashSet,
-    ) -> Result<Option<bool>, Fault> {
+    ) -> Result<Option<Movable>, Fault> {
         let Place::OnBody {
             entity,
             handle,
@@ -159,6 +172,20 @@ impl Finder<'_, '_> {
             ));
         }
         let arm = local - body.local_center_of_mass().as_dvec3();
-        Ok(Some(arm.length() > 1e-7))
+        Ok(Some(Movable {
+            turns: arm.length() > 1e-7,
+            rank: rank(body),
+        }))
     }
+}
+
+/// A number for a body that does not depend on when it was spawned. Two bodies of the same mass at the same place have the
+/// same one.
+fn rank(body: &RapierBody) -> u64 {
+    let place = body.position();
+    let numbers = place.translation.to_array().into_iter();
+    let numbers = numbers
+        .chain(place.rotation.to_array())
+        .chain([body.mass()]);
+    numbers.fold(0, |sum, number| mix(sum ^ u64::from(number.to_bits())))
 }

@@ -58,11 +58,11 @@ fn root(parent: &mut [usize], mut at: usize) -> usize {
     at
 }
 
-/// An order of elements that does not depend on when they were spawned.
-fn rank(row: &ElementRow) -> impl Ord + use<> {
+/// An order of elements that does not depend on when they or their bodies were spawned.
+fn rank(row: &ElementRow, bodies: &[BodyRow]) -> impl Ord + use<> {
     let p = &row.parameters;
     (
-        p.ends,
+        [0, 1].map(|end| row.movable(end).map(|b| bodies[b].rank)),
         p.anchors.map(|a| a.to_array().map(f32::to_bits)),
         [p.stiffness, p.damping, p.rest_length.unwrap_or(-1.0)].map(f32::to_bits),
         row.entity,
@@ -107,7 +107,13 @@ impl Groups {
             .windows(2)
             .filter(|group| group[1] > group[0] + 1)
         {
-            self.elements[group[0]..group[1]].sort_by_cached_key(|e| rank(&elements[*e]));
+            self.elements[group[0]..group[1]].sort_by_cached_key(|e| rank(&elements[*e], bodies));
+        }
+        for group in body_starts
+            .windows(2)
+            .filter(|group| group[1] > group[0] + 1)
+        {
+            self.bodies[group[0]..group[1]].sort_by_key(|b| bodies[*b].rank);
         }
         self.list.clear();
         self.list.extend((0..count).map(|g| Group {

@@ -203,7 +203,10 @@ impl Scene {
             for (slot, body) in wanted.iter().enumerate() {
                 while before.next_if(|row| row.entity < body.entity).is_some() {}
                 let row = before.next_if(|row| row.entity == body.entity);
-                let fresh = BodyRow::new(body.entity, body.handle, body.context);
+                let fresh = BodyRow {
+                    rank: body.rank,
+                    ..BodyRow::new(body.entity, body.handle, body.context)
+                };
                 let same = row.filter(|row| row.handle == body.handle);
                 self.bodies.push(same.copied().unwrap_or(fresh));
                 self.index.insert(body.entity, slot);

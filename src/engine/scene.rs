@@ -174,6 +174,8 @@ pub(super) struct BodyRow {
     pub group: u32,
     /// and its own within that.
     pub slot: usize,
+    /// Its place among the bodies of its component: see [`super::find::Wanted::rank`].
+    pub rank: u64,
     /// How many elements act on it.
     pub elements: u32,
     /// Which ones, as a hash; a change wakes it.
@@ -191,6 +193,7 @@ impl BodyRow {
             handle,
             context,
             turns: false,
+            rank: 0,
             elements: 0,
             signature: 0,
             disturbed: true,
