@@ -8,7 +8,7 @@
 use super::body::Body;
 use super::element::{Element, End};
 use super::energy::{Energy, take};
-use super::network::RESOLVED;
+use super::resolution::RESOLVED;
 use bevy::math::DVec3;
 
 /// Share of kinetic and stored energy by which the sum may seem to be too large: what a step of second order

@@ -26,6 +26,7 @@ pub(crate) mod network;
 pub(crate) mod pair;
 pub(crate) mod points;
 pub(crate) mod poles;
+mod resolution;
 pub(crate) mod shock;
 pub(crate) mod soft;
 pub(crate) mod step;

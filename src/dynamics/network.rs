@@ -15,7 +15,7 @@ use super::body::{Body, Spin};
 use super::element::{Element, End};
 use super::kick;
 use super::line::{Line, Motion};
-use super::step::ways;
+use super::resolution::ways;
 use super::strut::{NOBODY, Strut, Twists};
 use super::system::{Effort, System};
 use bevy::math::DVec3;
@@ -28,8 +28,6 @@ pub(super) use placement::{damper_placement, placement, settling};
 
 /// (ω h)² of the stiffest mode up to which it is placed exactly.
 const PLACED: f64 = 9.0;
-/// (ω h)² of the stiffest mode beyond which a network steps finer.
-pub(crate) const RESOLVED: f64 = 4.0;
 
 /// (ω h)² up to which a law's own slope is taken, and c h/m up to which its damping's is.
 const SMOOTH: f64 = 1.0;

@@ -8,8 +8,8 @@ use super::kick::Memo;
 use super::law::Law;
 use super::line;
 use super::poles::{Poles, RESOLVED_PHASE};
+use super::resolution::EXTRAPOLATION_LIMIT;
 use super::shock::Shock;
-use super::step::EXTRAPOLATION_LIMIT;
 use bevy::math::DVec3;
 
 /// c h/m above which a step's energy is watched; see [`super::guard`].

@@ -13,7 +13,7 @@ mod survey;
 use super::body::{Body, Spin};
 use super::element::{Element, End, rounding};
 use super::guide::Guide;
-use super::step::EXTRAPOLATION_LIMIT;
+use super::resolution::EXTRAPOLATION_LIMIT;
 use super::tolerance::{Motion, velocity_counts};
 use bevy::math::DVec3;
 pub(crate) use carry::{Flight, FreePoint};
@@ -280,7 +280,7 @@ impl Motion for Points {
 
     fn least(&mut self, time: f64) -> u32 {
         let (z, _) = self.bounds(time);
-        let finer = super::step::finer(z);
+        let finer = super::resolution::finer(z);
         self.stiffest = z / f64::from(finer * finer);
         finer
     }

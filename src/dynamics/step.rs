@@ -7,8 +7,9 @@ use super::energy::Energy;
 use super::guard::Guard;
 use super::guide::Guide;
 use super::kick::{self, Map, Memo};
-use super::network::{Network, RESOLVED};
+use super::network::Network;
 use super::points::Points;
+use super::resolution::{EXTRAPOLATION_LIMIT, finer};
 use super::shock::Apart;
 use super::tolerance::{
     Accuracy, Controller, Method, Motion, Outcome, VELOCITY_COUNTS, velocity_counts,
@@ -20,13 +21,6 @@ mod carry;
 mod keep;
 
 use bends::Bends;
-pub(super) use bends::ways;
-
-/// Phase per coarse step up to which the fourth-order combination converges.
-pub(super) const EXTRAPOLATION_LIMIT: f64 = 1.5;
-
-/// Most that a network steps finer by itself to resolve a stiff mode.
-const EXTRA_STEPS: u32 = 4;
 
 /// Bodies that elements connect, with those elements: what has to be solved together. Kept from step to
 /// step by whoever fills it, so that nothing is allocated anew.
@@ -252,16 +246,6 @@ impl Component {
                 end.drift(time);
             }
         }
-    }
-}
-
-/// Micro-steps that resolve a network's stiffest mode, of (ω h)² = `z`; one where that is out of reach.
-pub(super) fn finer(z: f64) -> u32 {
-    let finer = (z / RESOLVED).sqrt().ceil();
-    if finer <= f64::from(EXTRA_STEPS) {
-        finer.max(1.0) as u32
-    } else {
-        1
     }
 }
 

@@ -3,7 +3,7 @@
 use super::body::{Push, push, read};
 use super::carry::Carry;
 use super::element::element;
-use super::scene::{BodyRow, ElementRow, pull_mark};
+use super::rows::{BodyRow, ElementRow, Members, pull_mark};
 use super::sleep::omega_of;
 use super::step::Step;
 use crate::dynamics::body::Body;
@@ -42,12 +42,6 @@ pub(super) enum State {
     Powerless,
     /// To be advanced.
     Ready,
-}
-
-/// The rows of one component within the scene's.
-pub(super) struct Members<'a> {
-    pub elements: &'a [usize],
-    pub bodies: &'a [usize],
 }
 
 impl Assembly {

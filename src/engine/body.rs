@@ -1,8 +1,7 @@
 //! A Rapier body as the integrator's body, and the way back.
 
-use super::step::Terms;
 use crate::dynamics::body::{Body, Spin, turn};
-use crate::dynamics::delivery::{Delivery, force_for, torque_for};
+use crate::dynamics::delivery::{Delivery, Schedule, force_for, torque_for};
 use crate::dynamics::single;
 use bevy::math::{DQuat, DVec3};
 use bevy::prelude::*;
@@ -23,6 +22,13 @@ pub(super) struct Engine {
     pub farthest_turn: f64,
     pub length_unit: f32,
     pub gravity: Vec3,
+}
+
+/// How the engine will step one body.
+pub(super) struct Terms {
+    pub schedule: Schedule,
+    /// It is given a second solver iteration for that.
+    pub raised_iterations: bool,
 }
 
 /// Position and velocity of a point fixed to a body (`local` in its frame).

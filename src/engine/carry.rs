@@ -1,10 +1,11 @@
 //! A network of points that only the engine has moved since its last step goes on as it is: no more is read
 //! than where its bodies are, and no more written than what they are given.
 
-use super::assembly::{Assembly, Members, State};
+use super::assembly::{Assembly, State};
 use super::body::is_movable;
 use super::point::FreePoint;
-use super::scene::{BodyRow, ElementRow, pull_mark};
+use super::rows::Members;
+use super::rows::{BodyRow, ElementRow, pull_mark};
 use super::step::Step;
 use bevy::math::Vec3;
 use bevy_rapier3d::rapier::dynamics::RigidBodySet;

@@ -2,7 +2,7 @@
 
 use super::body::turning_of;
 use super::check::Fault;
-use super::scene::{BodyRow, ElementRow, Held};
+use super::rows::{BodyRow, ElementRow, Held};
 use super::step::Step;
 use crate::dynamics::body::Body;
 use crate::dynamics::element::{Element, End, Path};

@@ -1,19 +1,10 @@
 //! Where an element's energy comes from and goes.
 
-use super::scene::ElementRow;
+use super::rows::ElementRow;
 use crate::dynamics::element::{Element, End};
 use crate::dynamics::law::Elastic;
 use crate::dynamics::pair::{Pair, Separation};
 use bevy::math::DVec3;
-
-/// Since the element began to act, J.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct EnergyLedger {
-    /// Turned into heat.
-    pub dissipated: f64,
-    /// Done on it by changes of its parameters and by ends that something else moves.
-    pub work: f64,
-}
 
 impl ElementRow {
     /// Tension without damping at a length, its slope, and the stored energy.

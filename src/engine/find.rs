@@ -3,7 +3,7 @@
 use super::body::is_movable;
 use super::check::{Fault, Parameters};
 use super::ends::{Ends, Place};
-use super::renew::mix;
+use super::rows::mix;
 use crate::dynamics::guide::Guide;
 use bevy::ecs::entity::EntityHashSet;
 use bevy::ecs::system::SystemParam;

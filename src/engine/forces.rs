@@ -1,8 +1,8 @@
 //! One `ExternalForce` per body, two owners: the user's share and ours, kept apart.
 
 use super::body::Push;
-use super::scene::{BodyRow, Scene};
-use super::solve::Loads;
+use super::rows::{BodyRow, Share};
+use super::scene::Scene;
 use bevy::ecs::entity_disabling::Disabled;
 use bevy::ecs::query::Allow;
 use bevy::prelude::*;
@@ -31,15 +31,19 @@ pub struct SpringLoad {
     raised_iterations: bool,
 }
 
-/// What a body is given over a step.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Share {
-    force: Vec3,
-    /// A torque too, which stands elsewhere.
-    turns: bool,
-    /// With a second solver iteration, which has to be given back.
-    raised_iterations: bool,
-}
+/// Loads of bodies, also of disabled ones: their share must be taken back too.
+pub(super) type Loads<'w, 's> = Query<
+    'w,
+    's,
+    (
+        Entity,
+        &'static mut SpringLoad,
+        Option<&'static mut ExternalForce>,
+        Option<&'static RapierRigidBodyHandle>,
+        Option<&'static RapierContextEntityLink>,
+    ),
+    Allow<Disabled>,
+>;
 
 /// Adds the elements' share to the user's and puts the sum into the engine.
 #[inline(always)]

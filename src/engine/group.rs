@@ -1,8 +1,9 @@
 //! Which elements have to be solved together.
 
-use super::assembly::{Assembly, Members};
-use super::renew::mix;
-use super::scene::{BodyRow, ElementRow};
+use super::assembly::Assembly;
+use super::rows::Members;
+use super::rows::mix;
+use super::rows::{BodyRow, ElementRow};
 use bevy::platform::collections::HashMap;
 use bevy::prelude::Entity;
 use bevy_rapier3d::rapier::dynamics::RigidBodyHandle;

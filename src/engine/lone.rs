@@ -3,10 +3,10 @@
 //! Most elements of most scenes are of this kind. Whatever is out of the ordinary about one (contacts,
 //! joints, locked axes, ends that coincide, a sleeping end) is left to [`super::assembly`].
 
-use super::assembly::Members;
 use super::group::{Group, Groups};
-use super::point::{Flight, FreePoint};
-use super::scene::{BodyRow, ElementRow};
+use super::point::{Flight, FreePoint, Handled};
+use super::rows::Members;
+use super::rows::{BodyRow, ElementRow};
 use super::step::Step;
 use crate::dynamics::abreast::{ABREAST, Abreast};
 use crate::dynamics::body::is_within;
@@ -16,23 +16,8 @@ use crate::dynamics::moving::Moving;
 use crate::dynamics::pair::{Pair, Separation};
 use crate::dynamics::shock::Shock;
 use crate::dynamics::tolerance::{Method, Outcome};
-use bevy_rapier3d::rapier::dynamics::{RigidBodyHandle, RigidBodySet};
+use bevy_rapier3d::rapier::dynamics::RigidBodySet;
 use std::hint::black_box;
-
-/// What became of a lone element.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Handled {
-    /// Read; to be solved with others.
-    Aloft,
-    /// It has no body any more that it could move.
-    Done,
-    /// Asleep; and if so, only these, its bodies, can wake it.
-    Asleep(Option<[RigidBodyHandle; 2]>),
-    /// Out of the ordinary in this step.
-    No,
-    /// Out of the ordinary for as long as can be seen.
-    Never,
-}
 
 /// How many are read before they are solved: few enough to be in the first cache still when they are delivered.
 pub(super) const FLOCK: usize = 2 * ABREAST;

@@ -2,8 +2,9 @@
 
 use super::body::{center_of, is_movable, point_of, rotation_of};
 use super::parts::IsElement;
-use super::prepare::report;
-use super::scene::{BodyRow, ElementRow, Held, Scene, turning_mark};
+use super::report::report;
+use super::rows::{BodyRow, ElementRow, Held, turning_mark};
+use super::scene::Scene;
 use super::step::facing;
 use crate::dynamics::element::{End, Path};
 use crate::dynamics::guide::Guide;

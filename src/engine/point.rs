@@ -2,14 +2,30 @@
 //! takes it on.
 
 use super::body::{Push, straight};
-use super::lone::Handled;
-use super::scene::BodyRow;
+use super::rows::BodyRow;
 use super::sleep::keep_awake;
 use super::step::Step;
 pub(super) use crate::dynamics::points::{Flight, FreePoint};
 use bevy::math::Vec3;
-use bevy_rapier3d::rapier::dynamics::{LockedAxes, RigidBody as RapierBody, RigidBodySet};
+use bevy_rapier3d::rapier::dynamics::{
+    LockedAxes, RigidBody as RapierBody, RigidBodyHandle, RigidBodySet,
+};
 use std::sync::atomic::Ordering;
+
+/// What became of a lone element.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Handled {
+    /// Read; to be solved with others.
+    Aloft,
+    /// It has no body any more that it could move.
+    Done,
+    /// Asleep; and if so, only these, its bodies, can wake it.
+    Asleep(Option<[RigidBodyHandle; 2]>),
+    /// Out of the ordinary in this step.
+    No,
+    /// Out of the ordinary for as long as can be seen.
+    Never,
+}
 
 const LOCKED: LockedAxes = LockedAxes::TRANSLATION_LOCKED;
 

@@ -6,10 +6,10 @@ use super::ends::{Ends, Place};
 use super::find::Finder;
 use super::forces::SpringLoad;
 use super::parts::{ChangedParts, IsElement, Parts};
-use super::scene::{BodyRow, ElementRow, Held, Scene};
+use super::report::report;
+use super::rows::{BodyRow, ElementRow, Held};
+use super::scene::Scene;
 use super::watch::Watch;
-use crate::element::SpringFault;
-use crate::readout::SpringReadout;
 use bevy::ecs::entity::EntityHashSet;
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
@@ -225,35 +225,5 @@ fn still_faulty(
             true
         }
         Ok(_) => false,
-    }
-}
-
-/// Says once what is wrong with an element, and takes it back once it is mended.
-pub(super) fn report(row: &mut ElementRow, commands: &mut Commands) {
-    let Some(news) = row.trouble.news() else {
-        return;
-    };
-    match news {
-        Some(fault) => {
-            let fault = SpringFault {
-                entity: row.entity,
-                field: fault.field.into(),
-                reason: fault.reason.into(),
-            };
-            log::warn!("{fault}");
-            let mut element = commands.entity(row.entity);
-            element.try_insert(fault);
-            if row.trouble.lasting().is_some() {
-                // What it shows would be taken for a force that still acts.
-                element.queue_silenced(|mut element: EntityWorldMut| {
-                    if let Some(mut readout) = element.get_mut::<SpringReadout>() {
-                        *readout = SpringReadout::default();
-                    }
-                });
-            }
-        }
-        None => {
-            commands.entity(row.entity).try_remove::<SpringFault>();
-        }
     }
 }

@@ -1,35 +1,16 @@
 //! All rows anew: elements and bodies entered, what was known of both carried over.
 
-use super::check::{Parameters, Trouble};
-use super::companions::{Companion, Companions};
+use super::check::Parameters;
+use super::companions::Companions;
 use super::ends::Place;
-use super::find::{Finder, Found, Wanted};
-use super::inside::Inside;
+use super::find::{Finder, Wanted};
 use super::parts::{IsElement, Parts};
-use super::prepare::report;
-use super::scene::{BodyRow, ElementRow, Held, Memory, Scene};
-use bevy::ecs::entity::{EntityHashMap, EntityHashSet};
+use super::report::report;
+use super::rows::{BodyRow, ElementRow, mix};
+use super::scene::{Scene, Scratch};
+use bevy::ecs::entity::EntityHashSet;
 use bevy::prelude::*;
 use std::mem::{swap, take};
-
-/// What is needed only while rows are made anew. Kept between, for its memory alone.
-#[derive(Default)]
-pub(super) struct Scratch {
-    /// The ends of every element, or none of an inert one.
-    found: Vec<Option<Found>>,
-    /// The rows of bodies as they were.
-    bodies: Vec<BodyRow>,
-    /// The bodies that there are to be, in the order of their entities.
-    wanted: Vec<Wanted>,
-}
-
-impl Scratch {
-    fn clear(&mut self) {
-        self.found.clear();
-        self.bodies.clear();
-        self.wanted.clear();
-    }
-}
 
 impl Scene {
     /// Makes all rows anew. Bodies stand in the order of their entities, and within a component elements
@@ -221,85 +202,4 @@ impl Scene {
             row.disturbed |= modified.contains(&row.entity);
         }
     }
-}
-
-impl ElementRow {
-    /// An inert row.
-    fn new(entity: Entity) -> Self {
-        Self {
-            entity,
-            parameters: Parameters::NONE,
-            companion: Companion::default(),
-            ledger: default(),
-            held: [Held::NOWHERE; 2],
-            watched: [true; 2],
-            on: [None; 2],
-            placed: false,
-            trouble: Trouble::default(),
-            changed: false,
-            refitted: false,
-            captured: false,
-            tuned: false,
-            tuned_again: false,
-            active: false,
-            memory: Memory::default(),
-            inverse_mass: 0.0,
-            outcome: default(),
-            inside: None,
-        }
-    }
-
-    /// What it has in the engine's solver, and in which context.
-    fn take_inside(&mut self) -> Option<(Entity, Box<Inside>)> {
-        let inside = self.inside.take()?;
-        Some((inside.context?, inside))
-    }
-
-    /// Makes it an inert one but for what is known of the element.
-    fn reset(&mut self) {
-        if self.trouble.lasting().is_some() {
-            // Where its ends were when it last acted would make a leap of today's place.
-            self.memory.places = [None; 2];
-        }
-        self.held = [Held::NOWHERE; 2];
-        self.watched = [true; 2];
-        self.on = [None; 2];
-        self.placed = false;
-        self.captured = false;
-        self.tuned = false;
-        self.active = false;
-        self.inverse_mass = 0.0;
-        self.outcome = default();
-    }
-
-    /// Holds an end where it was found.
-    fn hold(&mut self, end: usize, place: &Place, index: &EntityHashMap<usize>) {
-        self.held[end] = match *place {
-            Place::OnBody {
-                entity,
-                handle,
-                context,
-                local,
-            } => {
-                let direct = entity == self.parameters.ends[end];
-                self.watched[end] = !direct || self.parameters.anchors[end] != Vec3::ZERO;
-                self.on[end] = index.get(&entity).map(|index| *index as u32);
-                Held::Body {
-                    handle,
-                    context,
-                    local,
-                }
-            }
-            Place::Point(to) => Held::Path {
-                from: self.memory.places[end].unwrap_or(to),
-                to,
-            },
-        };
-    }
-}
-
-/// Spreads an entity's bits, so that sums of them tell sets apart.
-pub(super) fn mix(bits: u64) -> u64 {
-    let x = (bits ^ (bits >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb)
 }

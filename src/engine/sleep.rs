@@ -5,12 +5,11 @@
 //! each has been at rest, and at the same place, for longer than a turning point lasts; and one that is
 //! disturbed is woken as a whole.
 
-use super::assembly::Members;
 use super::body::is_movable;
-use super::scene::{BodyRow, ElementRow};
+use super::rows::Members;
+use super::rows::{BodyRow, ElementRow, Rest};
 use super::step::Step;
 use crate::dynamics::body::Body;
-use bevy::math::{Quat, Vec3};
 use bevy_rapier3d::rapier::dynamics::{RigidBody as RapierBody, RigidBodySet};
 
 /// Speed (m/s, rad/s; times the engine's length unit) that counts as rest.
@@ -30,16 +29,6 @@ const QUIET: f32 = 2.0;
 /// Rounding of a position that is not motion, in units of its last place: a stiff spring answers each
 /// of them with a speed of ω times that.
 const ROUNDING: f32 = 4.0;
-
-/// A body at rest: for how long, and where it has been so.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Rest {
-    position: Vec3,
-    rotation: Quat,
-    seconds: f32,
-    /// It has been so for long enough.
-    is_long: bool,
-}
 
 /// Its greatest radius of gyration, but a metre at most and two centimetres at least, m.
 fn size_of(body: &RapierBody) -> f32 {

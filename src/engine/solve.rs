@@ -2,16 +2,16 @@
 
 use super::assembly::Assembly;
 use super::body::{Engine, FARTHEST_TURN};
-use super::forces::{self, SpringLoad};
+use super::forces::{self, Loads};
 use super::group::{Group, Groups};
 use super::inside::{Crowd, EngineParts, Outlook, Solver, Surroundings};
-use super::lone::{FLOCK, Flock, Handled, call_up};
-use super::scene::{BodyRow, ElementRow, Scene};
+use super::lone::{FLOCK, Flock, call_up};
+use super::point::Handled;
+use super::rows::{BodyRow, ElementRow};
+use super::scene::Scene;
 use super::step::Step;
 use super::timestep::Plan;
 use crate::settings::CoiloverSettings;
-use bevy::ecs::entity_disabling::Disabled;
-use bevy::ecs::query::Allow;
 use bevy::prelude::*;
 use bevy::tasks::ComputeTaskPool;
 use bevy_rapier3d::prelude::*;
@@ -31,20 +31,6 @@ type ContextParts<'a> = (
     &'a RapierConfiguration,
     &'a SimulationToRenderTime,
 );
-
-/// Loads of bodies, also of disabled ones: their share must be taken back too.
-pub(super) type Loads<'w, 's> = Query<
-    'w,
-    's,
-    (
-        Entity,
-        &'static mut SpringLoad,
-        Option<&'static mut ExternalForce>,
-        Option<&'static RapierRigidBodyHandle>,
-        Option<&'static RapierContextEntityLink>,
-    ),
-    Allow<Disabled>,
->;
 
 /// Elements in networks that are about to be solved, above which it is worth waking other threads, and the few
 /// allocations that this takes: the only ones of a warm step.

@@ -1,7 +1,7 @@
 //! What holds for every component of a context in this step, and what they all need.
 
-use super::body::{Engine, is_movable, point_after, point_of, turning_of};
-use super::scene::{ElementRow, Held};
+use super::body::{Engine, Terms, is_movable, point_after, point_of, turning_of};
+use super::rows::{ElementRow, Held};
 use super::timestep::Plan;
 use crate::dynamics::delivery::Schedule;
 use crate::dynamics::guide::Guide;
@@ -25,13 +25,6 @@ pub(super) struct Step {
     pub quiet: bool,
     /// Something was given to some body.
     pub delivered: AtomicBool,
-}
-
-/// How the engine will step one body.
-pub(super) struct Terms {
-    pub schedule: Schedule,
-    /// It is given a second solver iteration for that.
-    pub raised_iterations: bool,
 }
 
 /// Rotation and angular velocity of what holds an end that elements cannot turn.

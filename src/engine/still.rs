@@ -3,7 +3,6 @@
 //! What sleeps is woken by the engine's step, after which its bodies are among the active ones, or by
 //! somebody who changes the engine's bodies, which the ECS tells.
 
-use super::scene::Scene;
 use bevy::ecs::change_detection::Tick;
 use bevy::ecs::entity::EntityHashMap;
 use bevy::prelude::*;
@@ -15,6 +14,13 @@ use bevy_rapier3d::prelude::{RapierContextSimulation, RapierRigidBodySet};
 pub(super) struct Still(EntityHashMap<Option<Tick>>);
 
 impl Still {
+    /// After bevy_rapier's write-back, which marks every set as changed in every tick.
+    pub(super) fn mark(&mut self, changed: impl Fn(Entity) -> Option<Tick>) {
+        for (context, tick) in &mut self.0 {
+            *tick = changed(*context);
+        }
+    }
+
     /// Keeps in mind what a step has found.
     pub(super) fn note(&mut self, context: Entity, all_asleep: bool) {
         if all_asleep {
@@ -33,12 +39,5 @@ impl Still {
     ) -> bool {
         self.0.get(&context) == Some(&Some(set.last_changed()))
             && simulation.islands.num_active_bodies() == 0
-    }
-}
-
-/// After bevy_rapier's write-back, which marks every set as changed in every tick.
-pub(crate) fn mark(mut scene: ResMut<Scene>, sets: Query<Ref<RapierRigidBodySet>>) {
-    for (context, changed) in &mut scene.still.0 {
-        *changed = sets.get(*context).ok().map(|set| set.last_changed());
     }
 }

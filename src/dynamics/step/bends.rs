@@ -6,7 +6,7 @@
 
 use super::Component;
 use crate::dynamics::element::Element;
-use crate::dynamics::line::Motion;
+use crate::dynamics::resolution::ways;
 use std::f64::consts::PI;
 
 /// ω h of micro-steps around a bend, the most of them in a step for that, and ω h above which they are none the better.
@@ -17,9 +17,6 @@ const COARSE: f64 = 1.0;
 /// Elements up to which a network takes micro-steps for bends: where there are more, one blow is a small share of all,
 /// and one or the other bends in every step.
 const FEW: usize = 64;
-
-/// How far ahead it looks, as a multiple of the way in a step.
-const AHEAD: f64 = 1.25;
 
 /// Share of the stiffness that has to change at a bend, for anything to be lost there.
 const SHARP: f64 = 0.1;
@@ -89,10 +86,4 @@ impl Component {
                 && (there - here.1).abs() > SHARP * there.max(here.1)
         })
     }
-}
-
-/// Ways along the line that the present motion can lead to in a step, as fast as it is in its middle and in its end
-/// under what acts from outside.
-pub(crate) fn ways(motion: &Motion, time: f64) -> [f64; 2] {
-    [0.5, 1.0].map(|share| AHEAD * time * (motion.axial + share * time * motion.pushed))
 }

@@ -1,10 +1,10 @@
 //! What joints and contacts leave of the mass at an element's ends, read from the engine.
 
-use super::joint::is_ours;
 use crate::dynamics::body::Body;
 use crate::dynamics::line::Line;
 use crate::dynamics::linkage::{Constraint, Linkage};
 use crate::engine::body::{is_movable, read};
+use crate::engine::held::is_ours;
 use bevy::math::{DVec3, Vec3};
 use bevy_rapier3d::prelude::{ExternalForce, RapierContextJoints};
 use bevy_rapier3d::rapier::dynamics::{GenericJoint, JointAxesMask, RigidBodyHandle, RigidBodySet};

@@ -4,7 +4,7 @@
 //! before that does not answer the blow until the next step, and its energy is won from nothing. So a component of stiff
 //! springs that is free looks ahead.
 
-use crate::engine::scene::BodyRow;
+use crate::engine::rows::BodyRow;
 use bevy_rapier3d::parry;
 use bevy_rapier3d::parry::bounding_volume::{Aabb, BoundingVolume};
 use bevy_rapier3d::parry::query::DefaultQueryDispatcher;

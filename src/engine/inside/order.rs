@@ -1,13 +1,13 @@
 //! What one element is to do inside the engine's solver, and the joints that make it do so.
 
-use super::joint::{Along, SoftJoint, Wanted};
-use super::twist::Turn;
 use crate::dynamics::element::Element;
 use crate::dynamics::guide::Guide;
 use crate::dynamics::line::Line;
 use crate::dynamics::single;
 use crate::dynamics::soft::{self, Tangent};
-use crate::engine::scene::{ElementRow, Held};
+use crate::engine::held::Turn;
+use crate::engine::held::{Along, SoftJoint, Wanted};
+use crate::engine::rows::{ElementRow, Held};
 use bevy::math::{DQuat, DVec3, Quat, Vec3};
 use bevy_rapier3d::rapier::dynamics::RigidBodyHandle;
 

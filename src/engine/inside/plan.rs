@@ -1,17 +1,17 @@
 //! What the engine's solver is to be given for a component: read from its bodies and elements, before anything is written.
 
-use super::Inside;
 use super::linkage::{Holding, inverse_mass};
 use super::order::Order;
-use super::twist::Turn;
 use crate::dynamics::body::Body;
 use crate::dynamics::element::Element;
 use crate::dynamics::line::Line;
 use crate::dynamics::soft::Tangent;
-use crate::engine::assembly::Members;
 use crate::engine::body::read;
 use crate::engine::element::element;
-use crate::engine::scene::{BodyRow, ElementRow};
+use crate::engine::held::Inside;
+use crate::engine::held::Turn;
+use crate::engine::rows::Members;
+use crate::engine::rows::{BodyRow, ElementRow};
 use crate::engine::step::Step;
 use bevy::math::DVec3;
 use std::mem::take;

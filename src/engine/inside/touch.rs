@@ -1,7 +1,7 @@
 //! Whether contacts or joints hold a body.
 
-use super::joint::is_ours;
-use crate::engine::scene::BodyRow;
+use crate::engine::held::is_ours;
+use crate::engine::rows::BodyRow;
 use bevy::math::Vec3;
 use bevy_rapier3d::parry;
 use bevy_rapier3d::parry::bounding_volume::BoundingVolume;

@@ -1,14 +1,14 @@
 //! Into the engine: joints, substeps, and what a body needs besides them.
 
-use super::Inside;
-use super::joint::Wanted;
 use super::linkage::Holding;
 use super::plan::Plan;
 use crate::dynamics::soft::Fineness;
-use crate::engine::assembly::Members;
 use crate::engine::body::Push;
 use crate::engine::group::Groups;
-use crate::engine::scene::{BodyRow, ElementRow, Held};
+use crate::engine::held::Inside;
+use crate::engine::held::Wanted;
+use crate::engine::rows::Members;
+use crate::engine::rows::{BodyRow, ElementRow, Held};
 use crate::engine::step::Step;
 use bevy::math::Vec3;
 use bevy_rapier3d::prelude::RapierContextJoints;

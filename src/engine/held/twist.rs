@@ -45,7 +45,12 @@ pub(in crate::engine) struct Turn {
 
 impl Turn {
     /// The gradient of an element's twist in the middle of a step; none where it has no meaning.
-    pub(super) fn of(element: &Element, line: &Line, bodies: &[Body], time: f64) -> Option<Self> {
+    pub(in crate::engine) fn of(
+        element: &Element,
+        line: &Line,
+        bodies: &[Body],
+        time: f64,
+    ) -> Option<Self> {
         let [a, b] = element
             .ends
             .each_ref()
@@ -69,7 +74,7 @@ impl Turn {
     }
 
     /// Least damping in units of stiffness, s.
-    pub(super) fn across_damping(&self, time: f64) -> f64 {
+    pub(in crate::engine) fn across_damping(&self, time: f64) -> f64 {
         ACROSS * self.across * self.leverage * time
     }
 
@@ -81,7 +86,7 @@ impl Turn {
 
     /// The twist after a step that began with `before`, where it now seems to be `seen` within some turns, and whether it
     /// still is another one. `slipped` if it was before the step; `energy` is what the element stores at a twist.
-    pub(super) fn arrive(
+    pub(in crate::engine) fn arrive(
         &self,
         [before, seen]: [f64; 2],
         relative: DQuat,

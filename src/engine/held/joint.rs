@@ -21,7 +21,7 @@ pub(in crate::engine) fn is_ours(joint: &ImpulseJoint) -> bool {
 
 /// What a joint acts along.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Along {
+pub(in crate::engine) enum Along {
     /// From anchor to anchor.
     Distance,
     /// The x axis of the first frame.
@@ -32,7 +32,7 @@ pub(super) enum Along {
 
 /// One joint, in numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct SoftJoint {
+pub(in crate::engine) struct SoftJoint {
     pub bodies: [RigidBodyHandle; 2],
     pub anchors: [Vec3; 2],
     pub rotations: [Quat; 2],
@@ -124,14 +124,14 @@ const EXACT: f64 = 3e-7;
 /// The joints of one element: its damper alone, where that is to be solved before all springs, and its spring with the
 /// damper otherwise.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Joints {
+pub(in crate::engine) struct Joints {
     damper: Option<(ImpulseJointHandle, SoftJoint)>,
     spring: Option<(ImpulseJointHandle, SoftJoint)>,
 }
 
 /// What an element's joints are to be.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Wanted {
+pub(in crate::engine) struct Wanted {
     pub damper: Option<SoftJoint>,
     pub spring: SoftJoint,
 }
@@ -170,12 +170,12 @@ fn update(
 
 impl Joints {
     /// How many there are.
-    pub(super) fn count(&self) -> usize {
+    pub(in crate::engine) fn count(&self) -> usize {
         usize::from(self.damper.is_some()) + usize::from(self.spring.is_some())
     }
 
     /// Whether other numbers are all that these need.
-    pub(super) fn fit(&self, wanted: &Wanted, set: &ImpulseJointSet) -> bool {
+    pub(in crate::engine) fn fit(&self, wanted: &Wanted, set: &ImpulseJointSet) -> bool {
         let there = |known: &Option<(ImpulseJointHandle, SoftJoint)>| {
             known.is_none_or(|(handle, _)| set.contains(handle))
         };
@@ -187,7 +187,7 @@ impl Joints {
     }
 
     /// Takes them out of the engine.
-    pub(super) fn remove(&mut self, set: &mut ImpulseJointSet) {
+    pub(in crate::engine) fn remove(&mut self, set: &mut ImpulseJointSet) {
         for (handle, _) in [self.damper.take(), self.spring.take()]
             .into_iter()
             .flatten()
@@ -197,19 +197,19 @@ impl Joints {
     }
 
     /// A damper that is solved before all springs.
-    pub(super) fn put_damper(&mut self, wanted: &Wanted, set: &mut ImpulseJointSet) {
+    pub(in crate::engine) fn put_damper(&mut self, wanted: &Wanted, set: &mut ImpulseJointSet) {
         self.damper = wanted
             .damper
             .as_ref()
             .and_then(|damper| insert(set, damper));
     }
 
-    pub(super) fn put_spring(&mut self, wanted: &Wanted, set: &mut ImpulseJointSet) {
+    pub(in crate::engine) fn put_spring(&mut self, wanted: &Wanted, set: &mut ImpulseJointSet) {
         self.spring = insert(set, &wanted.spring);
     }
 
     /// Other numbers.
-    pub(super) fn update(&mut self, wanted: &Wanted, set: &mut ImpulseJointSet) {
+    pub(in crate::engine) fn update(&mut self, wanted: &Wanted, set: &mut ImpulseJointSet) {
         if let Some(damper) = &wanted.damper {
             update(set, &mut self.damper, damper);
         }

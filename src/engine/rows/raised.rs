@@ -1,15 +1,6 @@
 //! What bodies and contexts are given besides forces, and what their user had ordered instead.
 
-use crate::engine::scene::BodyRow;
 use bevy_rapier3d::rapier::dynamics::RigidBody as RapierBody;
-
-/// ω·dt of a body's springs above which its contacts have to be seen a step ahead. What the engine finds too late it pushes
-/// out of the ground, or stops at its surface, and either compresses a stiff spring. Pinned by `ground::feet` and
-/// `ground::nets`.
-const STIFF: f64 = 0.3;
-
-/// How far ahead, in steps.
-const AHEAD: f64 = 1.5;
 
 /// Sweeps over all joints and contacts in a substep that a context has been told, and what stood there before.
 #[derive(Clone, Copy, Debug, Default)]
@@ -50,7 +41,7 @@ impl<T: Copy + Default + PartialEq + PartialOrd> Replaced<T> {
 
 impl Raised {
     /// Has the engine solve a body in so many iterations more than its own, or as many as its user asks for.
-    pub(super) fn raise(&mut self, body: &mut RapierBody, iterations: usize) {
+    pub(in crate::engine) fn raise(&mut self, body: &mut RapierBody, iterations: usize) {
         let now = body.additional_solver_iterations();
         let ours = Replaced::order(&mut self.iterations, now, iterations);
         if ours != now {
@@ -59,7 +50,7 @@ impl Raised {
     }
 
     /// Has the engine see its contacts so far ahead, m.
-    fn look_ahead(&mut self, body: &mut RapierBody, way: f32) {
+    pub(in crate::engine) fn look_ahead(&mut self, body: &mut RapierBody, way: f32) {
         let now = body.soft_ccd_prediction();
         let ours = Replaced::order(&mut self.prediction, now, way);
         if ours != now {
@@ -81,21 +72,5 @@ impl Raised {
     /// Whether there is anything to give back.
     pub(in crate::engine) fn is_any(&self) -> bool {
         self.iterations.is_some() || self.prediction.is_some()
-    }
-}
-
-impl BodyRow {
-    /// Has the engine see contacts of a body ahead that stiff springs push, in steps of `time` seconds.
-    /// Says whether they are stiff.
-    pub(in crate::engine) fn look_ahead(&mut self, body: &mut RapierBody, time: f64) -> bool {
-        let inverse_mass = f64::from(body.mass_properties().local_mprops.inv_mass);
-        let stiff = self.stiffness * inverse_mass * time * time > STIFF * STIFF;
-        let way = if stiff && self.can_touch {
-            AHEAD * time * f64::from(body.linvel().length())
-        } else {
-            0.0
-        };
-        self.raised.look_ahead(body, way as f32);
-        stiff
     }
 }

@@ -1,0 +1,28 @@
+//! How far ahead the engine has to see the contacts of what stiff springs push.
+
+use crate::engine::rows::BodyRow;
+use bevy_rapier3d::rapier::dynamics::RigidBody as RapierBody;
+
+/// ω·dt of a body's springs above which its contacts have to be seen a step ahead. What the engine finds too late it pushes
+/// out of the ground, or stops at its surface, and either compresses a stiff spring. Pinned by `ground::feet` and
+/// `ground::nets`.
+const STIFF: f64 = 0.3;
+
+/// How far ahead, in steps.
+const AHEAD: f64 = 1.5;
+
+impl BodyRow {
+    /// Has the engine see contacts of a body ahead that stiff springs push, in steps of `time` seconds.
+    /// Says whether they are stiff.
+    pub(in crate::engine) fn look_ahead(&mut self, body: &mut RapierBody, time: f64) -> bool {
+        let inverse_mass = f64::from(body.mass_properties().local_mprops.inv_mass);
+        let stiff = self.stiffness * inverse_mass * time * time > STIFF * STIFF;
+        let way = if stiff && self.can_touch {
+            AHEAD * time * f64::from(body.linvel().length())
+        } else {
+            0.0
+        };
+        self.raised.look_ahead(body, way as f32);
+        stiff
+    }
+}

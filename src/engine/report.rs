@@ -1,0 +1,36 @@
+//! What is wrong with an element is said once.
+
+use super::rows::ElementRow;
+use crate::element::SpringFault;
+use crate::readout::SpringReadout;
+use bevy::prelude::*;
+
+/// Says once what is wrong with an element, and takes it back once it is mended.
+pub(super) fn report(row: &mut ElementRow, commands: &mut Commands) {
+    let Some(news) = row.trouble.news() else {
+        return;
+    };
+    match news {
+        Some(fault) => {
+            let fault = SpringFault {
+                entity: row.entity,
+                field: fault.field.into(),
+                reason: fault.reason.into(),
+            };
+            log::warn!("{fault}");
+            let mut element = commands.entity(row.entity);
+            element.try_insert(fault);
+            if row.trouble.lasting().is_some() {
+                // What it shows would be taken for a force that still acts.
+                element.queue_silenced(|mut element: EntityWorldMut| {
+                    if let Some(mut readout) = element.get_mut::<SpringReadout>() {
+                        *readout = SpringReadout::default();
+                    }
+                });
+            }
+        }
+        None => {
+            commands.entity(row.entity).try_remove::<SpringFault>();
+        }
+    }
+}
