@@ -1,7 +1,5 @@
 //! Where each part lies along the line from end A to end B: lengths alone, no directions.
 
-use super::coil::Coil;
-use super::telescope::Telescope;
 use bevy::prelude::*;
 
 /// Which part of an element a drawn child is.
@@ -24,10 +22,6 @@ pub(super) enum Part {
 
 /// Shorter than this nothing has a direction or a size of its own, m.
 pub(super) const SHORT: f32 = 1e-5;
-/// Stroke, as a share of the length when first drawn.
-const STROKE: f32 = 0.5;
-/// At full stroke this share of the tube still holds the rod.
-const OVERLAP: f32 = 0.15;
 /// However far they are pulled, it holds this share.
 const LEAST_OVERLAP: f32 = 0.05;
 
@@ -41,60 +35,22 @@ pub(super) struct Layout {
     /// How far anything reaches from the line between the ends.
     pub reach: f32,
     /// Outer radius of the eyes.
-    eye: f32,
+    pub eye: f32,
     /// From an end to where the tube or rod proper begins.
-    body: f32,
+    pub body: f32,
     /// From an end to where the coil stands, above its spring seat.
-    foot: f32,
+    pub foot: f32,
     /// From end A to the tube's mouth.
-    tube: f32,
+    pub tube: f32,
     /// From end B to the rod's tip.
-    rod: f32,
+    pub rod: f32,
     /// Length of the bump rubber.
-    bump: f32,
+    pub bump: f32,
     /// Length at which the coil's turns touch.
     pub solid: f32,
 }
 
 impl Layout {
-    /// Where the ends were `first` apart when first drawn.
-    pub fn new(coil: Option<&Coil>, telescope: Option<&Telescope>, first: f32) -> Self {
-        let mut out = Self::default();
-        if let Some(coil) = coil {
-            out.coil_radius = coil.radius;
-            out.wire_radius = coil.wire_radius;
-            out.solid = coil.solid_length();
-            out.reach = out.coil_radius + 2.0 * out.wire_radius;
-        }
-        let Some(telescope) = telescope else {
-            return out;
-        };
-        out.tube_radius = telescope.tube_radius;
-        out.rod_radius = telescope.rod_radius;
-        out.reach = out.reach.max(2.0 * out.tube_radius);
-        out.eye = if telescope.eyes {
-            1.25 * telescope.tube_radius
-        } else {
-            0.0
-        };
-        out.body = 0.8 * out.eye;
-        out.foot = out.body + 1.5 * out.wire_radius;
-
-        let stroke = telescope.stroke.unwrap_or(STROKE * first).min(1.9 * first);
-        let (shortest, longest) = (first - 0.5 * stroke, first + 0.5 * stroke);
-        let head = out.foot + 0.5 * out.tube_radius;
-        let tube = (shortest - head).max(0.6 * shortest);
-        out.tube = telescope.tube_length.unwrap_or(tube);
-        let rod = longest - out.tube * (1.0 - OVERLAP);
-        let room = (shortest - out.body).max(0.5 * shortest);
-        out.rod = telescope.rod_length.unwrap_or(rod.min(room));
-        if telescope.bump_rubber {
-            // As long as leaves three quarters of the way in free.
-            out.bump = 0.25 * (first - out.tube - out.foot).max(0.0);
-        }
-        out
-    }
-
     /// From end A to the tube's mouth where the ends are this far apart: the tube does not poke through
     /// what is at end B.
     pub fn mouth(&self, length: f32) -> f32 {
@@ -151,6 +107,8 @@ impl Layout {
 
 #[cfg(test)]
 mod tests {
+    use super::super::coil::Coil;
+    use super::super::telescope::Telescope;
     use super::*;
 
     fn cases() -> impl Iterator<Item = (Telescope, Option<Coil>)> {

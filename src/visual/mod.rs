@@ -7,6 +7,7 @@
 //! keeps one of each for all equal springs.
 
 mod coil;
+mod fitting;
 mod gizmos;
 mod heading;
 mod helix;
