@@ -1,4 +1,7 @@
+// Links between pages: the first definition counts, so these take the place of those to files.
+#![doc = include_str!("../docs/guide/on_docs_rs.md")]
 #![doc = include_str!("../README.md")]
+#![cfg_attr(docsrs, feature(doc_cfg))]
 
 mod diagnostics;
 mod dynamics;
@@ -50,6 +53,82 @@ impl PluginGroup for CoiloverPlugins {
         let group = group.add(CoiloverVisualPlugin);
         group
     }
+}
+
+#[doc = include_str!("../docs/guide/on_docs_rs.md")]
+#[doc = include_str!("../docs/guide/README.md")]
+pub mod guide {
+    #[doc = include_str!("../docs/guide/on_docs_rs.md")]
+    #[doc = include_str!("../docs/guide/how_it_works.md")]
+    pub mod how_it_works {}
+
+    #[doc = include_str!("../docs/guide/on_docs_rs.md")]
+    #[doc = include_str!("../docs/guide/first_spring.md")]
+    pub mod first_spring {}
+
+    #[doc = include_str!("../docs/guide/on_docs_rs.md")]
+    #[doc = include_str!("../docs/guide/stiffness_and_damping.md")]
+    pub mod stiffness_and_damping {}
+
+    #[doc = include_str!("../docs/guide/on_docs_rs.md")]
+    #[doc = include_str!("../docs/guide/car.md")]
+    pub mod car {}
+
+    #[doc = include_str!("../docs/guide/on_docs_rs.md")]
+    #[doc = include_str!("../docs/guide/ropes.md")]
+    pub mod ropes {}
+
+    #[doc = include_str!("../docs/guide/on_docs_rs.md")]
+    #[doc = include_str!("../docs/guide/cloth.md")]
+    pub mod cloth {}
+
+    #[doc = include_str!("../docs/guide/on_docs_rs.md")]
+    #[doc = include_str!("../docs/guide/torsion.md")]
+    pub mod torsion {}
+
+    #[doc = include_str!("../docs/guide/on_docs_rs.md")]
+    #[doc = include_str!("../docs/guide/breaking_and_stops.md")]
+    pub mod breaking_and_stops {}
+
+    #[doc = include_str!("../docs/guide/on_docs_rs.md")]
+    #[doc = include_str!("../docs/guide/actuators.md")]
+    pub mod actuators {}
+
+    #[doc = include_str!("../docs/guide/on_docs_rs.md")]
+    #[doc = include_str!("../docs/guide/custom_forces.md")]
+    pub mod custom_forces {}
+
+    #[doc = include_str!("../docs/guide/on_docs_rs.md")]
+    #[doc = include_str!("../docs/guide/looks.md")]
+    pub mod looks {}
+
+    #[doc = include_str!("../docs/guide/on_docs_rs.md")]
+    #[doc = include_str!("../docs/guide/accuracy.md")]
+    pub mod accuracy {}
+
+    #[doc = include_str!("../docs/guide/on_docs_rs.md")]
+    #[doc = include_str!("../docs/guide/performance.md")]
+    pub mod performance {}
+
+    #[doc = include_str!("../docs/guide/on_docs_rs.md")]
+    #[doc = include_str!("../docs/guide/multiplayer.md")]
+    pub mod multiplayer {}
+
+    #[doc = include_str!("../docs/guide/on_docs_rs.md")]
+    #[doc = include_str!("../docs/guide/troubleshooting.md")]
+    pub mod troubleshooting {}
+
+    #[doc = include_str!("../docs/guide/on_docs_rs.md")]
+    #[doc = include_str!("../docs/guide/coming_from.md")]
+    pub mod coming_from {}
+
+    #[doc = include_str!("../docs/guide/on_docs_rs.md")]
+    #[doc = include_str!("../docs/accuracy.md")]
+    pub mod measured {}
+
+    #[doc = include_str!("../docs/guide/on_docs_rs.md")]
+    #[doc = include_str!("../docs/limits.md")]
+    pub mod limits {}
 }
 
 /// Everything that a game needs.
