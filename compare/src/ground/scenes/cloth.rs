@@ -26,14 +26,18 @@ pub const SCENE: Scene = Scene {
     quick: false,
 };
 
+fn is_rim(point: usize) -> bool {
+    let (x, z) = (point % SIDE, point / SIDE);
+    [x, z].iter().any(|n| *n == 0 || *n == SIDE - 1)
+}
+
 fn cloth() -> Stage {
     let mut stage = Stage::default();
     let middle = 0.5 * (SIDE - 1) as f32;
     for i in 0..SIDE * SIDE {
         let (x, z) = (i % SIDE, i / SIDE);
         let at = PITCH * Vec3::new(x as f32 - middle, 0.0, z as f32 - middle) + Vec3::Y * 3.0;
-        let rim = [x, z].iter().any(|n| *n == 0 || *n == SIDE - 1);
-        stage.part(if rim {
+        stage.part(if is_rim(i) {
             Part::held(Motion::Fixed, at, None)
         } else {
             // Points collide with balls alone.
@@ -44,7 +48,8 @@ fn cloth() -> Stage {
     for i in 0..SIDE * SIDE {
         let (x, z) = (i % SIDE, i / SIDE);
         for (fits, j) in [(x + 1 < SIDE, i + 1), (z + 1 < SIDE, i + SIDE)] {
-            if fits {
+            // Between two fixed points there is nothing to pull.
+            if fits && !(is_rim(i) && is_rim(j)) {
                 stage.coil([i, j], [Vec3::ZERO; 2], [3e3, 1.0], Some(0.8 * PITCH));
             }
         }
