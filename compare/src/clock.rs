@@ -39,6 +39,8 @@ pub struct Track<'a> {
     pub make: &'a dyn Fn(Setting) -> Rig,
     /// Updates before the clock runs.
     pub warm_up: u32,
+    /// Updates from turn to turn at least, so that turns of one update each meet the whole scene.
+    pub apart: u32,
     /// Most simulated seconds before it starts anew.
     pub longest: f64,
 }
@@ -64,6 +66,7 @@ pub fn race(problem: &Problem, settings: &[Setting], turns: u32) -> Vec<Times> {
     let track = Track {
         make: &|setting| Rig::new(problem, setting),
         warm_up: WARM_UP,
+        apart: 0,
         longest: problem.seconds.clamp(3.0, LONGEST),
     };
     race_on(&track, settings, turns)
@@ -98,7 +101,8 @@ pub fn race_on(track: &Track, settings: &[Setting], turns: u32) -> Vec<Times> {
             if !needed(runner) {
                 continue;
             }
-            if f64::from(runner.ticks + runner.batch) * runner.setting.dt() > longest {
+            let idle = track.apart.saturating_sub(runner.batch);
+            if f64::from(runner.ticks + runner.batch + idle) * runner.setting.dt() > longest {
                 runner.rig = track.warm(runner.setting);
                 runner.ticks = track.warm_up;
             }
@@ -109,6 +113,8 @@ pub fn race_on(track: &Track, settings: &[Setting], turns: u32) -> Vec<Times> {
                 rig.tick();
                 *ticks += 1;
             });
+            (0..idle).for_each(|_| runner.rig.tick());
+            runner.ticks += idle;
             runner.turns.push(each);
         }
     }

@@ -24,6 +24,8 @@ use std::path::Path;
 
 /// Updates before the clock runs: what falls has fallen on something by then.
 const WARM_UP: u32 = 60;
+/// Updates from turn to turn at least: fifteen turns meet what happens in nine seconds.
+const APART: u32 = 36;
 /// Most simulated seconds before the clock's scene starts anew.
 const LONGEST: f64 = 10.0;
 
@@ -196,6 +198,7 @@ fn measure(scene: &'static Scene, speed: f32, methods: &[Method], turns: u32) ->
     let track = Track {
         make: &|setting| rig(&stage, setting),
         warm_up: WARM_UP,
+        apart: APART,
         longest: LONGEST,
     };
     let times = race_on(&track, &settings, turns);

@@ -8,17 +8,20 @@ use std::fmt::Write;
 
 /// Words, and one table of all scenes and methods.
 pub fn section(told: &[Told]) -> String {
-    let mut text = String::from(
+    let release = told.iter().all(|t| t.release);
+    let build = if release { "--release " } else { "" };
+    let mut text = format!(
         "## On the ground and on joints\n\n\
-         Made by `cargo run --release -p compare -- --scene ground`. \
+         Made by `cargo run {build}-p compare -- --scene ground --fresh`. \
          Contacts and joints hold the bodies here, and no formula says where they should be. \
          So each scene has a figure of its own, which physics bounds. \
-         Time is that of a whole step at 60 steps a second, from the first second of each scene on.",
+         Time is that of a whole step at 60 steps a second, median of turns spread over the 2nd to 10th second of each scene.",
     );
-    if told.iter().any(|t| !t.release) {
+    if !release {
         text.push_str(
-            " **Times in this section are of a dev build (dependencies optimised, the springs less so)**: compare \
-             them within this table alone.",
+            " **Times in this section are of a dev build.** Rapier alone is fully optimised in it, and Bevy, Avian and the \
+             springs are not, so that they look slower beside Rapier than they are in a release build. \
+             With `--release` the same command measures that one.",
         );
     }
     text.push_str("\n\n");
@@ -29,7 +32,7 @@ pub fn section(told: &[Told]) -> String {
         "\nEnergy is kinetic, of height and stored in springs, all from where the bodies are and how fast they move. \
          Above 1, or above 0 J, something has been won from nothing. \
          A method that takes too much energy shows nothing of it here: the figure bounds it from above alone. \
-         Contacts are at each engine's defaults here. \
+         Contacts are at each engine's defaults here, and nothing may sleep. \
          Avian has no joint like the wheel's guide, so it has no figure for it.\n\n",
     );
     table(&mut text, told);
@@ -89,6 +92,7 @@ fn tell(x: f64, unit: Unit) -> String {
         Unit::Joule if x.abs() < 100.0 => format!("{x:+.2} J"),
         Unit::Joule => format!("{x:+.0} J"),
         Unit::Metre => format!("{} mm", digits(1e3 * x)),
+        Unit::Count => format!("{x:.0}"),
         Unit::MetrePerSecond => format!("{} m/s", digits(x)),
     }
 }

@@ -38,6 +38,7 @@ pub enum Unit {
     Joule,
     Metre,
     MetrePerSecond,
+    Count,
 }
 
 pub const SCENES: [Scene; 6] = [
