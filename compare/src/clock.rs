@@ -34,6 +34,25 @@ const MORE: usize = 4;
 const WAIT: f64 = 0.02;
 const TRIES: u32 = 8;
 
+/// What the clock runs on, and how.
+pub struct Track<'a> {
+    pub make: &'a dyn Fn(Setting) -> Rig,
+    /// Updates before the clock runs.
+    pub warm_up: u32,
+    /// Updates from turn to turn at least, so that turns of one update each meet the whole scene.
+    pub apart: u32,
+    /// Most simulated seconds before it starts anew.
+    pub longest: f64,
+}
+
+impl Track<'_> {
+    fn warm(&self, setting: Setting) -> Rig {
+        let mut rig = (self.make)(setting);
+        (0..self.warm_up).for_each(|_| rig.tick());
+        rig
+    }
+}
+
 struct Runner {
     rig: Rig,
     setting: Setting,
@@ -44,20 +63,31 @@ struct Runner {
 
 /// Times the settings against each other, in so many turns each.
 pub fn race(problem: &Problem, settings: &[Setting], turns: u32) -> Vec<Times> {
-    let longest = problem.seconds.clamp(3.0, LONGEST);
+    let track = Track {
+        make: &|setting| Rig::new(problem, setting),
+        warm_up: WARM_UP,
+        apart: 0,
+        longest: problem.seconds.clamp(3.0, LONGEST),
+    };
+    race_on(&track, settings, turns)
+}
+
+/// As [`race`], on anything.
+pub fn race_on(track: &Track, settings: &[Setting], turns: u32) -> Vec<Times> {
+    let longest = track.longest;
     let mut runners: Vec<Runner> = settings
         .iter()
         .map(|setting| {
-            let mut rig = warm(problem, *setting);
+            let mut rig = track.warm(*setting);
             let start = Instant::now();
             (0..3).for_each(|_| rig.tick());
             let once = start.elapsed().as_secs_f64() / 3.0;
-            let most = (longest / setting.dt()) as u32 - WARM_UP;
+            let most = (longest / setting.dt()) as u32 - track.warm_up;
             Runner {
                 rig,
                 setting: *setting,
                 batch: ((TURN / once).ceil() as u32).clamp(1, most),
-                ticks: WARM_UP + 3,
+                ticks: track.warm_up + 3,
                 turns: Vec::new(),
             }
         })
@@ -71,9 +101,10 @@ pub fn race(problem: &Problem, settings: &[Setting], turns: u32) -> Vec<Times> {
             if !needed(runner) {
                 continue;
             }
-            if f64::from(runner.ticks + runner.batch) * runner.setting.dt() > longest {
-                runner.rig = warm(problem, runner.setting);
-                runner.ticks = WARM_UP;
+            let idle = track.apart.saturating_sub(runner.batch);
+            if f64::from(runner.ticks + runner.batch + idle) * runner.setting.dt() > longest {
+                runner.rig = track.warm(runner.setting);
+                runner.ticks = track.warm_up;
             }
             let Runner {
                 rig, batch, ticks, ..
@@ -82,6 +113,8 @@ pub fn race(problem: &Problem, settings: &[Setting], turns: u32) -> Vec<Times> {
                 rig.tick();
                 *ticks += 1;
             });
+            (0..idle).for_each(|_| runner.rig.tick());
+            runner.ticks += idle;
             runner.turns.push(each);
         }
     }
@@ -122,12 +155,6 @@ fn waiting() -> Option<f64> {
     let text = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
     let nanoseconds: f64 = text.split_whitespace().nth(1)?.parse().ok()?;
     Some(1e-9 * nanoseconds)
-}
-
-fn warm(problem: &Problem, setting: Setting) -> Rig {
-    let mut rig = Rig::new(problem, setting);
-    (0..WARM_UP).for_each(|_| rig.tick());
-    rig
 }
 
 impl Times {

@@ -10,6 +10,7 @@ mod clock;
 mod describe;
 mod follow;
 mod front;
+mod ground;
 mod machine;
 mod method;
 mod options;
@@ -27,6 +28,7 @@ mod sweep;
 mod table;
 mod words;
 
+use ground::Ground;
 use indicatif::{ProgressBar, ProgressStyle};
 use options::{HELP, Options, Request};
 use scale::Scale;
@@ -41,7 +43,7 @@ use table::Table;
 
 fn main() -> ExitCode {
     let mut known: Vec<&str> = SCENES.iter().map(|s| s.name).collect();
-    known.extend([Sweep.name(), Scale.name()]);
+    known.extend([Sweep.name(), Scale.name(), Ground.name()]);
     known.extend(Map::ALL.iter().map(Map::name));
     let done = match Options::parse(&known) {
         Ok(Request::Help) => {
@@ -84,6 +86,7 @@ fn run(options: &Options) -> Result<(), Box<dyn Error>> {
     }
     let studies = study::asked(&Sweep, options).len()
         + study::asked(&Scale, options).len()
+        + study::asked(&Ground, options).len()
         + Map::ALL
             .iter()
             .map(|map| study::asked(map, options).len())
@@ -100,6 +103,7 @@ fn run(options: &Options) -> Result<(), Box<dyn Error>> {
         extras += &study::run(&map, options, &folder, &bar)?;
     }
     extras += &study::run(&Scale, options, &folder, &bar)?;
+    extras += &study::run(&Ground, options, &folder, &bar)?;
     bar.finish_and_clear();
     publish(options, &folder, &extras)
 }

@@ -127,6 +127,12 @@ impl Link {
         }
     }
 
+    /// Between these points of the bodies.
+    pub fn anchored(mut self, anchors: [Vec3; 2]) -> Self {
+        self.anchors = anchors;
+        self
+    }
+
     /// With a cubic part, N/m³.
     pub fn hardening(mut self, cubic: f32) -> Self {
         self.cubic = cubic;

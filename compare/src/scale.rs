@@ -47,7 +47,7 @@ impl Study for Scale {
         "scale"
     }
 
-    fn wanted(&self, quick: bool) -> usize {
+    fn wanted(&self, _: Method, quick: bool) -> usize {
         counts(quick).len()
     }
 

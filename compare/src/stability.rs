@@ -84,7 +84,7 @@ impl Study for Map {
         }
     }
 
-    fn wanted(&self, quick: bool) -> usize {
+    fn wanted(&self, _: Method, quick: bool) -> usize {
         self.rows().len() * columns(quick).len()
     }
 

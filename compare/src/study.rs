@@ -14,7 +14,7 @@ pub trait Study {
     /// As on the command line, and of its files.
     fn name(&self) -> &'static str;
     /// Items that a method has when all is measured.
-    fn wanted(&self, quick: bool) -> usize;
+    fn wanted(&self, method: Method, quick: bool) -> usize;
     fn measure(&self, methods: &[Method], quick: bool) -> Result<Vec<Self::Item>, Box<dyn Error>>;
     fn method(item: &Self::Item) -> Method;
     fn header(&self) -> String;
@@ -33,12 +33,11 @@ pub fn run<S: Study>(
 ) -> Result<String, Box<dyn Error>> {
     let path = folder.join(format!("{}.csv", study.name()));
     let mut items = open::<S>(&path);
-    let wanted = study.wanted(options.quick);
     let missing: Vec<Method> = asked(study, options)
         .into_iter()
         .filter(|method| {
             let there = items.iter().filter(|i| S::method(i) == *method).count();
-            there < wanted || options.fresh
+            there < study.wanted(*method, options.quick) || options.fresh
         })
         .collect();
     if !missing.is_empty() {

@@ -39,7 +39,7 @@ impl Study for Sweep {
         "sweep"
     }
 
-    fn wanted(&self, quick: bool) -> usize {
+    fn wanted(&self, _: Method, quick: bool) -> usize {
         ZETAS.len() * steps(quick)
     }
 

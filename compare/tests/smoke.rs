@@ -81,6 +81,33 @@ fn the_quick_command_works_and_finds_what_the_tables_tell() {
     }
 }
 
+/// Where contacts and joints hold, with the springs of this crate.
+#[test]
+fn on_the_ground_loads_stand_at_their_height_and_nothing_is_won() {
+    let out = Path::new(env!("CARGO_TARGET_TMPDIR")).join("smoke-ground");
+    let _ = fs::remove_dir_all(&out);
+    fs::create_dir_all(&out).expect("a folder");
+    let status = Command::new(env!("CARGO_BIN_EXE_compare"))
+        .args(["--quick", "--scene", "ground", "--method", "ours"])
+        .arg("--out")
+        .arg(&out)
+        .status()
+        .expect("it runs");
+    assert!(status.success());
+    let report = read(&out.join("docs/speed_vs_error.md"));
+    assert!(report.contains("## On the ground and on joints"));
+    let table = read(&out.join("docs/speed_vs_error/ground.csv"));
+    let figure = |scene: &str| -> f64 {
+        let line = table.lines().find(|l| l.starts_with(scene));
+        let cell = line.and_then(|l| l.split(',').nth(4));
+        cell.and_then(|c| c.parse().ok()).expect("a figure")
+    };
+    assert!((figure("rolling-wheel") - 1.0).abs() < 0.03, "{table}");
+    assert!(figure("dropped-foot") < 1.02, "{table}");
+    assert!(figure("ragdoll") < 1.02, "{table}");
+    assert!(figure("wall") < 1e-3, "{table}");
+}
+
 #[test]
 fn the_readme_tells_what_the_report_tells() {
     let report = read(&repository().join("docs/speed_vs_error.md"));

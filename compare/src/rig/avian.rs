@@ -6,14 +6,14 @@
 
 use super::State;
 use crate::method::{Dial, Method};
-use crate::problem::{Body, Kind, Problem};
+use crate::problem::{Body, Kind, Link, Problem};
 use avian3d::prelude::*;
 use bevy::prelude::*;
 
 /// Adds the engine.
-pub fn plug(app: &mut App, problem: &Problem, dial: Dial) {
+pub fn plug(app: &mut App, gravity: Vec3, dial: Dial) {
     app.add_plugins(PhysicsPlugins::new(FixedUpdate))
-        .insert_resource(Gravity(problem.gravity));
+        .insert_resource(Gravity(gravity));
     if let Dial::Substeps(n) = dial {
         app.insert_resource(SubstepCount(n));
     }
@@ -30,22 +30,27 @@ pub fn fill(world: &mut World, problem: &Problem, method: Method) -> Vec<Entity>
     }
     let bodies: Vec<Entity> = problem.bodies.iter().map(|b| spawn(world, b)).collect();
     for link in &problem.links {
-        let [a, b] = link.ends;
-        let joint = DistanceJoint::new(bodies[a], bodies[b])
-            .with_local_anchor1(link.anchors[0])
-            .with_local_anchor2(link.anchors[1])
-            .with_limits(link.rest, link.rest)
-            .with_compliance(link.stiffness.recip());
-        let mut joint = world.spawn(joint);
-        if link.damping > 0.0 && method == Method::Avian {
-            let inverse = problem.bodies[a].inverse_mass() + problem.bodies[b].inverse_mass();
-            joint.insert(JointDamping {
-                linear: link.damping * inverse,
-                angular: 0.0,
-            });
-        }
+        let inverse = link.ends.map(|end| problem.bodies[end].inverse_mass());
+        let ends = link.ends.map(|end| bodies[end]);
+        spring(world, link, ends, inverse[0] + inverse[1], method);
     }
     bodies
+}
+
+/// Spawns a joint between two bodies with such a sum of inverse masses, 1/kg.
+pub fn spring(world: &mut World, link: &Link, [a, b]: [Entity; 2], inverse: f32, method: Method) {
+    let joint = DistanceJoint::new(a, b)
+        .with_local_anchor1(link.anchors[0])
+        .with_local_anchor2(link.anchors[1])
+        .with_limits(link.rest, link.rest)
+        .with_compliance(link.stiffness.recip());
+    let mut joint = world.spawn(joint);
+    if link.damping > 0.0 && method == Method::Avian {
+        joint.insert(JointDamping {
+            linear: link.damping * inverse,
+            angular: 0.0,
+        });
+    }
 }
 
 fn spawn(world: &mut World, body: &Body) -> Entity {

@@ -1,7 +1,7 @@
 //! A problem set up in an engine, headless, one step per `tick`.
 
-mod avian;
-mod rapier;
+pub mod avian;
+pub mod rapier;
 
 use crate::method::Setting;
 use crate::problem::Problem;
@@ -29,6 +29,24 @@ pub struct State {
 
 impl Rig {
     pub fn new(problem: &Problem, setting: Setting) -> Self {
+        let ground = Some(rapier::GROUND_FREQUENCY);
+        Self::build(setting, problem.gravity, ground, |world| {
+            if setting.method.is_avian() {
+                avian::fill(world, problem, setting.method)
+            } else {
+                rapier::fill(world, problem, setting.method)
+            }
+        })
+    }
+
+    /// Of whatever is spawned by `fill`, with the natural frequency of contacts with what stands still, Hz, if it is
+    /// not to be the engine's own.
+    pub fn build(
+        setting: Setting,
+        gravity: Vec3,
+        ground: Option<f32>,
+        fill: impl FnOnce(&mut World) -> Vec<Entity>,
+    ) -> Self {
         let mut app = App::new();
         let tick = Duration::from_secs_f64(setting.dt());
         app.add_plugins((MinimalPlugins, TransformPlugin))
@@ -36,9 +54,9 @@ impl Rig {
             .insert_resource(TimeUpdateStrategy::ManualDuration(tick));
         let avian = setting.method.is_avian();
         if avian {
-            avian::plug(&mut app, problem, setting.dial);
+            avian::plug(&mut app, gravity, setting.dial);
         } else {
-            rapier::plug(&mut app, problem, setting);
+            rapier::plug(&mut app, gravity, ground, setting);
         }
         app.finish();
         app.cleanup();
@@ -49,17 +67,8 @@ impl Rig {
         }
         // The first update passes no time, so no step is taken.
         app.update();
-        let (bodies, read): (_, fn(&World, Entity) -> Option<State>) = if avian {
-            (
-                avian::fill(app.world_mut(), problem, setting.method),
-                avian::read,
-            )
-        } else {
-            (
-                rapier::fill(app.world_mut(), problem, setting.method),
-                rapier::read,
-            )
-        };
+        let bodies = fill(app.world_mut());
+        let read = if avian { avian::read } else { rapier::read };
         Self { app, bodies, read }
     }
 

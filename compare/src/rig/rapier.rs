@@ -10,19 +10,21 @@ use bevy_rapier3d::rapier::dynamics::IntegrationParameters;
 
 /// Natural frequency of contacts with the ground, Hz. Rapier's default, 60 Hz, is a spring in series with
 /// the car's own; the reference has a wheel that stands still.
-const GROUND_FREQUENCY: f32 = 1000.0;
+pub const GROUND_FREQUENCY: f32 = 1000.0;
 
 /// Adds what the method needs.
-pub fn plug(app: &mut App, problem: &Problem, setting: Setting) {
+pub fn plug(app: &mut App, gravity: Vec3, ground: Option<f32>, setting: Setting) {
     let mut parameters = IntegrationParameters::default();
     if let Dial::Iterations(n) = setting.dial {
         parameters.num_solver_iterations = n as usize;
     }
-    parameters.static_contact_softness.natural_frequency = GROUND_FREQUENCY;
+    if let Some(frequency) = ground {
+        parameters.static_contact_softness.natural_frequency = frequency;
+    }
     let initialization = RapierContextInitialization::InitializeDefaultRapierContext {
         integration_parameters: parameters,
         rapier_configuration: RapierConfiguration {
-            gravity: problem.gravity,
+            gravity,
             ..RapierConfiguration::new(1.0)
         },
     };
@@ -52,6 +54,44 @@ pub fn plug(app: &mut App, problem: &Problem, setting: Setting) {
     }
 }
 
+/// Spawns a spring of the method's between two bodies.
+pub fn spring(world: &mut World, link: &Link, [a, b]: [Entity; 2], method: Method) {
+    match method {
+        Method::Ours => {
+            let element = SpringDamper::new(a, b)
+                .with_stiffness(link.stiffness)
+                .with_damping(link.damping)
+                .with_rest_length(link.rest);
+            let mut element = world.spawn(element);
+            if link.cubic > 0.0 {
+                element.insert(SpringLaw::polynomial(link.stiffness, 0.0, link.cubic));
+            }
+            if link.anchors != [Vec3::ZERO; 2] {
+                element.insert(Anchors::new(link.anchors[0], link.anchors[1]));
+            }
+        }
+        Method::Joint => {
+            let joint = SpringJointBuilder::new(link.rest, link.stiffness, link.damping)
+                .local_anchor1(link.anchors[0])
+                .local_anchor2(link.anchors[1]);
+            let joint = ImpulseJoint::new(a, joint);
+            if world.get::<ImpulseJoint>(b).is_none() {
+                world.entity_mut(b).insert(joint);
+            } else {
+                // Further ones are children.
+                world.spawn((joint, ChildOf(b)));
+            }
+        }
+        Method::Force => {
+            world.spawn(Pull {
+                ends: [a, b],
+                link: *link,
+            });
+        }
+        Method::Avian | Method::AvianBare => {}
+    }
+}
+
 /// Spawns bodies and springs.
 pub fn fill(world: &mut World, problem: &Problem, method: Method) -> Vec<Entity> {
     if problem.ground
@@ -61,41 +101,7 @@ pub fn fill(world: &mut World, problem: &Problem, method: Method) -> Vec<Entity>
     }
     let bodies: Vec<Entity> = problem.bodies.iter().map(|b| spawn(world, b)).collect();
     for link in &problem.links {
-        let [a, b] = link.ends.map(|end| bodies[end]);
-        match method {
-            Method::Ours => {
-                let element = SpringDamper::new(a, b)
-                    .with_stiffness(link.stiffness)
-                    .with_damping(link.damping)
-                    .with_rest_length(link.rest);
-                let mut element = world.spawn(element);
-                if link.cubic > 0.0 {
-                    element.insert(SpringLaw::polynomial(link.stiffness, 0.0, link.cubic));
-                }
-                if link.anchors != [Vec3::ZERO; 2] {
-                    element.insert(Anchors::new(link.anchors[0], link.anchors[1]));
-                }
-            }
-            Method::Joint => {
-                let joint = SpringJointBuilder::new(link.rest, link.stiffness, link.damping)
-                    .local_anchor1(link.anchors[0])
-                    .local_anchor2(link.anchors[1]);
-                let joint = ImpulseJoint::new(a, joint);
-                if world.get::<ImpulseJoint>(b).is_none() {
-                    world.entity_mut(b).insert(joint);
-                } else {
-                    // Further ones are children.
-                    world.spawn((joint, ChildOf(b)));
-                }
-            }
-            Method::Force => {
-                world.spawn(Pull {
-                    ends: [a, b],
-                    link: *link,
-                });
-            }
-            Method::Avian | Method::AvianBare => {}
-        }
+        spring(world, link, link.ends.map(|end| bodies[end]), method);
     }
     if method == Method::Force {
         for (body, entity) in problem.bodies.iter().zip(&bodies) {

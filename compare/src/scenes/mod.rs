@@ -33,4 +33,4 @@ pub const SCENES: [Scene; 10] = [
 ];
 
 /// Standard gravity as the references have it, m/s².
-const GRAVITY: f32 = 9.81;
+pub const GRAVITY: f32 = 9.81;

@@ -1,0 +1,215 @@
+//! What contacts and joints hold: wheels that roll, feet, ragdolls, bridges, cloth and boxes at walls.
+//!
+//! No formula says where bodies should be there, so each scene has a figure of its own.
+
+mod avian;
+mod figures;
+mod rapier;
+mod scenes;
+mod section;
+mod stage;
+
+use crate::clock::{Times, Track, race_on};
+use crate::method::{Dial, Method, Setting};
+use crate::paint::Drawn;
+use crate::rig::Rig;
+use crate::scenes::GRAVITY;
+use crate::study::{Study, number};
+use bevy::math::Vec3;
+use figures::{RATE, Run};
+use scenes::{SCENES, Scene};
+use stage::Stage;
+use std::error::Error;
+use std::path::Path;
+
+/// Updates before the clock runs: what falls has fallen on something by then.
+const WARM_UP: u32 = 60;
+/// Updates from turn to turn at least: fifteen turns meet what happens in nine seconds.
+const APART: u32 = 36;
+/// Most simulated seconds before the clock's scene starts anew.
+const LONGEST: f64 = 10.0;
+
+/// A scene with a method.
+pub struct Told {
+    scene: &'static Scene,
+    /// What is varied.
+    speed: f32,
+    setting: Setting,
+    /// As the scene names them.
+    figures: Vec<f64>,
+    times: Times,
+    /// Whether it was compiled for speed.
+    release: bool,
+}
+
+/// All scenes with contacts or joints.
+pub struct Ground;
+
+impl Study for Ground {
+    type Item = Told;
+
+    fn name(&self) -> &'static str {
+        "ground"
+    }
+
+    fn wanted(&self, method: Method, quick: bool) -> usize {
+        let cases = cases(quick)
+            .filter(|(scene, speed)| can(method, &(scene.make)(*speed)))
+            .count();
+        cases * settings(method).len()
+    }
+
+    fn measure(&self, methods: &[Method], quick: bool) -> Result<Vec<Told>, Box<dyn Error>> {
+        let turns = if quick { 5 } else { 15 };
+        let mut told = Vec::new();
+        for (scene, speed) in cases(quick) {
+            told.extend(measure(scene, speed, methods, turns));
+        }
+        Ok(told)
+    }
+
+    fn method(item: &Told) -> Method {
+        item.setting.method
+    }
+
+    fn header(&self) -> String {
+        "scene,speed,method,setting,figure_1,figure_2,step_us,step_us_quartile_1,step_us_quartile_3,build".into()
+    }
+
+    fn line(t: &Told) -> String {
+        let figure = |i: usize| t.figures.get(i).map(|f| format!("{f:.5e}"));
+        let us = |s: f64| format!("{:.2}", 1e6 * s);
+        format!(
+            "{},{},{},{},{},{},{},{},{},{}",
+            t.scene.name,
+            t.speed,
+            t.setting.method.name(),
+            t.setting.dial,
+            figure(0).unwrap_or_default(),
+            figure(1).unwrap_or_default(),
+            us(t.times.median),
+            us(t.times.low),
+            us(t.times.high),
+            if t.release { "release" } else { "dev" },
+        )
+    }
+
+    fn parse(cells: &[&str]) -> Option<Told> {
+        let [
+            scene,
+            speed,
+            method,
+            dial,
+            one,
+            two,
+            median,
+            low,
+            high,
+            build,
+        ] = cells
+        else {
+            return None;
+        };
+        let method = Method::named(method)?;
+        let us = |cell: &str| number(cell).map(|us| 1e-6 * us);
+        Some(Told {
+            scene: SCENES.iter().find(|s| s.name == *scene)?,
+            speed: speed.parse().ok()?,
+            setting: settings(method)
+                .into_iter()
+                .find(|s| s.dial.to_string() == *dial)?,
+            figures: [one, two].into_iter().filter_map(|f| number(f)).collect(),
+            times: Times {
+                median: us(median)?,
+                low: us(low)?,
+                high: us(high)?,
+            },
+            release: *build == "release",
+        })
+    }
+
+    /// Its figures are too unlike for a picture.
+    fn draw(&self, _: &Path, _: &[Told]) -> Drawn {
+        Ok(())
+    }
+
+    fn section(&self, items: &[Told]) -> String {
+        section::section(items)
+    }
+}
+
+/// The scenes, with what is varied in each.
+fn cases(quick: bool) -> impl Iterator<Item = (&'static Scene, f32)> {
+    let scenes = SCENES.iter().filter(move |s| s.quick || !quick);
+    scenes.flat_map(move |scene| {
+        let few = if quick { 1 } else { scene.speeds.len() };
+        scene
+            .speeds
+            .iter()
+            .rev()
+            .take(few)
+            .rev()
+            .map(move |v| (scene, *v))
+    })
+}
+
+/// A method as it comes, and with a finer dial if contacts and joints are solved more exactly by it.
+fn settings(method: Method) -> Vec<Setting> {
+    let dials = match method {
+        Method::Ours => vec![method.default_dial()],
+        Method::Joint => vec![method.default_dial(), Dial::Iterations(16)],
+        Method::Avian => vec![method.default_dial(), Dial::Substeps(24)],
+        Method::Force | Method::AvianBare => Vec::new(),
+    };
+    let setting = |dial| Setting {
+        method,
+        dial,
+        rate: RATE,
+    };
+    dials.into_iter().map(setting).collect()
+}
+
+/// Whether a method's engine has what a stage is made of.
+fn can(method: Method, stage: &Stage) -> bool {
+    !method.is_avian() || avian::has(stage)
+}
+
+fn rig(stage: &Stage, setting: Setting) -> Rig {
+    Rig::build(setting, Vec3::NEG_Y * GRAVITY, None, |world| {
+        if setting.method.is_avian() {
+            avian::fill(world, stage, setting.method)
+        } else {
+            rapier::fill(world, stage, setting.method)
+        }
+    })
+}
+
+fn measure(scene: &'static Scene, speed: f32, methods: &[Method], turns: u32) -> Vec<Told> {
+    let stage = (scene.make)(speed);
+    let able = methods.iter().filter(|method| can(**method, &stage));
+    let settings: Vec<Setting> = able.flat_map(|method| settings(*method)).collect();
+    let figures: Vec<Vec<f64>> = settings
+        .iter()
+        .map(|setting| {
+            let rig = rig(&stage, *setting);
+            (scene.figures)(&mut Run { stage: &stage, rig })
+        })
+        .collect();
+    let track = Track {
+        make: &|setting| rig(&stage, setting),
+        warm_up: WARM_UP,
+        apart: APART,
+        longest: LONGEST,
+    };
+    let times = race_on(&track, &settings, turns);
+    let all = settings.into_iter().zip(figures).zip(times);
+    all.map(|((setting, figures), times)| Told {
+        scene,
+        speed,
+        setting,
+        figures,
+        times,
+        release: !cfg!(debug_assertions),
+    })
+    .collect()
+}
