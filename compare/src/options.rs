@@ -14,7 +14,7 @@ cargo run --release -p compare -- [OPTIONS]
   --quick         few settings, few repeats, two time steps
   --fresh         measure again what the tables already hold
   --report        measure nothing, write report and charts from the tables
-  --out DIR       write DIR/docs/speed_vs_error.md and the table in DIR/README.md (default: the repository)
+  --out DIR       write DIR/docs/speed_vs_error.md and the table in DIR/docs/accuracy.md (default: the repository)
   --describe DIR  write the scenes of points as text, for compare/peers
   --list          print the scenes' names
   --help          print this

@@ -1,4 +1,4 @@
-//! The one table that both the report and the README show.
+//! The one table that both the report and `docs/accuracy.md` show.
 
 use std::path::Path;
 use std::{fs, io};

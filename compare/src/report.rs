@@ -14,7 +14,7 @@ pub fn opening() -> String {
     format!(
         "# Speed against error\n\n\
          Made by `cargo run --release -p compare`, which measures every spring that a Bevy game could use on the \
-         same scenes. Do not edit: the command writes this file, and copies the first table into the README.\n\n\
+         same scenes. Do not edit: the command writes this file, and copies the first table into `docs/accuracy.md`.\n\n\
          - **Methods.** bevy_coilover at 1 to 16 micro-steps, extrapolated, and by tolerance; the tutorial's \
          force `k·stretch + c·rate` written once per step into `ExternalForce`; Rapier's `SpringJoint` at 4 to 32 \
          solver iterations; Avian 0.7's `DistanceJoint` with compliance 1/k and `JointDamping` c/m at 6 to 48 \
@@ -31,7 +31,7 @@ pub fn opening() -> String {
     )
 }
 
-/// The table that the README shows too.
+/// The table that `docs/accuracy.md` shows too.
 pub fn headline(scenes: &[(&Scene, Vec<Row>)]) -> String {
     let mut text = String::from(
         "Largest position error · time per step, at 60 steps a second (made by `cargo run --release -p compare`, \

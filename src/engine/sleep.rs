@@ -78,12 +78,14 @@ fn is_restless(
         return true;
     }
     rest.seconds += time;
+    rest.rate = rest.position.distance(position) / rest.seconds;
     if rest.seconds >= QUIET {
         // Others may have to come to rest yet: what has gone far in many such spans has not moved in any.
         *rest = Rest {
             position,
             rotation,
             seconds: 0.0,
+            rate: rest.rate,
             is_long: true,
         };
     }

@@ -35,6 +35,9 @@ pub(super) struct Plan {
 /// Share of all forces on a body that may be left of them where they are in balance. Pinned by `ground::heap`.
 const BALANCE: f64 = 5e-3;
 
+/// How many times as fast as what is pressed a body goes that joints take along. Pinned by `ground::ragdoll`.
+const ALONG: f32 = 2.0;
+
 /// Share that joints leave of a damper's inverse mass below which a substep's one sweep over all joints is not enough,
 /// where without joints it would take more than such a share of its ends' speed in one substep. Pinned by
 /// `ground::hinge`.
@@ -117,7 +120,7 @@ impl Plan {
         true
     }
 
-    /// Finds which bodies are pressed, or hang in balance: where they go, others take them.
+    /// Finds which bodies are pressed, hang in balance, or are taken along by joints: where they go, others take them.
     fn balance(&mut self, members: &Members, bodies: &mut [BodyRow]) {
         self.forces.clear();
         let weight = |body: &Body| (body.acceleration, body.acceleration.length());
@@ -132,10 +135,16 @@ impl Plan {
                 }
             }
         }
-        let rests = members.bodies.iter().any(|b| bodies[*b].pressed);
+        let pressed = members.bodies.iter().map(|b| &bodies[*b]);
+        let pressed = pressed.filter(|row| row.pressed);
+        // How fast what lies on something goes, if there is any such body.
+        let creeping = pressed.map(|row| row.rest.rate).reduce(f32::max);
         for (b, (net, all)) in members.bodies.iter().zip(&self.forces) {
             let row = &mut bodies[*b];
-            row.creeps = row.pressed || (rests && net.length() < BALANCE * all);
+            let taken_along = creeping.is_some_and(|rate| {
+                net.length() < BALANCE * all || (row.jointed && row.rest.rate <= ALONG * rate)
+            });
+            row.creeps = row.pressed || taken_along;
         }
     }
 

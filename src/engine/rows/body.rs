@@ -23,6 +23,8 @@ pub(in crate::engine) struct Rest {
     pub position: Vec3,
     pub rotation: Quat,
     pub seconds: f32,
+    /// How fast it has gone away from there, m/s.
+    pub rate: f32,
     /// It has been so for long enough.
     pub is_long: bool,
 }
