@@ -2,15 +2,27 @@
 //!
 //! Each scene is one that a game has. Energy is kinetic, of gravity, and stored in springs, all from geometry.
 
+mod actuator;
+mod bounce;
 mod bridge;
+mod ccd;
+mod changes;
 mod cloth;
+mod companions;
 mod drive;
+mod far;
 mod feet;
 mod heap;
+mod hierarchy;
 mod hinge;
+mod motorcycle;
 mod nets;
 mod ragdoll;
+mod rates;
 mod rolling;
+mod scenes;
+mod shock;
+mod sizes;
 mod stand;
 mod torsion;
 mod wall;

@@ -1,0 +1,99 @@
+//! Pairs that take off and land again and again.
+
+use super::stand::*;
+use crate::harness::*;
+use bevy::prelude::*;
+use bevy_coilover::prelude::*;
+use bevy_rapier3d::prelude::*;
+
+/// Two balls on a spring of a phase per step, leaning, above the ground.
+fn pair(plugin: CoiloverPlugin, phase: f32, zeta: f32, lean: f32, bounce: f32) -> Stand {
+    let mut scene = Stand::new(plugin, Engine::default());
+    scene.ground();
+    let effective = 0.5_f32;
+    let omega = phase / DT;
+    let law = [effective * omega * omega, 2.0 * zeta * effective * omega];
+    let middle = Vec3::Y * 1.5;
+    let arm = 0.4 * (Quat::from_rotation_z(lean) * Vec3::Y);
+    let ends = [arm, -arm].map(|arm| {
+        scene.body(
+            Transform::from_translation(middle + arm),
+            (
+                Collider::ball(0.1),
+                ColliderMassProperties::Mass(1.0),
+                Restitution {
+                    coefficient: bounce,
+                    combine_rule: CoefficientCombineRule::Max,
+                },
+                Friction::new(0.5),
+            ),
+        )
+    });
+    scene.coil(ends, [Vec3::ZERO; 2], law, None);
+    scene
+}
+
+#[test]
+fn a_pair_that_bounces_for_long_wins_nothing() {
+    // Both balls on the ground.
+    let base = 2.0 * 0.1 * GRAVITY;
+    for (name, way) in ways() {
+        for bounce in [0.0, 0.9] {
+            for lean in [0.0, 0.5] {
+                let mut line = String::new();
+                for phase in [0.2, 0.5, 1.0, 3.0] {
+                    for zeta in [0.0, 0.05] {
+                        let mut scene = pair(way, phase, zeta, lean, bounce);
+                        scene.lab.tick();
+                        let first = scene.energy() - base;
+                        let most = (scene.most(8.0) - base) / first;
+                        let last = (scene.energy() - base) / first;
+                        line += &format!(" {most:.3}→{last:.2}");
+                        assert!(
+                            most < 1.02,
+                            "{name}, bounce {bounce}, lean {lean}, ω·dt {phase}, ζ {zeta}: E × {most}"
+                        );
+                    }
+                }
+                println!("pair, {name} micro-steps, bounce {bounce}, lean {lean}: E ×{line}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_hopper_that_is_heavy_above_wins_nothing() {
+    for phase in [0.5, 1.0, 2.0, 6.0] {
+        for zeta in [0.0, 0.02] {
+            let mut scene = Stand::new(CoiloverPlugin::default(), Engine::default());
+            scene.ground();
+            let setup = super::scenes::Footed {
+                law: {
+                    let (mass, omega) = (10.0 * 300.0 / 310.0, phase / DT);
+                    [mass * omega * omega, 2.0 * zeta * mass * omega]
+                },
+                rest: 2.0,
+                drop: 1.0,
+                ..super::scenes::Footed::foot()
+            };
+            setup.put(&mut scene);
+            scene.lab.tick();
+            let first = scene.energy() - setup.floor();
+            let mut landings = 0;
+            let (mut most, mut flies) = (f64::NEG_INFINITY, true);
+            for _ in 0..scene.lab.ticks(20.0) {
+                scene.lab.tick();
+                most = most.max(scene.energy());
+                let high = scene.lab.position(scene.bodies[1]).y > setup.reach + 0.02;
+                landings += usize::from(flies && !high);
+                flies = high;
+            }
+            let most = (most - setup.floor()) / first;
+            let last = (scene.energy() - setup.floor()) / first;
+            println!(
+                "hopper, ω·dt {phase}, ζ {zeta}: E × {most:.4}, at the end {last:.3}, {landings} landings"
+            );
+            assert!(most < 1.02, "ω·dt {phase} ζ {zeta}: E × {most}");
+        }
+    }
+}
