@@ -131,6 +131,6 @@ fn publish(options: &Options, folder: &Path, extras: &str) -> Result<(), Box<dyn
         options.out.join("docs/speed_vs_error.md"),
         text.trim_end().to_owned() + "\n",
     )?;
-    readme::copy(&options.out.join("README.md"), &headline)?;
+    readme::copy(&options.out.join("docs/accuracy.md"), &headline)?;
     Ok(())
 }

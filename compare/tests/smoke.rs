@@ -47,7 +47,12 @@ fn the_quick_command_works_and_finds_what_the_tables_tell() {
     let out = Path::new(env!("CARGO_TARGET_TMPDIR")).join("smoke");
     let _ = fs::remove_dir_all(&out);
     fs::create_dir_all(&out).expect("a folder");
-    fs::write(out.join("README.md"), format!("a\n{BEGIN}\n{END}\nb\n")).expect("a file");
+    fs::create_dir_all(out.join("docs")).expect("a folder");
+    fs::write(
+        out.join("docs/accuracy.md"),
+        format!("a\n{BEGIN}\n{END}\nb\n"),
+    )
+    .expect("a file");
     let scenes = ["oscillator", "pendulum-soft"];
     let status = Command::new(env!("CARGO_BIN_EXE_compare"))
         .args(["--quick", "--scene", scenes[0], "--scene", scenes[1]])
@@ -57,9 +62,9 @@ fn the_quick_command_works_and_finds_what_the_tables_tell() {
         .expect("it runs");
     assert!(status.success());
     let report = read(&out.join("docs/speed_vs_error.md"));
-    let readme = read(&out.join("README.md"));
+    let copied = read(&out.join("docs/accuracy.md"));
     assert!(marked(&report).contains("| Single oscillator |"));
-    assert_eq!(marked(&report), marked(&readme));
+    assert_eq!(marked(&report), marked(&copied));
     for scene in scenes {
         let file = |ending: &str| format!("docs/speed_vs_error/{scene}.{ending}");
         assert!(read(&out.join(file("svg"))).contains("</svg>"));
@@ -109,9 +114,9 @@ fn on_the_ground_loads_stand_at_their_height_and_nothing_is_won() {
 }
 
 #[test]
-fn the_readme_tells_what_the_report_tells() {
+fn the_page_on_accuracy_tells_what_the_report_tells() {
     let report = read(&repository().join("docs/speed_vs_error.md"));
-    let readme = read(&repository().join("README.md"));
-    assert_eq!(marked(&report), marked(&readme));
-    assert!(marked(&readme).lines().count() > 8);
+    let copied = read(&repository().join("docs/accuracy.md"));
+    assert_eq!(marked(&report), marked(&copied));
+    assert!(marked(&copied).lines().count() > 8);
 }

@@ -196,15 +196,22 @@ impl Scene {
             {
                 continue;
             }
+            if members.elements.iter().any(|e| elements[*e].changed) {
+                groups.at(g).clear = 0;
+            }
+            let group = &groups.list()[g];
+            let members = groups.members(group);
+            solver.look_at_pushes(step, &members, elements, bodies, engine.bodies);
             let around = Surroundings::new(narrow, engine.joints, engine.colliders, crowd.as_ref());
             let (mut held, mut stiff) = (false, false);
-            for b in members.bodies {
+            for (slot, b) in members.bodies.iter().enumerate() {
                 let row = &mut bodies[*b];
+                let push = solver.pushes[slot];
                 if (row.can_touch || around.any_joints || row.lingers > 0.0)
                     && let Some(body) = engine.bodies.get_mut(row.handle)
                 {
-                    held |= around.look(row, body, step.plan.time);
-                    stiff |= row.look_ahead(body, time) && row.can_touch;
+                    held |= around.look(row, body, step.plan.time, push);
+                    stiff |= row.look_ahead(body, time);
                 }
             }
             if stiff && !held && group.clear == 0 {
@@ -215,7 +222,7 @@ impl Scene {
                     time: step.plan.time as f32,
                 };
                 let rows: Vec<_> = members.bodies.iter().map(|b| &bodies[*b]).collect();
-                let (near, clear) = outlook.look(&rows, |handle| {
+                let (near, clear) = outlook.look(&rows, &solver.pushes, |handle| {
                     let row = handles
                         .get(&(context, handle))
                         .map(|b| &bodies[*b as usize]);

@@ -9,20 +9,24 @@ use bevy_rapier3d::rapier::dynamics::RigidBody as RapierBody;
 const STIFF: f64 = 0.3;
 
 /// How far ahead, in steps.
-const AHEAD: f64 = 1.5;
+const AHEAD: f32 = 1.5;
 
 impl BodyRow {
-    /// Has the engine see contacts of a body ahead that stiff springs push, in steps of `time` seconds.
-    /// Says whether they are stiff.
-    pub(in crate::engine) fn look_ahead(&mut self, body: &mut RapierBody, time: f64) -> bool {
+    /// Whether stiff springs push a body that can touch something, in steps of `time` seconds.
+    pub(in crate::engine) fn is_stiff(&self, body: &RapierBody, time: f64) -> bool {
         let inverse_mass = f64::from(body.mass_properties().local_mprops.inv_mass);
-        let stiff = self.stiffness * inverse_mass * time * time > STIFF * STIFF;
-        let way = if stiff && self.can_touch {
-            AHEAD * time * f64::from(body.linvel().length())
+        self.can_touch && self.stiffness * inverse_mass * time * time > STIFF * STIFF
+    }
+
+    /// Has the engine see its contacts ahead if it is stiff.
+    pub(in crate::engine) fn look_ahead(&mut self, body: &mut RapierBody, time: f64) -> bool {
+        let stiff = self.is_stiff(body, time);
+        let way = if stiff {
+            AHEAD * time as f32 * body.linvel().length()
         } else {
             0.0
         };
-        self.raised.look_ahead(body, way as f32);
+        self.raised.look_ahead(body, way);
         stiff
     }
 }

@@ -11,6 +11,7 @@ mod linkage;
 mod near;
 mod order;
 mod plan;
+mod pushes;
 mod touch;
 mod write;
 

@@ -47,9 +47,10 @@ impl Outlook<'_> {
     pub(in crate::engine) fn look(
         &self,
         rows: &[&BodyRow],
+        pushes: &[f32],
         is_own: impl Fn(RigidBodyHandle) -> bool,
     ) -> (bool, u8) {
-        let Some((bounds, fastest)) = self.bounds(rows) else {
+        let Some((bounds, fastest)) = self.bounds(rows, pushes) else {
             return (false, MOST);
         };
         let way = f32::from(MOST) * (fastest + OTHERS) * self.time;
@@ -80,7 +81,7 @@ impl Outlook<'_> {
             let free = (apart.unwrap_or(0.0) - NEAR).max(0.0);
             let step = (fastest + other.speed) * self.time;
             let steps = (TRUSTED * free / step.max(f32::MIN_POSITIVE)).min(f32::from(MOST));
-            if steps < 1.0 && self.meets(rows, &other) {
+            if steps < 1.0 && self.meets(rows, pushes, &other) {
                 return (true, 0);
             }
             clear = clear.min(steps as u8);
@@ -89,14 +90,14 @@ impl Outlook<'_> {
     }
 
     /// Bounds of all colliders of some bodies, and the greatest speed of a body.
-    fn bounds(&self, rows: &[&BodyRow]) -> Option<(Aabb, f32)> {
+    fn bounds(&self, rows: &[&BodyRow], pushes: &[f32]) -> Option<(Aabb, f32)> {
         let mut bounds: Option<Aabb> = None;
         let mut fastest = 0.0_f32;
-        for row in rows {
+        for (row, push) in rows.iter().zip(pushes) {
             let Some(body) = self.bodies.get(row.handle) else {
                 continue;
             };
-            fastest = fastest.max(speed_of(body));
+            fastest = fastest.max(speed_of(body) + push);
             for own in self.of(body) {
                 let own = own.compute_aabb();
                 bounds = Some(bounds.map_or(own, |bounds| bounds.merged(&own)));
@@ -111,10 +112,12 @@ impl Outlook<'_> {
     }
 
     /// Whether some body may meet another in the coming step.
-    fn meets(&self, rows: &[&BodyRow], other: &Other) -> bool {
-        let bodies = rows.iter().filter_map(|row| self.bodies.get(row.handle));
-        bodies.into_iter().any(|body| {
-            let way = NEAR + 2.0 * (speed_of(body) + other.speed) * self.time;
+    fn meets(&self, rows: &[&BodyRow], pushes: &[f32], other: &Other) -> bool {
+        let bodies = rows.iter().zip(pushes);
+        let mut bodies =
+            bodies.filter_map(|(row, push)| Some((self.bodies.get(row.handle)?, push)));
+        bodies.any(|(body, push)| {
+            let way = NEAR + 2.0 * (speed_of(body) + push + other.speed) * self.time;
             let theirs = other.collider.compute_aabb().loosened(way);
             self.of(body).any(|own| {
                 let groups = own
@@ -132,7 +135,7 @@ impl Outlook<'_> {
 }
 
 /// Speed of a body's fastest point.
-fn speed_of(body: &RapierBody) -> f32 {
+pub(super) fn speed_of(body: &RapierBody) -> f32 {
     let reach = body.mass_properties().max_extent();
     body.linvel().length() + reach * body.angvel().length()
 }

@@ -1,5 +1,6 @@
 //! Whether contacts or joints hold a body.
 
+use super::near::speed_of;
 use crate::engine::held::is_ours;
 use crate::engine::rows::BodyRow;
 use bevy::math::Vec3;
@@ -47,13 +48,19 @@ impl Crowd {
     }
 
     /// Whether anything else is so near that it may touch a body in its first step.
-    fn is_near(&self, handle: RigidBodyHandle, body: &RapierBody, all: &ColliderSet) -> bool {
+    fn is_near(
+        &self,
+        handle: RigidBodyHandle,
+        body: &RapierBody,
+        way: f32,
+        all: &ColliderSet,
+    ) -> bool {
         let others = |parent: Option<RigidBodyHandle>| parent != Some(handle);
         body.colliders()
             .iter()
             .filter_map(|own| all.get(*own))
             .any(|own| {
-                let bounds = own.compute_aabb().loosened(NEAR);
+                let bounds = own.compute_aabb().loosened(way);
                 let mut near = self.tree.intersect_aabb(&bounds);
                 near.any(|leaf| others(self.parents[leaf as usize]))
                     || self
@@ -62,7 +69,7 @@ impl Crowd {
                         .filter_map(|other| all.get(*other))
                         .any(|other| {
                             let [a, b] = [own, other].map(|c| (c.position(), c.shape()));
-                            let touches = parry::query::contact(a.0, a.1, b.0, b.1, NEAR);
+                            let touches = parry::query::contact(a.0, a.1, b.0, b.1, way);
                             others(other.parent()) && !matches!(touches, Ok(None))
                         })
             })
@@ -137,7 +144,14 @@ impl<'a> Surroundings<'a> {
     }
 
     /// Looks what holds a body at the start of a step of `time` seconds; says whether anything does, or did a moment ago.
-    pub(in crate::engine) fn look(&self, row: &mut BodyRow, body: &RapierBody, time: f64) -> bool {
+    /// `push` is how much faster springs can make it in the step, m/s.
+    pub(in crate::engine) fn look(
+        &self,
+        row: &mut BodyRow,
+        body: &RapierBody,
+        time: f64,
+        push: f32,
+    ) -> bool {
         row.can_touch = !body.colliders().is_empty();
         row.jointed = self.is_jointed(row.handle);
         (row.touched, row.pressed) = self.touch(body, time);
@@ -146,11 +160,15 @@ impl<'a> Surroundings<'a> {
         } else {
             row.lingers = (row.lingers - time as f32).max(0.0);
         }
-        let near = std::mem::take(&mut row.is_new)
-            && self
-                .crowd
-                .is_some_and(|crowd| crowd.is_near(row.handle, body, self.colliders));
-        row.pressed |= near;
-        row.lingers > 0.0 || near
+        if !std::mem::take(&mut row.is_new) {
+            return row.lingers > 0.0;
+        }
+        let near = |way: f32| {
+            self.crowd
+                .is_some_and(|crowd| crowd.is_near(row.handle, body, way, self.colliders))
+        };
+        row.pressed |= near(NEAR);
+        let way = NEAR + 2.0 * (speed_of(body) + push) * time as f32;
+        row.lingers > 0.0 || row.pressed || near(way)
     }
 }

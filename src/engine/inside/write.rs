@@ -42,6 +42,8 @@ pub(in crate::engine) struct Solver {
     wanted: Vec<Option<Wanted>>,
     /// Sweeps over all joints and contacts that a substep needs.
     sweeps: usize,
+    /// How much faster springs can make each body of the component that is looked at, m/s.
+    pub(in crate::engine) pushes: Vec<f32>,
 }
 
 impl Inside {
