@@ -179,6 +179,7 @@ impl Scene {
         if !self.changed.is_empty() || self.renewed {
             add_up(elements, bodies);
         }
+        let any_changed = !self.changed.is_empty();
         let time = step.plan.time / f64::from(step.plan.pipeline_steps.max(1));
         let new = |row: &BodyRow| row.is_new && row.context == context;
         let crowd = bodies.iter().any(new).then(|| Crowd::new(engine.colliders));
@@ -196,7 +197,7 @@ impl Scene {
             {
                 continue;
             }
-            if members.elements.iter().any(|e| elements[*e].changed) {
+            if any_changed && members.elements.iter().any(|e| elements[*e].changed) {
                 groups.at(g).clear = 0;
             }
             let group = &groups.list()[g];

@@ -23,7 +23,7 @@ impl Solver {
                 set.get(row.handle)
                     .is_some_and(|body| row.is_stiff(body, time))
             };
-            row.is_new || stiff()
+            row.is_new || (row.can_touch && stiff())
         });
         self.pushes.clear();
         self.pushes.resize(members.bodies.len(), 0.0);
