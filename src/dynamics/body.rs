@@ -7,7 +7,7 @@ use std::f64::consts::TAU;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Spin {
     /// Rotation plays no part: fully locked, or every element holds the body at its centre.
-    Still,
+    Ignored,
     /// Free rotation, carried as angular momentum, which free flight keeps exactly.
     Free {
         /// kg m²/s, world frame.
@@ -43,7 +43,7 @@ pub(crate) struct Body {
     /// What elements have given it so far in this step: impulse (N s) and angular impulse (N m s).
     pub given: (DVec3, DVec3),
     /// Work of the user's torque so far in this step, J.
-    pub driven: f64,
+    pub torque_work: f64,
     /// What [`Body::note_turn`] has found.
     pub turned: Option<Turned>,
 }
@@ -99,7 +99,7 @@ impl Body {
     /// Inverse inertia in the world frame at the present rotation; zero where locked.
     pub(crate) fn inverse_inertia(&self) -> DMat3 {
         // A body without inertia about some axis is not turned by elements at all.
-        if self.spin == Spin::Still {
+        if self.spin == Spin::Ignored {
             return DMat3::ZERO;
         }
         match &self.turned {
@@ -110,7 +110,7 @@ impl Body {
 
     /// Works out the inverse inertia at the present rotation, for all who will ask.
     pub(crate) fn note_turn(&mut self) {
-        if self.spin != Spin::Still {
+        if self.spin != Spin::Ignored {
             self.turned = Some(Turned {
                 rotation: self.rotation,
                 inverse_inertia: self.turn_inertia(),
@@ -140,7 +140,7 @@ impl Body {
 
     pub(crate) fn angular_velocity(&self) -> DVec3 {
         match self.spin {
-            Spin::Still => DVec3::ZERO,
+            Spin::Ignored => DVec3::ZERO,
             Spin::Free { momentum } => self.inverse_inertia() * momentum,
             Spin::Locked { velocity } => velocity,
         }
@@ -149,7 +149,7 @@ impl Body {
     /// The spin that has this angular velocity at the present rotation.
     pub(crate) fn set_angular_velocity(&mut self, velocity: DVec3) {
         self.spin = match self.spin {
-            Spin::Still => Spin::Still,
+            Spin::Ignored => Spin::Ignored,
             Spin::Locked { .. } => Spin::Locked { velocity },
             Spin::Free { .. } => {
                 let frame = self.rotation * self.principal;
@@ -168,7 +168,7 @@ impl Body {
                 pushed,
                 inverse_inertia * momentum.cross(inverse_inertia * momentum),
             ),
-            Spin::Still | Spin::Locked { .. } => (pushed, DVec3::ZERO),
+            Spin::Ignored | Spin::Locked { .. } => (pushed, DVec3::ZERO),
         }
     }
 
@@ -177,14 +177,14 @@ impl Body {
         self.position += time * self.velocity;
         let power = self.user_power();
         match self.spin {
-            Spin::Still => {}
+            Spin::Ignored => {}
             Spin::Locked { velocity } => {
                 self.rotation = (turn(time * velocity) * self.rotation).normalize();
             }
             Spin::Free { momentum } => self.tumble(time, momentum),
         }
         self.note_turn();
-        self.driven += 0.5 * time * (power + self.user_power());
+        self.torque_work += 0.5 * time * (power + self.user_power());
     }
 
     /// Power of the user's torque, W.
@@ -268,7 +268,7 @@ impl Body {
     /// An angular impulse (N m s).
     pub(crate) fn apply_angular(&mut self, impulse: DVec3, inverse_inertia: DMat3) {
         match &mut self.spin {
-            Spin::Still => {}
+            Spin::Ignored => {}
             Spin::Free { momentum } => *momentum += impulse,
             Spin::Locked { velocity } => *velocity += inverse_inertia * impulse,
         }
@@ -284,7 +284,7 @@ impl Body {
     pub(crate) fn slow_to(&mut self, other: &Self, share: f64) {
         self.velocity = share * other.velocity;
         self.spin = match other.spin {
-            Spin::Still => Spin::Still,
+            Spin::Ignored => Spin::Ignored,
             Spin::Free { momentum } => Spin::Free {
                 momentum: share * momentum,
             },
@@ -322,7 +322,7 @@ impl Body {
             self.position = start.position + by;
             self.velocity = velocity;
         }
-        if self.spin == Spin::Still || self.farthest_turn == f64::INFINITY {
+        if self.spin == Spin::Ignored || self.farthest_turn == f64::INFINITY {
             return moved.is_some();
         }
         let spin = 0.5 * (start.angular_velocity() + self.angular_velocity());
@@ -331,7 +331,7 @@ impl Body {
         if let Some((held, velocity)) = turned {
             if held != by {
                 self.rotation = (turn(held) * start.rotation).normalize();
-                self.driven = self.torque.dot(held);
+                self.torque_work = self.torque.dot(held);
                 self.note_turn();
             }
             self.set_angular_velocity(velocity);

@@ -15,8 +15,8 @@ use bevy::math::DVec3;
 /// shows at its ends is not constant, only bounded.
 const SWAY: f64 = 0.02;
 
-/// The same where the step resolves the stiffest mode no longer: there it is the implicit midpoint rule, whose
-/// ends show hardly any.
+/// Share of energy by which the sum may seem too large where the step does not resolve the stiffest mode: it is the
+/// implicit midpoint rule there, whose ends show hardly any of that.
 const UNRESOLVED_SWAY: f64 = 0.002;
 
 /// Rounds of taking.
@@ -37,16 +37,16 @@ pub(crate) struct Bound {
 
 impl Bound {
     /// Sees what was done to the network since the last step.
-    pub(crate) fn begin(&mut self, elements: &[Element], bodies: &[Body], meddled: bool) {
+    pub(crate) fn begin(&mut self, elements: &[Element], bodies: &[Body], perturbed: bool) {
         let now = Energy::of(elements, bodies).sum();
         let rounding = rounding(elements, bodies);
-        self.start(now, rounding, power(elements, bodies), meddled);
+        self.start(now, rounding, power(elements, bodies), perturbed);
     }
 
-    /// The same with the energy at hand, what of it can be rounding, and the power of moving ends.
-    pub(crate) fn start(&mut self, now: f64, rounding: f64, power: f64, meddled: bool) {
+    /// Begins a step with the energy `now`, of which `rounding` can be noise, and the power of moving ends, W.
+    pub(crate) fn start(&mut self, now: f64, rounding: f64, power: f64, perturbed: bool) {
         let change = now - self.last;
-        let gift = if change.abs() < rounding || (change > 0.0 && !meddled) {
+        let gift = if change.abs() < rounding || (change > 0.0 && !perturbed) {
             // Noise of the engine's f32 is neither gift nor loss, nor is it a gift that it does not arrive where it
             // was sent.
             0.0
@@ -161,13 +161,13 @@ impl Bound {
         if self.given.is_some() {
             self.finish(Energy::of(elements, bodies).sum(), time);
             // From the next step on what torques gave is what the bodies have.
-            let driven: f64 = bodies.iter().map(|body| body.driven).sum();
-            self.last += driven;
-            self.given = self.given.map(|given| given + driven);
+            let torque_work: f64 = bodies.iter().map(|body| body.torque_work).sum();
+            self.last += torque_work;
+            self.given = self.given.map(|given| given + torque_work);
         }
     }
 
-    /// The same with the energy at hand.
+    /// Ends a step with such an energy, J.
     pub(crate) fn finish(&mut self, energy: f64, time: f64) {
         self.last = energy;
         if let Some(given) = &mut self.given {

@@ -90,7 +90,7 @@ impl End {
             },
             End::Body { index, arm } => {
                 let body = &bodies[index];
-                if body.spin == Spin::Still && arm == DVec3::ZERO {
+                if body.spin == Spin::Ignored && arm == DVec3::ZERO {
                     return Hold {
                         body: Some(index),
                         arm,
@@ -164,7 +164,7 @@ impl End {
         match (*self, hold.body) {
             (End::Body { .. }, Some(index)) => {
                 let body = &bodies[index];
-                if body.spin == Spin::Still {
+                if body.spin == Spin::Ignored {
                     return (body.velocity, body.acceleration, DVec3::ZERO);
                 }
                 let turning = body.angular_velocity();
@@ -245,7 +245,7 @@ impl Element {
                 End::Path(path) => path.position,
                 End::Body { index, .. } => {
                     let body = &bodies[*index];
-                    if body.spin != Spin::Still || !body.moves_alike() {
+                    if body.spin != Spin::Ignored || !body.moves_alike() {
                         return None;
                     }
                     sum += body.inverse_mass.x;

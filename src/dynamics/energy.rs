@@ -21,7 +21,7 @@ impl Energy {
         let mut energy = Self::default();
         for body in bodies {
             energy.motion += body.motion();
-            energy.place -= (body.mass() * body.acceleration).dot(body.position) + body.driven;
+            energy.place -= (body.mass() * body.acceleration).dot(body.position) + body.torque_work;
         }
         for element in elements {
             energy.stored += element.elastic(element.distance(bodies).0).energy;
@@ -71,7 +71,7 @@ impl Body {
     /// Kinetic energy of its rotation, J.
     pub(crate) fn turning(&self) -> f64 {
         let twice = match self.spin {
-            Spin::Still => 0.0,
+            Spin::Ignored => 0.0,
             Spin::Free { momentum } => momentum.dot(self.angular_velocity()),
             Spin::Locked { velocity } => {
                 let mut inverse = self.inverse_inertia();

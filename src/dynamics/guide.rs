@@ -108,7 +108,7 @@ fn twist(axis: DVec3, [frame, other]: [DQuat; 2]) -> Option<(DVec3, f64)> {
     Some((frame * gradient, 2.0 * along.atan2(w)))
 }
 
-/// The same angle within half a turn.
+/// An angle less whole turns, so that it is within half a turn, rad.
 fn wrapped(angle: f64) -> f64 {
     let within = angle.rem_euclid(TAU);
     if within > PI { within - TAU } else { within }

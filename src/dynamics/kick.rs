@@ -36,7 +36,7 @@ fn poles_of(element: &Element, line: &Line, step: f64, memo: &mut Memo) -> Poles
 }
 
 /// ω²·stretch − a_out for a length.
-fn unanswered(element: &Element, line: &Line, length: f64, outside: f64) -> f64 {
+fn residual_acceleration(element: &Element, line: &Line, length: f64, outside: f64) -> f64 {
     element.stiffness * line.inverse_mass * (length - element.rest_length) - outside
 }
 
@@ -49,13 +49,14 @@ pub(crate) fn kick(element: &Element, bodies: &mut [Body], step: f64, memo: &mut
     let before = line.motion(element, bodies, step);
     let rate = line.backward_rate(&before, step);
     let impulse = |outside: f64, drifted: f64| {
-        let unanswered = unanswered(element, &line, line.length - drifted, outside);
+        let residual_acceleration =
+            residual_acceleration(element, &line, line.length - drifted, outside);
         if line.inverse_mass <= 0.0 {
             // Both ends are held: nothing moves for it, but what holds them feels the force.
             let stretch = line.length - drifted - element.rest_length;
             return -step * (element.stiffness * stretch + element.damping * rate);
         }
-        let total = -poles.restoring * unanswered - poles.loss / step * rate;
+        let total = -poles.restoring * residual_acceleration - poles.loss / step * rate;
         step * (total - outside) / line.inverse_mass
     };
     let z = element.stiffness * line.inverse_mass * step * step;
@@ -121,8 +122,9 @@ pub(crate) fn map_velocity(
     }
     let coefficients = poles_of(element, &line, step, memo);
     let motion = line.motion(element, bodies, step);
-    let unanswered = unanswered(element, &line, line.length, motion.outside());
-    let offset = coefficients.skew * step * unanswered;
+    let residual_acceleration =
+        residual_acceleration(element, &line, line.length, motion.outside());
+    let offset = coefficients.skew * step * residual_acceleration;
     let mapped = match map {
         Map::ToStepped => (motion.axial - offset) / coefficients.speed,
         Map::ToTrue => coefficients.speed * motion.axial + offset,
@@ -136,7 +138,7 @@ pub(crate) fn map_velocity(
 /// An isotropic spring swings across its line as well as along it. Only where no body turns: a pair of
 /// impulses across the line is a torque.
 fn swings_across(line: &Line, bodies: &[Body]) -> bool {
-    line.isotropic && bodies.iter().all(|body| body.spin == Spin::Still)
+    line.isotropic && bodies.iter().all(|body| body.spin == Spin::Ignored)
 }
 
 fn map_lateral(

@@ -107,7 +107,7 @@ impl Line {
                 && w.y == w.z
                 && hold
                     .body
-                    .is_none_or(|index| bodies[index].spin == Spin::Still)
+                    .is_none_or(|index| bodies[index].spin == Spin::Ignored)
         })
     }
 

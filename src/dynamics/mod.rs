@@ -3,13 +3,12 @@
 //! Read in the order in which a step runs. [`tolerance`] decides how finely to step, [`step`] holds what has
 //! to be solved together. [`body`] drifts, [`element`] has the [`line`] between its ends (or
 //! what [`guide`] gives instead, and the [`linkage`] that holds their bodies), [`poles`] gives
-//! the exact coefficients; [`kick`] acts for a lone element, [`pair`] for one on bodies that do not turn, four of them [`abreast`],
-//! [`shock`] for one of those with a force [`law`] of its own, [`network`] for elements that share bodies,
+//! the exact coefficients; [`kick`] acts for a lone element, [`pair`] for one on bodies that do not turn, four of those at once in [`lanes`],
+//! [`nonlinear_pair`] for one of those with a force [`law`] of its own, [`network`] for elements that share bodies,
 //! with the linear algebra in [`system`] and [`strut`], and [`points`] for those that turn none. [`guard`] keeps strong
 //! damping honest, and [`bound`] a network, by their [`energy`]. [`delivery`] says which impulse and force
 //! make the engine arrive there.
 
-pub(crate) mod abreast;
 pub(crate) mod body;
 mod bound;
 pub(crate) mod delivery;
@@ -18,16 +17,17 @@ pub(crate) mod energy;
 pub(crate) mod guard;
 pub(crate) mod guide;
 pub(crate) mod kick;
+pub(crate) mod lanes;
 pub(crate) mod law;
 pub(crate) mod line;
 pub(crate) mod linkage;
 pub(crate) mod moving;
 pub(crate) mod network;
+pub(crate) mod nonlinear_pair;
 pub(crate) mod pair;
 pub(crate) mod points;
 pub(crate) mod poles;
 mod resolution;
-pub(crate) mod shock;
 pub(crate) mod soft;
 pub(crate) mod step;
 mod strut;

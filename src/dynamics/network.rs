@@ -15,12 +15,12 @@ use super::body::{Body, Spin};
 use super::element::{Element, End};
 use super::kick;
 use super::line::{Line, Motion};
-use super::resolution::ways;
+use super::resolution::predicted_travel;
 use super::strut::{NOBODY, Strut, Twists};
 use super::system::{Effort, System};
 use bevy::math::DVec3;
 
-mod bent;
+mod kinked;
 mod placement;
 
 use placement::steep;
@@ -57,10 +57,10 @@ struct Row {
     before: Motion,
     /// Force on its ends before the solve, world frame.
     load: DVec3,
-    /// What the turning of the line adds to it along the line, N per m/s².
-    turning: f64,
-    /// The turning itself, m/s².
-    turns: f64,
+    /// Force along the line for each m/s² of centripetal acceleration, N per m/s².
+    centripetal_gain: f64,
+    /// Centripetal acceleration of the line and of the arms, m/s².
+    centripetal: f64,
     /// Force of the spring in the load, N.
     elastic: f64,
     /// Damping force before the solve, N, and what it gains per m/s².
@@ -80,14 +80,14 @@ impl Network {
         for element in elements {
             if let Some(line) = element.line(bodies) {
                 // Of a linear one they do not depend on how fast it is.
-                let (rate, ways) = match element.law {
+                let (rate, predicted_travel) = match element.law {
                     Some(_) => {
                         let motion = line.motion(element, bodies, step);
-                        (motion.axial, ways(&motion, step))
+                        (motion.axial, predicted_travel(&motion, step))
                     }
                     None => (0.0, [0.0; 2]),
                 };
-                self.add_bounds(element, &line, rate, &ways);
+                self.add_bounds(element, &line, rate, &predicted_travel);
             }
         }
         self.end_bounds(step)
@@ -104,8 +104,8 @@ impl Network {
                     line,
                     before: line.motion(element, bodies, step),
                     load: DVec3::ZERO,
-                    turning: 0.0,
-                    turns: 0.0,
+                    centripetal_gain: 0.0,
+                    centripetal: 0.0,
                     elastic: 0.0,
                     drag: 0.0,
                     damping: 0.0,
@@ -131,9 +131,9 @@ impl Network {
         }
     }
 
-    fn add_bounds(&mut self, element: &Element, line: &Line, rate: f64, ways: &[f64]) {
+    fn add_bounds(&mut self, element: &Element, line: &Line, rate: f64, predicted_travel: &[f64]) {
         let ahead = |way: &f64| element.stiffness_ahead(line.length, *way);
-        let stiffness = ways.iter().map(ahead).fold(0.0, f64::max);
+        let stiffness = predicted_travel.iter().map(ahead).fold(0.0, f64::max);
         let damping = element.drag(line.length, rate).slope;
         let w = line
             .holds
@@ -156,7 +156,7 @@ impl Network {
         )
     }
 
-    /// The kick at the half drift: all elements and outside forces together. `bends` if it has to keep the energy of
+    /// The kick at the half drift: all elements and outside forces together. `kinks` if it has to keep the energy of
     /// laws that bend within the step.
     pub(crate) fn kick(
         &mut self,
@@ -164,7 +164,7 @@ impl Network {
         bodies: &mut [Body],
         step: f64,
         budget: u32,
-        bends: bool,
+        kinks: bool,
     ) {
         self.measure(elements, bodies, step);
         let (z_max, _) = self.bounds_of_rows(elements, bodies.len(), step);
@@ -173,7 +173,7 @@ impl Network {
         self.system.prepare();
 
         for row in &mut self.rows {
-            row.turns = row.before.turning + row.before.arms;
+            row.centripetal = row.before.turning + row.before.arms;
         }
         self.solve(bodies, budget);
         let mut trial = std::mem::take(&mut self.trial);
@@ -183,11 +183,11 @@ impl Network {
         for row in &mut self.rows {
             // The mean of before and after the kick keeps the step its own mirror image in time.
             let after = row.line.motion(&elements[row.element], &trial, step);
-            row.turns = 0.5 * (row.turns + after.turning + after.arms);
+            row.centripetal = 0.5 * (row.centripetal + after.turning + after.arms);
         }
         self.trial = trial;
         self.solve(bodies, budget);
-        if bends {
+        if kinks {
             self.keep_energy(elements, bodies, step, budget);
         }
         self.act(bodies, step);
@@ -237,7 +237,7 @@ impl Network {
             let across = across(element, line, tension);
             let now = tension + drag.force + step * stiffness * before.axial;
             row.load = now * line.direction + step * across * before.lateral;
-            row.turning = 0.0;
+            row.centripetal_gain = 0.0;
             let (along, across) = (step * late, step * step * across);
             self.system.struts.push(strut(line, bodies, along, across));
         }
@@ -297,7 +297,7 @@ impl Network {
                 .sum();
             let settle_across = settling(2.0 * h2 * across * freest) * step;
             // The half drift counted h²/8 of the turning as stretch already.
-            row.turning = (theta - 0.125) * h2 * k + damping;
+            row.centripetal_gain = (theta - 0.125) * h2 * k + damping;
             row.elastic = elastic.force;
             row.drag = tension - elastic.force;
             row.damping = damping;
@@ -343,7 +343,7 @@ impl Network {
 fn strut(line: &Line, bodies: &[Body], along: f64, across: f64) -> Strut {
     let arm = |end: usize| match line.holds[end].body {
         _ if line.holds[end].twist => DVec3::ZERO,
-        Some(index) if bodies[index].spin != Spin::Still => line.holds[end].arm,
+        Some(index) if bodies[index].spin != Spin::Ignored => line.holds[end].arm,
         _ => DVec3::ZERO,
     };
     Strut {
@@ -358,7 +358,7 @@ fn strut(line: &Line, bodies: &[Body], along: f64, across: f64) -> Strut {
 
 impl Row {
     fn force(&self) -> DVec3 {
-        self.load + self.turning * self.turns * self.line.direction
+        self.load + self.centripetal_gain * self.centripetal * self.line.direction
     }
 }
 

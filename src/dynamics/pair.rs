@@ -7,9 +7,9 @@
 use super::kick::Memo;
 use super::law::Law;
 use super::line;
+use super::nonlinear_pair::NonlinearPair;
 use super::poles::{Poles, RESOLVED_PHASE};
 use super::resolution::EXTRAPOLATION_LIMIT;
-use super::shock::Shock;
 use bevy::math::DVec3;
 
 /// c h/m above which a step's energy is watched; see [`super::guard`].
@@ -97,7 +97,7 @@ impl Pair {
     }
 
     /// Whether micro-steps of so long are kicks along the line and nothing else: then it can go
-    /// [`super::abreast`] with others.
+    /// several at once in [`super::lanes`].
     pub(crate) fn is_plain(&self, step: f64) -> bool {
         self.rest_length > 0.0 && !self.is_watched(step)
     }
@@ -200,8 +200,9 @@ impl Pair {
         let outside = line.pushed + turning;
         // The straight half drift lengthened the line by that already.
         let length = line.length - step * step / 8.0 * turning;
-        let unanswered = self.stiffness * self.inverse_mass * (length - self.rest_length) - outside;
-        let total = -poles.restoring * unanswered - poles.loss / step * rate;
+        let residual_acceleration =
+            self.stiffness * self.inverse_mass * (length - self.rest_length) - outside;
+        let total = -poles.restoring * residual_acceleration - poles.loss / step * rate;
         state.v += step * (total - outside) * line.direction + step * self.outside;
     }
 
@@ -223,7 +224,7 @@ impl Pair {
             },
         };
         let outside = line.pushed + line.turning(line.lateral_square, step);
-        let unanswered =
+        let residual_acceleration =
             self.stiffness * self.inverse_mass * (line.length - self.rest_length) - outside;
         let z = self.stiffness_number(step);
         let speed = if line.isotropic && is_resolved(z) {
@@ -231,7 +232,7 @@ impl Pair {
         } else {
             poles.speed
         };
-        let (axial, across) = to(line.axial, poles.skew * step * unanswered, speed);
+        let (axial, across) = to(line.axial, poles.skew * step * residual_acceleration, speed);
         state.v += (axial - line.axial) * line.direction;
         if line.isotropic {
             state.v += (across - 1.0) * line.lateral;
@@ -257,7 +258,7 @@ impl Pair {
     }
 
     /// A step that went too far for its energy, because it follows neither the motion nor its decay, is taken
-    /// again by [`super::shock`], which keeps energy at any stiffness. Very strong damping is not its field; there
+    /// again by [`super::nonlinear_pair`], which keeps energy at any stiffness. Very strong damping is not its field; there
     /// the motion along the line is over so soon that its exact solution is taken, and what surplus is left comes out
     /// of that motion.
     fn keep_energy(
@@ -277,7 +278,7 @@ impl Pair {
         if surplus(state) > GAIN * scale {
             let kept = if damped < FIERCE {
                 let law = Law::linear(self.stiffness, self.damping);
-                let mut again = Shock::new(self, &law, *start, memo);
+                let mut again = NonlinearPair::new(self, &law, *start, memo);
                 again.keep_energy(time);
                 again.state
             } else {

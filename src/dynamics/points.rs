@@ -2,10 +2,10 @@
 //!
 //! What it does is what [`super::network`] does, to rounding; but here an end is a point mass instead of a
 //! rigid body, so that thousands of them stay in the processor's cache. [`kick`] has the step,
-//! [`solve`] its linear system, [`carry`] what a network needs that goes from one step into the next,
+//! [`solve`] its linear system, [`warm_start`] what a network needs that goes from one step into the next,
 //! [`survey`] its energy.
 
-mod carry;
+mod free_points;
 mod kick;
 mod solve;
 mod survey;
@@ -16,7 +16,7 @@ use super::guide::Guide;
 use super::resolution::EXTRAPOLATION_LIMIT;
 use super::tolerance::{Motion, velocity_counts};
 use bevy::math::DVec3;
-pub(crate) use carry::{Flight, FreePoint};
+pub(crate) use free_points::{Flight, FreePoint};
 use kick::Bar;
 use solve::Solver;
 
@@ -153,14 +153,13 @@ fn noise(a: &Point, b: &Point) -> f64 {
 impl Points {
     /// Whether a network is of this kind.
     pub(super) fn can_be(elements: &[Element], bodies: &[Body]) -> bool {
-        bodies
-            .iter()
-            .all(|body| body.spin == Spin::Still && body.inverse_mass.x > 0.0 && body.moves_alike())
-            && elements.iter().all(|element| {
-                element.guide == Guide::Centres
-                    && element.law.is_none()
-                    && element.ends.iter().all(End::is_central)
-            })
+        bodies.iter().all(|body| {
+            body.spin == Spin::Ignored && body.inverse_mass.x > 0.0 && body.moves_alike()
+        }) && elements.iter().all(|element| {
+            element.guide == Guide::Centres
+                && element.law.is_none()
+                && element.ends.iter().all(End::is_central)
+        })
     }
 
     /// Takes the network in as it stands.

@@ -26,6 +26,6 @@ pub(super) fn finer(z: f64) -> u32 {
 
 /// Ways along the line that the present motion can lead to in a step, as fast as it is in its middle and in its end
 /// under what acts from outside.
-pub(super) fn ways(motion: &Motion, time: f64) -> [f64; 2] {
+pub(super) fn predicted_travel(motion: &Motion, time: f64) -> [f64; 2] {
     [0.5, 1.0].map(|share| AHEAD * time * (motion.axial + share * time * motion.pushed))
 }

@@ -22,7 +22,7 @@ const RESOLVED: f64 = 0.5;
 /// the most substeps do not resolve a mode. Pinned by `ground::nets`.
 const UNRESOLVED: [f64; 2] = [1.5, 2.0];
 
-/// The same for elements without damping of their own, so that they keep their energy too; and the most substeps that this
+/// ω h that substeps aim at for elements without damping of their own, so that they keep their energy too; and the most substeps that this
 /// is worth. Pinned by `ground::hinge`.
 const KEPT: f64 = 0.05;
 const WORTH: u32 = 32;

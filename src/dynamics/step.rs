@@ -8,19 +8,19 @@ use super::guard::Guard;
 use super::guide::Guide;
 use super::kick::{self, Map, Memo};
 use super::network::Network;
+use super::nonlinear_pair::PairView;
 use super::points::Points;
 use super::resolution::{EXTRAPOLATION_LIMIT, finer};
-use super::shock::Apart;
 use super::tolerance::{
     Accuracy, Controller, Method, Motion, Outcome, VELOCITY_COUNTS, velocity_counts,
 };
 use bevy::math::DVec3;
 
-mod bends;
-mod carry;
 mod keep;
+mod kinks;
+mod warm_start;
 
-use bends::Bends;
+use kinks::Kinks;
 
 /// Bodies that elements connect, with those elements: what has to be solved together. Kept from step to
 /// step by whoever fills it, so that nothing is allocated anew.
@@ -29,11 +29,11 @@ pub(crate) struct Component {
     pub bodies: Vec<Body>,
     pub elements: Vec<Element>,
     /// Something else than its elements can have changed its energy since the last step.
-    pub meddled: bool,
+    pub perturbed: bool,
     /// How far the engine moves a body in a step, m, if there is a limit.
     pub farthest_move: Option<f64>,
     /// It is a network of points that goes on from the last step: bodies and elements are out of date.
-    pub carried: bool,
+    pub is_warm: bool,
     pub(super) memory: Memory,
 }
 
@@ -46,7 +46,7 @@ pub(super) struct Memory {
     /// Length of the last step, if the points can go on from it.
     carriable: Option<f64>,
     controller: Controller,
-    bends: Bends,
+    kinks: Kinks,
     bound: Bound,
     saved: [Saved; 3],
     max_iterations: u32,
@@ -67,7 +67,7 @@ impl Component {
         let alone = self.is_alone();
         let mut controller = std::mem::take(&mut self.memory.controller);
         let apart = match self.elements.as_slice() {
-            [element] => Apart::of(element, &self.bodies),
+            [element] => PairView::of(element, &self.bodies),
             _ => None,
         };
         if let Some(apart) = apart {
@@ -85,17 +85,17 @@ impl Component {
             // Held back there, energy has to be watched.
             self.load(0);
         }
-        if self.carried {
+        if self.is_warm {
             self.memory.points.begin(self.memory.max_iterations);
         }
-        if self.carried || self.is_of_points(time) {
+        if self.is_warm || self.is_of_points(time) {
             let outcome =
                 self.advance_points(time, |motion| controller.drive(motion, time, accuracy));
             self.memory.controller = controller;
             return outcome;
         }
         let bound = &mut self.memory.bound;
-        bound.begin(&self.elements, &self.bodies, self.meddled);
+        bound.begin(&self.elements, &self.bodies, self.perturbed);
         self.save(0);
         let mut outcome = controller.drive(self, time, accuracy);
         self.memory.controller = controller;
@@ -117,7 +117,7 @@ impl Component {
 
     /// Whether all is well after a step.
     pub(crate) fn is_finite(&self) -> bool {
-        if self.carried {
+        if self.is_warm {
             self.memory.points.are_finite()
         } else {
             self.bodies.iter().all(Body::is_finite)
@@ -185,16 +185,16 @@ impl Component {
             let Memory {
                 network,
                 max_iterations,
-                bends,
+                kinks,
                 ..
             } = &mut self.memory;
-            let bends = bends.keep_energy();
+            let kinks = kinks.keep_energy();
             network.kick(
                 &mut self.elements,
                 &mut self.bodies,
                 step,
                 *max_iterations,
-                bends,
+                kinks,
             );
             self.drift(step / 2.0);
             self.aim(step);
@@ -208,14 +208,14 @@ impl Component {
         let [element] = self.elements.as_slice() else {
             return false;
         };
-        let turns = self.bodies.iter().any(|body| body.spin != Spin::Still);
+        let turns = self.bodies.iter().any(|body| body.spin != Spin::Ignored);
         let isotropic = element.rest_length == 0.0 && element.guide == Guide::Centres;
         self.bodies.len() <= 2 && element.law.is_none() && !(isotropic && turns)
     }
 
     /// Time over which velocities that are off these count.
     fn velocity_counts(&self, other: &[Body]) -> f64 {
-        if self.bodies.iter().any(|body| body.spin != Spin::Still) {
+        if self.bodies.iter().any(|body| body.spin != Spin::Ignored) {
             return VELOCITY_COUNTS;
         }
         let faster = |i: usize| self.bodies[i].velocity - other[i].velocity;
@@ -262,7 +262,7 @@ impl Motion for Component {
         self.elements.clone_from(&saved.elements);
     }
 
-    /// As many as resolve a network's stiffest mode, and the blow where a law bends; one where that is out of
+    /// As many as resolve a network's stiffest mode, and the blow where a law kinks; one where that is out of
     /// reach.
     fn least(&mut self, time: f64) -> u32 {
         if self.is_alone() {
@@ -292,7 +292,7 @@ impl Motion for Component {
         for (a, b) in self.bodies.iter().zip(other) {
             let mut apart =
                 (a.position - b.position).length() + counts * (a.velocity - b.velocity).length();
-            if a.spin != Spin::Still {
+            if a.spin != Spin::Ignored {
                 let radius = (a.inertia.max_element() * a.inverse_mass.max_element()).sqrt();
                 let turned = (a.rotation * b.rotation.inverse()).to_scaled_axis();
                 let spun = a.angular_velocity() - b.angular_velocity();
@@ -309,7 +309,7 @@ impl Motion for Component {
             fine.velocity += (fine.velocity - coarse.velocity) / 3.0;
             fine.given.0 += (fine.given.0 - coarse.given.0) / 3.0;
             fine.given.1 += (fine.given.1 - coarse.given.1) / 3.0;
-            fine.driven += (fine.driven - coarse.driven) / 3.0;
+            fine.torque_work += (fine.torque_work - coarse.torque_work) / 3.0;
             let apart = shortest(fine.rotation * coarse.rotation.inverse()).to_scaled_axis();
             match (&mut fine.spin, coarse.spin) {
                 (Spin::Free { momentum: f }, Spin::Free { momentum: c })
@@ -329,6 +329,6 @@ impl Motion for Component {
         let network = &mut self.memory.network;
         let (z, g) = network.bounds(&self.elements, &self.bodies, step);
         let resolved = z < EXTRAPOLATION_LIMIT * EXTRAPOLATION_LIMIT && g < EXTRAPOLATION_LIMIT;
-        resolved && !self.memory.bends.are_near()
+        resolved && !self.memory.kinks.are_near()
     }
 }

@@ -14,7 +14,7 @@ pub(super) struct Strut {
     pub direction: DVec3,
     /// Force that a relative acceleration along the line adds, N per m/s².
     pub along: f64,
-    /// The same across it.
+    /// Force that a relative acceleration across the line adds, N per m/s².
     pub across: f64,
     /// It turns its bodies instead of pushing them.
     pub twist: bool,

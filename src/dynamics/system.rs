@@ -46,7 +46,7 @@ impl System {
     /// Takes in masses and inertias, and forgets all struts.
     pub(super) fn begin(&mut self, bodies: &[Body]) {
         self.struts.clear();
-        self.turns = bodies.iter().any(|body| body.spin != Spin::Still);
+        self.turns = bodies.iter().any(|body| body.spin != Spin::Ignored);
         self.mass.clear();
         self.inertia.clear();
         self.free.clear(bodies.len(), self.turns);
@@ -58,7 +58,7 @@ impl System {
             self.free.linear[i] = free;
             let mass = DVec3::select(w.cmpgt(DVec3::ZERO), w.recip(), DVec3::ONE);
             self.mass.push(DMat3::from_diagonal(mass));
-            let turns = body.spin != Spin::Still;
+            let turns = body.spin != Spin::Ignored;
             self.places.push((self.unknowns, turns));
             self.unknowns += if turns { 6 } else { 3 };
             if self.turns && !turns {

@@ -16,7 +16,7 @@ pub(super) fn point(mass: f64, position: DVec3, gravity: DVec3) -> Body {
         position,
         velocity: DVec3::ZERO,
         rotation: DQuat::IDENTITY,
-        spin: Spin::Still,
+        spin: Spin::Ignored,
         inverse_mass: DVec3::splat(1.0 / mass),
         inertia: DVec3::ONE,
         principal: DQuat::IDENTITY,
@@ -25,7 +25,7 @@ pub(super) fn point(mass: f64, position: DVec3, gravity: DVec3) -> Body {
         acceleration: gravity,
         torque: DVec3::ZERO,
         given: (DVec3::ZERO, DVec3::ZERO),
-        driven: 0.0,
+        torque_work: 0.0,
         turned: None,
     }
 }

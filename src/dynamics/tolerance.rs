@@ -97,9 +97,9 @@ pub(crate) trait Motion {
 /// Time over which a velocity that is wrong becomes a position that is wrong, s.
 pub(crate) const VELOCITY_COUNTS: f64 = 0.15;
 
-/// The same of velocities with so much kinetic energy in all, against which springs gain energy at first as the
-/// square of time times so much (J, J/s²): what swings back within a period counts no longer than that. By
-/// Rayleigh's quotient of the two.
+/// Time over which wrong velocities become wrong positions, s, where springs turn them back. `motion` is their kinetic
+/// energy, J; `stiffened` is what springs take of it over the square of time, J/s². What swings back within a period counts
+/// no longer than that, by Rayleigh's quotient of the two.
 pub(crate) fn velocity_counts(motion: f64, stiffened: f64) -> f64 {
     // NaN where nothing is wrong; the sum of nothing is −0.
     let omega = (stiffened / motion).abs().sqrt();

@@ -1,11 +1,11 @@
 //! One component through one step: gather, wake, integrate, deliver.
 
 use super::body::{Push, push, read};
-use super::carry::Carry;
 use super::element::element;
 use super::rows::{BodyRow, ElementRow, Members, pull_mark};
 use super::sleep::omega_of;
 use super::step::Step;
+use super::warm_start::WarmStart;
 use crate::dynamics::body::Body;
 use crate::dynamics::step::Component;
 use crate::dynamics::tolerance::Outcome;
@@ -29,7 +29,7 @@ pub(crate) struct Assembly {
     /// It was found asleep.
     asleep: bool,
     pub(super) outcome: Outcome,
-    pub(super) carry: Carry,
+    pub(super) warm: WarmStart,
 }
 
 /// What there is to do.
@@ -86,15 +86,15 @@ impl Assembly {
         }
         self.asleep = false;
         self.component.farthest_move = Some(step.engine.fastest * step.plan.time);
-        if self.carry_on(step, members, elements, bodies, set) {
+        if self.continue_warm(step, members, elements, bodies, set) {
             return;
         }
         let component = &mut self.component;
         component.forget_points();
         component.elements.clear();
         self.start.clear();
-        self.carry.centers.clear();
-        component.meddled = self.carry.meddled;
+        self.warm.centers.clear();
+        component.perturbed = self.warm.perturbed;
         for (slot, b) in members.bodies.iter().enumerate() {
             let row = &mut bodies[*b];
             row.slot = slot;
@@ -102,23 +102,23 @@ impl Assembly {
                 return;
             };
             row.can_touch = !body.colliders().is_empty();
-            self.carry.centers.push(body.local_center_of_mass());
+            self.warm.centers.push(body.local_center_of_mass());
             let mut free = read(body, step.engine.gravity, &row.user, row.turns);
             if row.turns {
                 free.farthest_turn = step.farthest_turn(body);
             }
             let pulled = pull_mark(free.acceleration);
-            component.meddled |= row.was_driven(body, free.position);
-            component.meddled |= replace(&mut row.pulled, pulled) != pulled;
+            component.perturbed |= row.was_perturbed(body, free.position);
+            component.perturbed |= replace(&mut row.pulled, pulled) != pulled;
             self.start.push(free);
         }
         let sound = self.start.iter().all(Body::is_finite);
         let (mut disturbed, mut omega) = (false, 0.0_f32);
-        self.carry.ends.clear();
+        self.warm.ends.clear();
         for (index, e) in members.elements.iter().enumerate() {
             let row = &mut elements[*e];
             let has_moved = step.has_moved(row, set);
-            component.meddled |= has_moved || take(&mut row.refitted);
+            component.perturbed |= has_moved || take(&mut row.refitted);
             disturbed |= row.changed || has_moved;
             let ends = [0, 1].map(|end| step.end(row, end, bodies, set));
             if let Some(element) = element(row, ends, &self.start) {
@@ -127,12 +127,12 @@ impl Assembly {
                 }
                 omega = omega.max(omega_of(row));
                 for (end, _) in ends.iter().enumerate().filter(|(_, end)| end.is_path()) {
-                    self.carry.ends.push((index, end));
+                    self.warm.ends.push((index, end));
                 }
                 component.elements.push(element);
             }
         }
-        self.carry.omega = omega;
+        self.warm.omega = omega;
         let awake = step.is_awake(bodies, members.bodies, omega, set, disturbed);
         for e in members.elements {
             elements[*e].active = awake;
@@ -160,17 +160,17 @@ impl Assembly {
         if self.state != State::Ready {
             return;
         }
-        let carried = self.component.carried;
+        let carried = self.component.is_warm;
         self.outcome = self.component.advance(step.plan.time, step.accuracy);
         if !self.component.is_finite() {
             self.state = State::Powerless;
             self.component.forget_points();
         }
-        if carried && !self.component.carried {
-            self.start.clone_from_slice(self.component.put_down_at());
+        if carried && !self.component.is_warm {
+            self.start.clone_from_slice(self.component.start_bodies());
         }
         self.orders.clear();
-        if self.state != State::Ready || self.component.carried {
+        if self.state != State::Ready || self.component.is_warm {
             return;
         }
         for (slot, b) in members.bodies.iter().enumerate() {
@@ -197,8 +197,8 @@ impl Assembly {
         }
         // Taken, so that the step of another context does not advance it again.
         let ready = take(&mut self.state) == State::Ready;
-        if ready && self.component.carried {
-            return self.deliver_carried(step, members, elements, bodies, set);
+        if ready && self.component.is_warm {
+            return self.deliver_warm(step, members, elements, bodies, set);
         }
         if ready {
             step.wake_the_moved(

@@ -135,7 +135,7 @@ pub(super) fn read(body: &RapierBody, gravity: Vec3, user: &ExternalForce, turns
             + rotation * properties.local_com.as_dvec3(),
         velocity: body.linvel().as_dvec3(),
         rotation,
-        spin: Spin::Still,
+        spin: Spin::Ignored,
         inverse_mass,
         inertia: properties.principal_inertia().as_dvec3(),
         principal: properties
@@ -148,7 +148,7 @@ pub(super) fn read(body: &RapierBody, gravity: Vec3, user: &ExternalForce, turns
             + inverse_mass * user.force.as_dvec3(),
         torque: user.torque.as_dvec3(),
         given: (DVec3::ZERO, DVec3::ZERO),
-        driven: 0.0,
+        torque_work: 0.0,
         turned: None,
     };
     if turns {
@@ -238,7 +238,7 @@ pub(super) fn push(
     );
     let force = force_for(linear - start.acceleration, start.inverse_mass);
     let (mut angvel, mut torque) = (None, DVec3::ZERO);
-    if start.spin != Spin::Still {
+    if start.spin != Spin::Ignored {
         let inverse_inertia = start.inverse_inertia();
         let spin = start.angular_velocity();
         let gyroscopic = body.gyroscopic_forces_enabled();

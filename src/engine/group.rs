@@ -136,7 +136,7 @@ impl Groups {
     }
 
     /// Gives every group that needs one its assembly: the one that it had, if it was there before.
-    pub(super) fn furnish(
+    pub(super) fn assign_assemblies(
         &mut self,
         assemblies: &mut Vec<Assembly>,
         elements: &[ElementRow],

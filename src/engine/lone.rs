@@ -1,29 +1,29 @@
 //! Lone elements on bodies that they do not turn: read, solved and delivered some at a time.
 //!
-//! Most elements of most scenes are of this kind. Whatever is out of the ordinary about one (contacts,
+//! Most elements of most scenes are of this kind. One that has anything special (contacts,
 //! joints, locked axes, ends that coincide, a sleeping end) is left to [`super::assembly`].
 
 use super::group::{Group, Groups};
-use super::point::{Flight, FreePoint, Handled};
+use super::point::{Flight, FreePoint, Route};
 use super::rows::Members;
 use super::rows::{BodyRow, ElementRow};
 use super::step::Step;
-use crate::dynamics::abreast::{ABREAST, Abreast};
 use crate::dynamics::body::is_within;
 use crate::dynamics::element::rounding;
 use crate::dynamics::guide::Guide;
+use crate::dynamics::lanes::{LANES, Lanes};
 use crate::dynamics::moving::Moving;
+use crate::dynamics::nonlinear_pair::NonlinearPair;
 use crate::dynamics::pair::{Pair, Separation};
-use crate::dynamics::shock::Shock;
 use crate::dynamics::tolerance::{Method, Outcome};
 use bevy_rapier3d::rapier::dynamics::RigidBodySet;
 use std::hint::black_box;
 
 /// How many are read before they are solved: few enough to be in the first cache still when they are delivered.
-pub(super) const FLOCK: usize = 2 * ABREAST;
+pub(super) const BATCH: usize = 2 * LANES;
 
 /// An element between reading and delivery.
-struct Aloft {
+struct PendingPair {
     group: usize,
     element: usize,
     points: [FreePoint; 2],
@@ -33,27 +33,27 @@ struct Aloft {
     /// Energy at the start, where some is lost.
     energy: Option<f64>,
     restless: bool,
-    /// It is solved abreast with others.
+    /// It is solved in a lane beside others.
     plain: bool,
 }
 
-/// Elements between reading and delivery, in order, and those of them that are solved abreast.
+/// Elements between reading and delivery, in order, and those of them that are solved in lanes.
 #[derive(Default)]
-pub(super) struct Flock {
-    aloft: Vec<Aloft>,
-    abreast: Vec<Abreast>,
+pub(super) struct Batch {
+    pending: Vec<PendingPair>,
+    lanes: Vec<Lanes>,
     plain: usize,
 }
 
-impl Flock {
+impl Batch {
     pub(super) fn is_full(&self) -> bool {
-        self.aloft.len() >= FLOCK
+        self.pending.len() >= BATCH
     }
 }
 
-/// Prefetches what the next flock needs: it is looked at in every line of memory where it lies, so that all of it
+/// Prefetches what the next batch needs: it is looked at in every line of memory where it lies, so that all of it
 /// comes at once. Read one after the other, each would be waited for.
-pub(super) fn call_up(
+pub(super) fn prefetch(
     groups: &Groups,
     next: usize,
     elements: &[ElementRow],
@@ -62,7 +62,7 @@ pub(super) fn call_up(
 ) {
     let mut seen = 0;
     let awake = |group: &&Group| group.assembly.is_none() && group.dozing.is_none();
-    for group in groups.list()[next..].iter().take(FLOCK).filter(awake) {
+    for group in groups.list()[next..].iter().take(BATCH).filter(awake) {
         let members = groups.members(group);
         for row in members.bodies.iter().map(|b| &bodies[*b]) {
             seen ^= row.user.force.x.to_bits();
@@ -86,25 +86,25 @@ pub(super) fn call_up(
 
 impl Step {
     /// Reads the element of a group, if it is an ordinary one.
-    pub(super) fn take_off(
+    pub(super) fn gather_lone(
         &self,
-        flock: &mut Flock,
+        batch: &mut Batch,
         group: usize,
         members: &Members,
         elements: &mut [ElementRow],
         bodies: &mut [BodyRow],
         set: &RigidBodySet,
         stale: &mut bool,
-    ) -> Handled {
+    ) -> Route {
         let Some(&element) = members.elements.first() else {
-            return Handled::Done;
+            return Route::Gone;
         };
         let row = &mut elements[element];
         if row.companion.guide != Guide::Centres {
-            return Handled::Never;
+            return Route::General;
         }
         if row.on[0] == row.on[1] {
-            return Handled::No;
+            return Route::GeneralOnce;
         }
         let time = self.plan.time;
         let movable = [0, 1].map(|end| row.movable(end));
@@ -114,7 +114,7 @@ impl Step {
         for (found, index) in found.iter_mut().zip(members.bodies) {
             let Some(body) = self.movable(set, bodies[*index].handle, stale) else {
                 row.active = false;
-                return Handled::Done;
+                return Route::Gone;
             };
             bodies[*index].can_touch = !body.colliders().is_empty();
             sleepers += usize::from(body.is_sleeping());
@@ -123,10 +123,10 @@ impl Step {
         if sleepers > 0 {
             let disturbed = row.changed || members.bodies.iter().any(|b| bodies[*b].disturbed);
             if sleepers < members.bodies.len() || disturbed || self.has_moved(row, set) {
-                return Handled::No;
+                return Route::GeneralOnce;
             }
             row.active = false;
-            return Handled::Asleep(match movable {
+            return Route::Asleep(match movable {
                 [Some(a), Some(b)] if row.watched == [false; 2] => {
                     Some([bodies[a].handle, bodies[b].handle])
                 }
@@ -157,7 +157,7 @@ impl Step {
         let rest_length = row.parameters.rest_length.map(f64::from);
         let coincide = d.length_squared() <= rounding * rounding;
         if coincide && row.memory.direction.is_none() && rest_length != Some(0.0) {
-            return Handled::No;
+            return Route::GeneralOnce;
         }
         let length = d.length();
         let has_moved = self.has_moved(row, set);
@@ -166,7 +166,7 @@ impl Step {
         }
         row.memory.length = length;
         if !row.is_sound(v, d) {
-            return Handled::No;
+            return Route::GeneralOnce;
         }
         let inverse_mass = a.inverse_mass + b.inverse_mass;
         let omega = (row.slope() * inverse_mass).sqrt();
@@ -205,15 +205,15 @@ impl Step {
         let step = count.map_or(0.0, |count| time / f64::from(count));
         let plain = count.is_some() && pair.is_plain(step);
         if plain {
-            let (at, lane) = (flock.plain / ABREAST, flock.plain % ABREAST);
-            if flock.abreast.len() <= at {
-                flock.abreast.push(Abreast::default());
+            let (at, lane) = (batch.plain / LANES, batch.plain % LANES);
+            if batch.lanes.len() <= at {
+                batch.lanes.push(Lanes::default());
             }
             let memo = &mut row.memory.memo;
-            flock.abreast[at].take_in(lane, &pair, &start, step, memo);
-            flock.plain += 1;
+            batch.lanes[at].take_in(lane, &pair, &start, step, memo);
+            batch.plain += 1;
         }
-        flock.aloft.push(Aloft {
+        batch.pending.push(PendingPair {
             group,
             element,
             points,
@@ -224,14 +224,14 @@ impl Step {
             restless,
             plain,
         });
-        Handled::Aloft
+        Route::Batched
     }
 
-    /// Takes what has been read through the step; the groups of those that are out of the ordinary after all
+    /// Takes what has been read through the step; the groups of those that need the general solver after all
     /// are added to a list.
-    pub(super) fn land(
+    pub(super) fn scatter(
         &self,
-        flock: &mut Flock,
+        batch: &mut Batch,
         elements: &mut [ElementRow],
         bodies: &mut [BodyRow],
         set: &mut RigidBodySet,
@@ -240,29 +240,29 @@ impl Step {
         let time = self.plan.time;
         let count = self.accuracy.plain();
         if let Some(count) = count {
-            for abreast in &mut flock.abreast[..flock.plain.div_ceil(ABREAST)] {
-                abreast.run(time, count);
+            for lanes in &mut batch.lanes[..batch.plain.div_ceil(LANES)] {
+                lanes.run(time, count);
             }
         }
         let mut plain = 0;
-        let Flock { aloft, abreast, .. } = flock;
-        for aloft in aloft.iter() {
-            let row = &mut elements[aloft.element];
-            let together = aloft.plain.then(|| {
-                let (at, lane) = (plain / ABREAST, plain % ABREAST);
+        let Batch { pending, lanes, .. } = batch;
+        for pending in pending.iter() {
+            let row = &mut elements[pending.element];
+            let together = pending.plain.then(|| {
+                let (at, lane) = (plain / LANES, plain % LANES);
                 plain += 1;
-                abreast[at].state(lane)
+                lanes[at].state(lane)
             });
             let (outcome, end, length) = match together.flatten() {
                 Some((end, length)) => (Outcome::plain(&self.accuracy), end, length),
                 None => {
-                    let (outcome, end) = self.alone(row, aloft);
+                    let (outcome, end) = self.alone(row, pending);
                     (outcome, end, end.d.length())
                 }
             };
             let sound = end.d.is_finite() && end.v.is_finite();
-            let Some(flights) = self.flights(aloft, &end).filter(|_| sound) else {
-                failed.push(aloft.group);
+            let Some(flights) = self.flights(pending, &end).filter(|_| sound) else {
+                failed.push(pending.group);
                 continue;
             };
             row.memory.direction = end.direction;
@@ -270,19 +270,19 @@ impl Step {
                 method: Method::ClosedForm,
                 ..outcome
             };
-            if let Some(before) = aloft.energy {
-                row.ledger.dissipated += before - row.energy_of(&aloft.pair, &end, length);
+            if let Some(before) = pending.energy {
+                row.ledger.dissipated += before - row.energy_of(&pending.pair, &end, length);
             }
-            self.arrive(row, aloft, &flights, bodies, set);
+            self.arrive(row, pending, &flights, bodies, set);
         }
-        flock.aloft.clear();
-        flock.plain = 0;
+        batch.pending.clear();
+        batch.plain = 0;
     }
 
     /// Solves one by itself.
-    fn alone(&self, row: &mut ElementRow, aloft: &Aloft) -> (Outcome, Separation) {
+    fn alone(&self, row: &mut ElementRow, pending: &PendingPair) -> (Outcome, Separation) {
         let (time, memory) = (self.plan.time, &mut row.memory);
-        let Aloft { pair, start, .. } = aloft;
+        let PendingPair { pair, start, .. } = pending;
         match &row.companion.law {
             None => {
                 let mut moving = Moving::new(pair, *start, &mut memory.memo);
@@ -290,7 +290,7 @@ impl Step {
                 (outcome, moving.state)
             }
             Some(law) => {
-                let mut moving = Shock::new(pair, law, *start, &mut memory.memo);
+                let mut moving = NonlinearPair::new(pair, law, *start, &mut memory.memo);
                 let outcome = memory.controller.drive(&mut moving, time, self.accuracy);
                 (outcome, moving.state)
             }
@@ -298,15 +298,15 @@ impl Step {
     }
 
     /// What takes both ends along; none if one of them would fly faster than the engine lets it.
-    fn flights(&self, aloft: &Aloft, end: &Separation) -> Option<[Flight; 2]> {
+    fn flights(&self, pending: &PendingPair, end: &Separation) -> Option<[Flight; 2]> {
         let time = self.plan.time;
-        let Aloft { pair, start, .. } = aloft;
+        let PendingPair { pair, start, .. } = pending;
         // What the element adds to the free motion of the separation.
         let moved = end.d - start.d - time * (start.v + 0.5 * time * pair.outside);
         let sped = end.v - start.v - time * pair.outside;
         let mut flights = [Flight::default(); 2];
         for (end, flight) in flights.iter_mut().enumerate() {
-            let (point, sign) = (&aloft.points[end], if end == 0 { -1.0 } else { 1.0 });
+            let (point, sign) = (&pending.points[end], if end == 0 { -1.0 } else { 1.0 });
             let share = sign * point.inverse_mass / pair.inverse_mass;
             let pulled = time * point.acceleration;
             *flight = Flight {
@@ -314,7 +314,7 @@ impl Step {
                 velocity: point.velocity + pulled + share * sped,
                 given: sign / pair.inverse_mass * sped,
             };
-            let moves = aloft.movable[end].is_some();
+            let moves = pending.movable[end].is_some();
             if moves && !is_within(flight.moved, flight.velocity, self.engine.fastest, time) {
                 return None;
             }
@@ -326,18 +326,18 @@ impl Step {
     fn arrive(
         &self,
         row: &mut ElementRow,
-        aloft: &Aloft,
+        pending: &PendingPair,
         flights: &[Flight; 2],
         bodies: &mut [BodyRow],
         set: &mut RigidBodySet,
     ) {
         for (end, flight) in flights.iter().enumerate() {
-            let point = &aloft.points[end];
-            match aloft.movable[end] {
+            let point = &pending.points[end];
+            match pending.movable[end] {
                 Some(index) => {
                     let row = &mut bodies[index];
                     row.is_alone = true;
-                    self.deliver_point(row, point, flight, aloft.restless, set);
+                    self.deliver_point(row, point, flight, pending.restless, set);
                 }
                 // What holds this end moves it against what the other end is given.
                 None => row.ledger.work -= flight.given.dot(point.velocity),

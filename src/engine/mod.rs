@@ -3,13 +3,12 @@
 //! One step runs [`prepare::prepare`] → [`forces::read_users`] → [`solve::solve`] → (Rapier steps) → [`measure::measure`].
 //! [`scene`] holds what is kept between; [`renew`] fills it where [`watch`] or an element says that it
 //! changed. What contacts or joints hold goes through [`inside`]; of the rest a lone element through [`lone`], everything
-//! else through [`assembly`], where [`carry`] takes networks of points past most of the work, and [`still`] a world asleep
+//! else through [`assembly`], where [`warm_start`] takes networks of points past most of the work, and [`still`] a world asleep
 //! past all of it.
 
 mod assembly;
 mod body;
 mod breaking;
-mod carry;
 mod check;
 mod companions;
 mod element;
@@ -36,6 +35,7 @@ mod step;
 mod still;
 mod timestep;
 mod tune;
+mod warm_start;
 mod watch;
 
 pub(crate) use breaking::break_overloaded;

@@ -12,19 +12,19 @@ use bevy_rapier3d::rapier::dynamics::{
 };
 use std::sync::atomic::Ordering;
 
-/// What became of a lone element.
+/// How a lone element goes through the step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Handled {
-    /// Read; to be solved with others.
-    Aloft,
+pub(super) enum Route {
+    /// Read; to be solved with others of its batch.
+    Batched,
     /// It has no body any more that it could move.
-    Done,
+    Gone,
     /// Asleep; and if so, only these, its bodies, can wake it.
     Asleep(Option<[RigidBodyHandle; 2]>),
-    /// Out of the ordinary in this step.
-    No,
-    /// Out of the ordinary for as long as can be seen.
-    Never,
+    /// By the general solver in this step.
+    GeneralOnce,
+    /// By the general solver for as long as can be seen.
+    General,
 }
 
 const LOCKED: LockedAxes = LockedAxes::TRANSLATION_LOCKED;
@@ -32,10 +32,10 @@ const LOCKED: LockedAxes = LockedAxes::TRANSLATION_LOCKED;
 impl FreePoint {
     /// The centre of mass of an ordinary movable body.
     #[inline(always)]
-    pub(super) fn of(row: &BodyRow, body: &RapierBody, step: &Step) -> Result<Self, Handled> {
+    pub(super) fn of(row: &BodyRow, body: &RapierBody, step: &Step) -> Result<Self, Route> {
         let properties = &body.mass_properties().local_mprops;
         if body.locked_axes().intersects(LOCKED) {
-            return Err(Handled::Never);
+            return Err(Route::General);
         }
         let mut position = body.position().translation.as_dvec3();
         if properties.local_com != Vec3::ZERO {

@@ -30,7 +30,7 @@ impl Scene {
         self.walls.clear();
         for (index, parts) in elements.iter().enumerate() {
             let entity = parts.entity;
-            let is_new = self.seat(entity, index);
+            let is_new = self.place_row(entity, index);
             let row = &mut self.elements[index];
             // What changed while nothing was stepped has yet to act.
             row.changed &= !row.has_acted(&self.bodies, &self.stepped);
@@ -136,13 +136,13 @@ impl Scene {
             }
         }
         self.groups
-            .furnish(&mut self.assemblies, &self.elements, &self.bodies);
+            .assign_assemblies(&mut self.assemblies, &self.elements, &self.bodies);
         scratch.clear();
         self.scratch = scratch;
     }
 
     /// Brings the row of an element to its place, after all those before it; says whether it is a new one.
-    fn seat(&mut self, entity: Entity, index: usize) -> bool {
+    fn place_row(&mut self, entity: Entity, index: usize) -> bool {
         let rows = &mut self.elements;
         if rows.get(index).is_some_and(|row| row.entity == entity) {
             return false;

@@ -15,7 +15,7 @@ use bevy_rapier3d::rapier::dynamics::{RigidBody as RapierBody, RigidBodySet};
 /// Speed (m/s, rad/s; times the engine's length unit) that counts as rest.
 const REST: f32 = 2e-4;
 
-/// The same of what contacts or joints hold. Pinned by `ground::heap`.
+/// Speed that counts as rest of what contacts or joints hold, m/s. Pinned by `ground::heap`.
 const HELD_REST: f32 = 2e-2;
 
 /// Speed at which a body counts as resting that contacts press, or that hangs in balance between such bodies: under a

@@ -5,8 +5,8 @@ use super::body::{Engine, FARTHEST_TURN};
 use super::forces::{self, Loads};
 use super::group::{Group, Groups};
 use super::inside::{Crowd, EngineParts, Outlook, Solver, Surroundings};
-use super::lone::{FLOCK, Flock, call_up};
-use super::point::Handled;
+use super::lone::{BATCH, Batch, prefetch};
+use super::point::Route;
 use super::rows::{BodyRow, ElementRow};
 use super::scene::Scene;
 use super::step::Step;
@@ -43,13 +43,13 @@ static CORES: LazyLock<usize> =
 /// Room for the work of a step.
 #[derive(Default)]
 pub(crate) struct Spare {
-    flock: Flock,
-    /// What lone elements are assembled in that are out of the ordinary.
+    batch: Batch,
+    /// What lone elements are assembled in that need the general solver.
     assembly: Assembly,
-    /// The groups of those that are so in this step.
-    odd: Vec<usize>,
-    /// The groups of those that are so for as long as can be seen.
-    special: Vec<usize>,
+    /// Groups that need the general solver in this step.
+    general_once: Vec<usize>,
+    /// Groups that need it for as long as can be seen.
+    general: Vec<usize>,
     inside: Solver,
 }
 
@@ -289,8 +289,8 @@ impl Scene {
             }
         }
         for g in 0..groups.list().len() {
-            if g % FLOCK == 0 {
-                call_up(groups, g, elements, bodies, set);
+            if g % BATCH == 0 {
+                prefetch(groups, g, elements, bodies, set);
             }
             let group = &groups.list()[g];
             if group.context != context || group.assembly.is_some() || group.held {
@@ -304,23 +304,39 @@ impl Scene {
                 continue;
             }
             let members = groups.members(group);
-            let flock = &mut spare.flock;
-            let handled = step.take_off(flock, g, &members, elements, bodies, set, stale);
+            let batch = &mut spare.batch;
+            let route = step.gather_lone(batch, g, &members, elements, bodies, set, stale);
             let mut dozing = None;
-            all_asleep &= matches!(handled, Handled::Asleep(_));
-            match handled {
-                Handled::Asleep(handles) => dozing = handles,
-                Handled::No => spare.odd.push(g),
-                Handled::Never => spare.special.push(g),
-                Handled::Aloft | Handled::Done => {}
+            all_asleep &= matches!(route, Route::Asleep(_));
+            match route {
+                Route::Asleep(handles) => dozing = handles,
+                Route::GeneralOnce => spare.general_once.push(g),
+                Route::General => spare.general.push(g),
+                Route::Batched | Route::Gone => {}
             }
             groups.at(g).dozing = dozing;
-            if spare.flock.is_full() {
-                step.land(&mut spare.flock, elements, bodies, set, &mut spare.odd);
+            if spare.batch.is_full() {
+                step.scatter(
+                    &mut spare.batch,
+                    elements,
+                    bodies,
+                    set,
+                    &mut spare.general_once,
+                );
             }
         }
-        step.land(&mut spare.flock, elements, bodies, set, &mut spare.odd);
-        for g in spare.odd.drain(..).chain(spare.special.iter().copied()) {
+        step.scatter(
+            &mut spare.batch,
+            elements,
+            bodies,
+            set,
+            &mut spare.general_once,
+        );
+        for g in spare
+            .general_once
+            .drain(..)
+            .chain(spare.general.iter().copied())
+        {
             let (members, assembly) = (groups.members(&groups.list()[g]), &mut spare.assembly);
             assembly.gather(step, &members, elements, bodies, set, stale);
             assembly.advance(step, &members, bodies, set);
@@ -333,7 +349,7 @@ impl Scene {
                 assemblies[index].deliver(step, &groups.members(group), elements, bodies, set);
             }
         }
-        for group in spare.special.drain(..) {
+        for group in spare.general.drain(..) {
             groups.promote(group, assemblies);
         }
         all_asleep
@@ -351,7 +367,7 @@ fn add_up(elements: &[ElementRow], bodies: &mut [BodyRow]) {
     {
         for body in row.on.iter().flatten() {
             let stiffness = match row.companion.law {
-                // It may be anything where it bends.
+                // It may be anything where it kinks.
                 Some(_) => f64::INFINITY,
                 None => f64::from(row.parameters.stiffness),
             };

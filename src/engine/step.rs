@@ -86,7 +86,8 @@ impl Step {
         })
     }
 
-    /// The same of how an end is turned that elements cannot turn, where its element has an axis of its.
+    /// Whether an end that elements cannot turn turns, or is not turned as after the last step, where its element has an
+    /// axis of its own.
     fn has_turned(&self, row: &ElementRow, end: usize, bodies: &RigidBodySet) -> bool {
         if row.companion.guide == Guide::Centres || row.memory.places[end].is_none() {
             return false;

@@ -319,7 +319,7 @@ impl Law {
         self.spring.is_bent() || ends.into_iter().any(|x| x.is_finite())
     }
 
-    /// Which of its smooth parts a length is in: between two lengths with the same answer nothing is bent.
+    /// Which of its smooth parts a length is in: between two lengths with the same answer nothing is kinked.
     pub(crate) fn part(&self, length: f64, rest_length: f64) -> u8 {
         let x = length - rest_length;
         let past = |condition: bool, bit: u8| u8::from(condition) << bit;

@@ -74,8 +74,8 @@ impl Solver {
         self.search.copy_from_slice(&self.preconditioned);
         let mut iterations = 0;
         while rz > target && iterations < budget {
-            let bent = apply(&self.masses, bars, &self.search, &mut self.image);
-            rz = self.advance(rz / bent, rz);
+            let kinked = apply(&self.masses, bars, &self.search, &mut self.image);
+            rz = self.advance(rz / kinked, rz);
             iterations += 1;
         }
         // Short of the target by so little is rounding.

@@ -39,7 +39,7 @@ impl Component {
         let Memory { points, bound, .. } = &mut self.memory;
         let start = points.survey();
         let now = start.energy.sum();
-        bound.start(now, start.rounding, start.power, self.meddled);
+        bound.start(now, start.rounding, start.power, self.perturbed);
         let mut outcome = drive(points);
         outcome.method = Method::Iterative;
         outcome.capped |= !points.converged();
@@ -52,7 +52,7 @@ impl Component {
         if kept {
             bound.finish(end.energy.sum(), time);
             self.memory.carriable = Some(time);
-            if self.carried {
+            if self.is_warm {
                 return outcome;
             }
         } else {

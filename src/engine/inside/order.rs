@@ -27,7 +27,7 @@ pub(super) struct Order {
     pub tangent: Tangent,
     /// Bound on the stiffest mode that it takes part in, rad/s.
     pub omega: f64,
-    /// The same where what presses on a body holds it still.
+    /// Bound on that mode where contacts hold still what they press, rad/s.
     pub lively: f64,
     /// A contact touches what it holds.
     pub touched: bool,

@@ -12,7 +12,7 @@ use bevy_rapier3d::rapier::dynamics::{RigidBody as RapierBody, RigidBodyHandle};
 use bevy_rapier3d::rapier::geometry::{Collider, ColliderHandle, ColliderSet, NarrowPhase};
 
 /// How long a body counts as held after the last contact, s: a wheel that hops and a foot that drums need not change
-/// between the two ways of being solved in every step. Pinned by `ground::drumming`.
+/// between the two predicted_travel of being solved in every step. Pinned by `ground::drumming`.
 const LINGER: f32 = 0.1;
 
 /// Nearer than this counts as touching before the first step, m.

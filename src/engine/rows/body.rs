@@ -140,7 +140,7 @@ impl BodyRow {
 
     /// Whether something else than elements and the engine's step can have changed its energy since the last step,
     /// now that its centre of mass is here; but for what acts on it.
-    pub(in crate::engine) fn was_driven(&self, body: &RapierBody, at: DVec3) -> bool {
+    pub(in crate::engine) fn was_perturbed(&self, body: &RapierBody, at: DVec3) -> bool {
         let goes_on = !self.was_displaced(at)
             && self.now.1 == body.linvel()
             && (!self.turns || self.turned == turning_mark(body));

@@ -7,14 +7,14 @@ use bevy::math::DVec3;
 use wide::{CmpLe, f64x4};
 
 /// Elements side by side.
-pub(crate) const ABREAST: usize = 4;
+pub(crate) const LANES: usize = 4;
 
-/// The same number of each.
-type Each = [f64; ABREAST];
+/// One number for each lane.
+type Each = [f64; LANES];
 
 /// Four elements between ends that do not turn, and what became of them.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Abreast {
+pub(crate) struct Lanes {
     d: [Each; 3],
     v: [Each; 3],
     direction: [Each; 3],
@@ -122,12 +122,12 @@ impl Run {
     }
 
     /// What the elements have yet to answer at these lengths.
-    fn unanswered(&self, length: f64x4, outside: f64x4) -> f64x4 {
+    fn residual_acceleration(&self, length: f64x4, outside: f64x4) -> f64x4 {
         self.square * (length - self.rest_length) - outside
     }
 }
 
-impl Abreast {
+impl Lanes {
     /// Takes one in. It has a rest length, its step is resolved and no strong damper in it: see
     /// [`Pair::is_plain`].
     pub(crate) fn take_in(
@@ -187,7 +187,7 @@ impl Abreast {
         let mut side = d.times(all(1.0) / length);
         let lines = run.along(v, side, length);
         let outside = lines.pushed + run.turning(length, lines.lateral_square);
-        let offset = skew * run.step * run.unanswered(length, outside);
+        let offset = skew * run.step * run.residual_acceleration(length, outside);
         let mapped = (lines.axial - offset) / speed;
         v = v.plus(side.times(mapped - lines.axial));
         for _ in 0..count {
@@ -205,8 +205,9 @@ impl Abreast {
                 * (run.turning(length, lines.lateral_square)
                     + run.turning(length, after.dot(after)));
             let outside = lines.pushed + turning;
-            let unanswered = run.unanswered(length - eighth * turning, outside);
-            let total = -restoring * unanswered - per_step * rate;
+            let residual_acceleration =
+                run.residual_acceleration(length - eighth * turning, outside);
+            let total = -restoring * residual_acceleration - per_step * rate;
             let pulled = direction.times(run.step * (total - outside));
             v = v.plus(pulled.plus(run.outside.times(run.step)));
             d = d.plus(v.times(half));
@@ -217,7 +218,7 @@ impl Abreast {
         // And back to the true ones.
         let lines = run.along(v, side, length);
         let outside = lines.pushed + run.turning(length, lines.lateral_square);
-        let offset = skew * run.step * run.unanswered(length, outside);
+        let offset = skew * run.step * run.residual_acceleration(length, outside);
         let mapped = speed * lines.axial + offset;
         v = v.plus(side.times(mapped - lines.axial));
 
@@ -254,7 +255,7 @@ mod tests {
         let mut met = 0;
         for count in [1, 2, 4, 16].repeat(500) {
             let step = DT / f64::from(count);
-            let some: [_; ABREAST] = std::array::from_fn(|lane| {
+            let some: [_; LANES] = std::array::from_fn(|lane| {
                 let pair = Pair {
                     stiffness: 2000.0 * vector(1.0).x.abs(),
                     damping: 10.0 * vector(1.0).x.max(0.0),
@@ -269,16 +270,16 @@ mod tests {
             });
             let plain = some.iter().all(|(pair, _)| pair.is_plain(step));
             assert!(plain, "nothing else is asked of them");
-            let mut abreast = Abreast::default();
+            let mut lanes = Lanes::default();
             for (lane, (pair, state)) in some.iter().enumerate() {
-                abreast.take_in(lane, pair, state, step, &mut Memo::default());
+                lanes.take_in(lane, pair, state, step, &mut Memo::default());
             }
-            abreast.run(DT, count);
+            lanes.run(DT, count);
             for (lane, (pair, state)) in some.iter().enumerate() {
                 let mut memo = Memo::default();
                 let mut alone = Moving::new(pair, *state, &mut memo);
                 alone.run(DT, count);
-                let Some((state, length)) = abreast.state(lane) else {
+                let Some((state, length)) = lanes.state(lane) else {
                     met += 1;
                     continue;
                 };

@@ -44,7 +44,7 @@ impl Network {
                 wrong = wrong.max((now - row.elastic).abs());
                 row.load += (now - row.elastic) * row.line.direction;
                 row.elastic = now;
-                row.turning = row.damping;
+                row.centripetal_gain = row.damping;
             }
             if wrong <= RIGHT * greatest {
                 return;
@@ -56,7 +56,7 @@ impl Network {
 
 impl Row {
     /// The force that does the work of the law's energy, for a relative acceleration of the ends; none where the law
-    /// is not bent.
+    /// is not kinked.
     fn mean_force(&self, element: &Element, gained: DVec3, step: f64) -> Option<f64> {
         let law = element.law.as_ref().filter(|law| law.is_bent())?;
         let before = self.before.axial * self.line.direction + self.before.lateral;

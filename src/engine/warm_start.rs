@@ -12,7 +12,7 @@ use bevy_rapier3d::rapier::dynamics::RigidBodySet;
 
 /// What is known of such a network.
 #[derive(Default)]
-pub(super) struct Carry {
+pub(super) struct WarmStart {
     /// Ends that elements cannot move: which element's within the component, and which of its two.
     pub ends: Vec<(usize, usize)>,
     /// Natural frequency of the stiffest element.
@@ -22,12 +22,12 @@ pub(super) struct Carry {
     /// Some body has not rested for long.
     restless: bool,
     /// Something else than elements can have changed what it has.
-    pub meddled: bool,
+    pub perturbed: bool,
 }
 
 impl Assembly {
     /// Takes the network in, if it can go on as it is.
-    pub(super) fn carry_on(
+    pub(super) fn continue_warm(
         &mut self,
         step: &Step,
         members: &Members,
@@ -35,8 +35,8 @@ impl Assembly {
         bodies: &mut [BodyRow],
         set: &RigidBodySet,
     ) -> bool {
-        self.component.carried = false;
-        self.carry.meddled = false;
+        self.component.is_warm = false;
+        self.warm.perturbed = false;
         if self.component.elements.len() != members.elements.len() {
             return false;
         }
@@ -49,14 +49,14 @@ impl Assembly {
             }
             return false;
         }
-        self.carry.restless |= disturbed;
-        self.component.carried = true;
-        self.component.meddled = self.carry.meddled;
+        self.warm.restless |= disturbed;
+        self.component.is_warm = true;
+        self.component.perturbed = self.warm.perturbed;
         self.state = State::Ready;
         true
     }
 
-    /// Places bodies and ends; none if some body is out of the ordinary.
+    /// Places bodies and ends; none if some body needs the general solver.
     fn place(
         &mut self,
         step: &Step,
@@ -66,35 +66,35 @@ impl Assembly {
         set: &RigidBodySet,
         disturbed: &mut bool,
     ) -> Option<()> {
-        let carry = &mut self.carry;
+        let warm = &mut self.warm;
         let time = step.plan.time;
-        let points = self.component.points_to_carry(time)?;
-        carry.restless = false;
+        let points = self.component.points_to_continue(time)?;
+        warm.restless = false;
         for (slot, b) in members.bodies.iter().enumerate() {
             let row = &mut bodies[*b];
             let body = set.get(row.handle)?;
             let center = body.local_center_of_mass();
-            if !is_movable(body) || body.is_sleeping() || carry.centers[slot] != center {
+            if !is_movable(body) || body.is_sleeping() || warm.centers[slot] != center {
                 return None;
             }
             row.can_touch = !body.colliders().is_empty();
             let point = FreePoint::of(row, body, step).ok()?;
-            carry.meddled |= row.was_driven(body, point.position);
+            warm.perturbed |= row.was_perturbed(body, point.position);
             if points.origin(slot).acceleration != point.acceleration {
                 // Written only then: it lies apart from what every step needs.
                 row.pulled = pull_mark(point.acceleration);
-                carry.meddled = true;
+                warm.perturbed = true;
             }
             *disturbed |= std::mem::take(&mut row.disturbed);
-            carry.restless |= step.is_restless(row, body, carry.omega);
+            warm.restless |= step.is_restless(row, body, warm.omega);
             if !points.place(slot, &point) {
                 return None;
             }
         }
-        for (index, (element, end)) in carry.ends.iter().enumerate() {
+        for (index, (element, end)) in warm.ends.iter().enumerate() {
             let row = &elements[members.elements[*element]];
             let has_moved = step.has_moved(row, set);
-            carry.meddled |= has_moved;
+            warm.perturbed |= has_moved;
             *disturbed |= has_moved;
             let (from, to) = step.path(&row.held[*end], set);
             if has_moved && from == to {
@@ -107,7 +107,7 @@ impl Assembly {
     }
 
     /// Gives the engine what takes the bodies on.
-    pub(super) fn deliver_carried(
+    pub(super) fn deliver_warm(
         &mut self,
         step: &Step,
         members: &Members,
@@ -115,11 +115,11 @@ impl Assembly {
         bodies: &mut [BodyRow],
         set: &mut RigidBodySet,
     ) {
-        let points = self.component.carried_points();
+        let points = self.component.warm_points();
         for (slot, b) in members.bodies.iter().enumerate() {
             let (origin, flight) = (points.origin(slot), points.flight(slot));
             let row = &mut bodies[*b];
-            step.deliver_point(row, &origin, &flight, self.carry.restless, set);
+            step.deliver_point(row, &origin, &flight, self.warm.restless, set);
         }
         for (e, (direction, heat, work)) in members.elements.iter().zip(points.take_results()) {
             let row = &mut elements[*e];

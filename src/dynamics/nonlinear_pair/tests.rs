@@ -37,7 +37,7 @@ fn run(
     mut see: impl FnMut(f64, DVec3, DVec3),
 ) {
     let mut memo = Memo::default();
-    let mut moving = Shock::new(pair, law, Separation::new(d, v, None), &mut memo);
+    let mut moving = NonlinearPair::new(pair, law, Separation::new(d, v, None), &mut memo);
     for i in 1..=(time / step).round() as u32 {
         moving.run(step, count);
         see(step * f64::from(i), moving.state.d, moving.state.v);

@@ -7,7 +7,7 @@ use crate::dynamics::tolerance::Controller;
 
 impl Component {
     /// The points, if the last step was as long and they can go on from it.
-    pub(crate) fn points_to_carry(&mut self, time: f64) -> Option<&mut Points> {
+    pub(crate) fn points_to_continue(&mut self, time: f64) -> Option<&mut Points> {
         let can_go_on = self.memory.carriable == Some(time);
         can_go_on.then_some(&mut self.memory.points)
     }
@@ -24,19 +24,19 @@ impl Component {
         self.memory.controller = Controller::default();
     }
 
-    /// After a step that was [`carried`](Self::carried) to its end: what came of it.
-    pub(crate) fn carried_points(&mut self) -> &mut Points {
+    /// After a step that was [warm](Self::is_warm) to its end: what came of it.
+    pub(crate) fn warm_points(&mut self) -> &mut Points {
         &mut self.memory.points
     }
 
     /// Bodies as they were at the start of a step that could not be carried to its end.
-    pub(crate) fn put_down_at(&self) -> &[Body] {
+    pub(crate) fn start_bodies(&self) -> &[Body] {
         &self.memory.saved[0].bodies
     }
 
     /// Bodies and elements take part again, as they were at the start of the step.
     pub(super) fn put_down(&mut self) {
-        if std::mem::take(&mut self.carried) {
+        if std::mem::take(&mut self.is_warm) {
             let points = &self.memory.points;
             points.restore(&mut self.elements, &mut self.bodies);
         }

@@ -49,7 +49,7 @@ impl Points {
         is_same && (at.position + at.velocity + at.acceleration).is_finite()
     }
 
-    /// The same of an end that elements cannot move, counted in the order of the elements.
+    /// Places an end that elements cannot move, counted in the order of the elements.
     pub(crate) fn place_end(&mut self, end: usize, position: DVec3, velocity: DVec3) {
         let index = self.bodies + end;
         self.points[index] = Point::prescribed(position, velocity);

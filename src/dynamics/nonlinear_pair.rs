@@ -7,9 +7,9 @@
 //! that does exactly the work of the law's energy: D. Greenspan's and R. LaBudde's (1974) step, which
 //! conserves energy and angular momentum whatever the law and the step.
 
-mod apart;
+mod pair_view;
 
-pub(crate) use apart::Apart;
+pub(crate) use pair_view::PairView;
 
 use super::kick::Memo;
 use super::law::Law;
@@ -18,7 +18,7 @@ use super::poles::{Poles, RESOLVED_PHASE, UNRESOLVED_DECAY, decay_ratio};
 use super::tolerance::{Motion, VELOCITY_COUNTS};
 use bevy::math::DVec3;
 
-/// (ω h)² up to which the kick is used: where the law is smooth as a whole, and where it is bent somewhere. The
+/// (ω h)² up to which the kick is used: where the law is smooth as a whole, and where it is kinked somewhere. The
 /// energy of a kicked motion sways a little, and at a bend the sway would be kept.
 const SMOOTH: f64 = 2.0;
 const BENT: f64 = 0.04;
@@ -34,7 +34,7 @@ const REACHES: usize = 6;
 const TRIES: usize = 80;
 
 /// A pair in motion under a law.
-pub(crate) struct Shock<'a> {
+pub(crate) struct NonlinearPair<'a> {
     pub pair: &'a Pair,
     pub law: &'a Law,
     pub state: Separation,
@@ -44,7 +44,7 @@ pub(crate) struct Shock<'a> {
     saved: [Separation; 3],
 }
 
-impl<'a> Shock<'a> {
+impl<'a> NonlinearPair<'a> {
     pub(crate) fn new(
         pair: &'a Pair,
         law: &'a Law,
@@ -86,7 +86,7 @@ impl<'a> Shock<'a> {
     }
 
     /// Whether a step resolves the stiffness wherever the present energy can take the motion: going to and
-    /// fro between the two ways of stepping would heap up the sway of the one.
+    /// fro between the two predicted_travel of stepping would heap up the sway of the one.
     fn is_resolved_in_reach(&self, step: f64) -> bool {
         let (law, pair, rest) = (self.law, self.pair, self.rest_length());
         let weight = pair.inverse_mass * step * step;
@@ -192,8 +192,12 @@ impl<'a> Shock<'a> {
         let poles = self.poles_at(&line, step);
         let outside = line.pushed + line.turning(line.lateral_square, step);
         let elastic = self.law.elastic(line.length, self.rest_length());
-        let unanswered = elastic.force * self.pair.inverse_mass - outside;
-        let axial = to(line.axial, poles.skew * step * unanswered, poles.speed);
+        let residual_acceleration = elastic.force * self.pair.inverse_mass - outside;
+        let axial = to(
+            line.axial,
+            poles.skew * step * residual_acceleration,
+            poles.speed,
+        );
         self.state.v += (axial - line.axial) * line.direction;
     }
 
@@ -295,7 +299,7 @@ impl<'a> Shock<'a> {
     }
 }
 
-impl Motion for Shock<'_> {
+impl Motion for NonlinearPair<'_> {
     fn save(&mut self, slot: usize) {
         self.saved[slot] = self.state;
     }

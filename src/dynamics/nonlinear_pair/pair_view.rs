@@ -1,6 +1,6 @@
 //! A law's lone element among the bodies of a component: to the separation of its ends, and back.
 
-use super::Shock;
+use super::NonlinearPair;
 use crate::dynamics::body::{Body, Spin};
 use crate::dynamics::element::{Element, End};
 use crate::dynamics::guide::Guide;
@@ -10,20 +10,20 @@ use crate::dynamics::tolerance::{Method, Outcome};
 use bevy::math::DVec3;
 
 /// Both ends as points that come apart.
-pub(crate) struct Apart {
+pub(crate) struct PairView {
     pair: Pair,
     start: Separation,
     /// Inverse mass of each end.
     shares: [f64; 2],
 }
 
-impl Apart {
+impl PairView {
     /// For an element with a law on bodies that nothing else holds and that it does not turn.
     pub(crate) fn of(element: &Element, bodies: &[Body]) -> Option<Self> {
         element.law.as_ref()?;
         let free = |body: &Body| {
             let w = body.inverse_mass;
-            body.spin == Spin::Still && w.x == w.y && w.y == w.z
+            body.spin == Spin::Ignored && w.x == w.y && w.y == w.z
         };
         let held = element.ends.iter().filter(|end| !end.is_path()).count();
         // Bodies of elements that take no part would be left where they are.
@@ -62,12 +62,12 @@ impl Apart {
         element: &mut Element,
         bodies: &mut [Body],
         memo: &mut Memo,
-        drive: impl FnOnce(&mut Shock) -> Outcome,
+        drive: impl FnOnce(&mut NonlinearPair) -> Outcome,
     ) -> Outcome {
         let Some(law) = element.law.clone() else {
             return Outcome::default();
         };
-        let mut moving = Shock::new(&self.pair, &law, self.start, memo);
+        let mut moving = NonlinearPair::new(&self.pair, &law, self.start, memo);
         let before = moving.energy();
         let outcome = drive(&mut moving);
         let (end, time) = (moving.state, moving.time);
