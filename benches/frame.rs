@@ -1,16 +1,14 @@
 #![allow(missing_docs, reason = "criterion writes a public function")]
 //! Whole frames, and the share of them that our own systems take.
 //!
-//! `cargo bench --bench frame` prints the times of one run; compare them within it, not between machines.
+//! `cargo bench -p benches --bench frame` prints the times of one run; compare them within it, not between machines.
 //! `frame` are whole frames: bodies that fly freely, our springs, and Rapier's `SpringJoint` on the same
 //! bodies. `own` is the time spent in our systems alone.
-
-mod scenes;
 
 use bevy::app::App;
 use bevy::ecs::world::World;
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
-use scenes::{Link, Own, Scene};
+use benches::{Link, Own, Scene};
 use std::time::Duration;
 
 /// What happens before a frame.
@@ -132,8 +130,8 @@ fn churn(c: &mut Criterion) {
     let count = 10_000;
     let cases: [(&str, Change); 3] = [
         ("nothing", |_| {}),
-        ("a body without spring", scenes::shoot),
-        ("a spring", scenes::respring),
+        ("a body without spring", benches::shoot),
+        ("a spring", benches::respring),
     ];
     for (name, change) in cases {
         let mut lazy = Lazy::new(|| Scene::Isolated.app(count, Link::Ours, 1));

@@ -3,7 +3,7 @@
 //! the plugin's systems alone, in a `PostUpdate` that has nothing else to do. "Bevy alone" is what that
 //! schedule takes without the plugin.
 //!
-//! `cargo bench --bench visual` prints the time of a frame and how many coils a second that is.
+//! `cargo bench -p benches --bench visual` prints the time of a frame and how many coils a second that is.
 
 use bevy::asset::AssetPlugin;
 use bevy::camera::primitives::Frustum;

@@ -14,11 +14,13 @@ use std::time::{Duration, Instant};
 pub enum Link {
     /// Nothing: each flies on at a speed of its own.
     Nothing,
+    /// A spring of this crate.
     Ours,
     /// Ours with force laws beside them.
     Laws,
     /// Ours, held off the centres of the bodies, which they turn.
     Turning,
+    /// Rapier's `SpringJoint`.
     Joint,
     /// Hooke's law as a force and no more: two bodies read, two written, straight in the engine.
     Bare,
