@@ -5,10 +5,10 @@
 //! `frame` are whole frames: bodies that fly freely, our springs, and Rapier's `SpringJoint` on the same
 //! bodies. `own` is the time spent in our systems alone.
 
+use benches::{Link, Own, Scene};
 use bevy::app::App;
 use bevy::ecs::world::World;
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
-use benches::{Link, Own, Scene};
 use std::time::Duration;
 
 /// What happens before a frame.

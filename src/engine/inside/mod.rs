@@ -2,8 +2,8 @@
 //!
 //! A force that is worked out for a whole step, before the engine knows of contact and joint, is explicit to them, however
 //! exact it is in free flight. So each element of such a component is a soft constraint of the engine's own solver, in as
-//! many substeps as it needs. A step runs [`touch`] → [`plan`] → [`write`] → (Rapier steps) → [`Inside::arrive`].
-//! [`order`] says what one element is to do, [`linkage`] what mass it has then, [`twist`] what a torsion element is, [`joint`] how Rapier is told.
+//! many substeps as it needs. A step runs [`touch`] → [`plan`] → [`write`] → (Rapier steps) → [`arrive`]. [`order`] says what one
+//! element is to do, [`linkage`] what mass it has then; [`super::held`] is what it has in the engine, and how Rapier is told.
 
 mod ahead;
 mod arrive;
