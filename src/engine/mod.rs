@@ -1,10 +1,15 @@
-//! The only room that knows Rapier: bodies and elements into flat arrays, forces back.
+//! Bodies and elements into flat arrays, forces back: the room that knows Rapier.
 //!
 //! One step runs [`prepare::prepare`] → [`forces::read_users`] → [`solve::solve`] → (Rapier steps) → [`measure::measure`].
-//! [`scene`] holds what is kept between; [`renew`] fills it where [`watch`] or an element says that it
-//! changed. What contacts or joints hold goes through [`inside`]; of the rest a lone element through [`lone`], everything
-//! else through [`assembly`], where [`warm_start`] takes networks of points past most of the work, and [`still`] a world asleep
-//! past all of it.
+//!
+//! - [`rows`] are plain data about elements and bodies, kept from step to step; [`scene`] holds them. Nothing in `rows` knows
+//!   what is done with them.
+//! - [`prepare`] finds out whether the scene is still the same, by [`watch`], [`parts`], [`companions`], [`find`] and
+//!   [`ends`]; [`renew`] fills it anew where it is not. [`check`] and [`report`] say what is wrong.
+//! - [`solve`] takes each component its way: what contacts or joints hold through [`inside`] (and [`held`], which is what it
+//!   leaves in the engine); of the rest lone elements through [`lone`], everything else through [`assembly`], where
+//!   [`warm_start`] takes networks of points past most of the work. [`sleep`] and [`still`] leave out what rests.
+//! - [`measure`] shows what came of it, [`energy`] where the energy went.
 
 mod assembly;
 mod body;
