@@ -33,6 +33,11 @@ pub(super) struct Group {
 }
 
 impl Group {
+    /// Whether it is in a context, and nothing but elements holds it.
+    pub(super) fn is_free(&self, context: Entity) -> bool {
+        self.context == context && !self.held
+    }
+
     /// Has it, of this index, assembled in this, all of it read anew.
     fn take(&mut self, index: usize, mut assembly: Assembly, assemblies: &mut Vec<Assembly>) {
         assembly.group = index;

@@ -16,7 +16,7 @@ use crate::dynamics::moving::Moving;
 use crate::dynamics::nonlinear_pair::NonlinearPair;
 use crate::dynamics::pair::{Pair, Separation};
 use crate::dynamics::tolerance::{Method, Outcome};
-use bevy_rapier3d::rapier::dynamics::RigidBodySet;
+use bevy_rapier3d::rapier::dynamics::{RigidBody as RapierBody, RigidBodySet};
 use std::hint::black_box;
 
 /// How many are read before they are solved: few enough to be in the first cache still when they are delivered.
@@ -84,6 +84,9 @@ pub(super) fn prefetch(
     black_box(seen);
 }
 
+/// The bodies that a lone element moves, with the indices of their rows.
+type Bodies<'b> = [Option<(usize, &'b RapierBody)>; 2];
+
 impl Step {
     /// Reads the element of a group, if it is an ordinary one.
     pub(super) fn gather_lone(
@@ -106,78 +109,134 @@ impl Step {
         if row.on[0] == row.on[1] {
             return Route::GeneralOnce;
         }
-        let time = self.plan.time;
-        let movable = [0, 1].map(|end| row.movable(end));
-        // In the order in which they lie in memory, so that it sees what comes.
-        let mut sleepers = 0;
-        let mut found = [None; 2];
-        for (found, index) in found.iter_mut().zip(members.bodies) {
-            let Some(body) = self.movable(set, bodies[*index].handle, stale) else {
-                row.active = false;
-                return Route::Gone;
-            };
-            bodies[*index].can_touch = !body.colliders().is_empty();
-            sleepers += usize::from(body.is_sleeping());
-            *found = Some((*index, body));
-        }
-        if sleepers > 0 {
-            let disturbed = row.changed || members.bodies.iter().any(|b| bodies[*b].disturbed);
-            if sleepers < members.bodies.len() || disturbed || self.has_moved(row, set) {
-                return Route::GeneralOnce;
-            }
-            row.active = false;
-            return Route::Asleep(match movable {
-                [Some(a), Some(b)] if row.watched == [false; 2] => {
-                    Some([bodies[a].handle, bodies[b].handle])
-                }
-                _ => None,
-            });
-        }
-        let mut points = [FreePoint::default(); 2];
-        for end in 0..2 {
-            let body = |index| found.iter().flatten().find(|(b, _)| *b == index);
-            points[end] = match movable[end].and_then(body) {
-                Some(&(index, body)) => match FreePoint::of(&bodies[index], body, self) {
-                    Ok(point) => point,
-                    Err(reason) => return reason,
-                },
-                None => {
-                    let (from, to) = self.path(&row.held[end], set);
-                    FreePoint {
-                        position: from,
-                        velocity: (to - from) / time,
-                        ..FreePoint::default()
-                    }
-                }
-            };
-        }
-        let [a, b] = &points;
-        let (d, v) = (b.position - a.position, b.velocity - a.velocity);
-        let rounding = rounding(a.position, b.position);
-        let rest_length = row.parameters.rest_length.map(f64::from);
-        let coincide = d.length_squared() <= rounding * rounding;
-        if coincide && row.memory.direction.is_none() && rest_length != Some(0.0) {
+        let found = match self.find_bodies(row, members, bodies, set, stale) {
+            Ok(found) => found,
+            Err(route) => return route,
+        };
+        let points = match self.find_points(row, &found, bodies, set) {
+            Ok(points) => points,
+            Err(route) => return route,
+        };
+        let Some((pair, start)) = self.pair_of(row, &points, set) else {
             return Route::GeneralOnce;
-        }
-        let length = d.length();
-        let has_moved = self.has_moved(row, set);
-        if has_moved {
-            row.account_for_leap(length);
-        }
-        row.memory.length = length;
-        if !row.is_sound(v, d) {
-            return Route::GeneralOnce;
-        }
-        let inverse_mass = a.inverse_mass + b.inverse_mass;
-        let omega = (row.slope() * inverse_mass).sqrt();
-        let mut restless = row.changed || has_moved;
+        };
+        let omega = (row.slope() * pair.inverse_mass).sqrt();
+        let mut restless = row.changed || self.has_moved(row, set);
         for (b, body) in found.into_iter().flatten() {
             restless |= std::mem::take(&mut bodies[b].disturbed);
             restless |= self.is_restless(&mut bodies[b], body, omega as f32);
         }
         row.active = true;
         row.trouble.set_passing(None);
-        row.inverse_mass = inverse_mass;
+        row.inverse_mass = pair.inverse_mass;
+        // What is lost is what its damper took: exact for a linear one at any damping.
+        let damped = match &row.companion.law {
+            Some(law) => law.damps(),
+            None => row.parameters.damping > 0.0,
+        };
+        let energy = damped.then(|| row.energy_of(&pair, &start, row.memory.length));
+        let plain = self.put_in_lane(row, batch, &pair, &start);
+        batch.pending.push(PendingPair {
+            group,
+            element,
+            points,
+            movable: [0, 1].map(|end| row.movable(end)),
+            pair,
+            start,
+            energy,
+            restless,
+            plain,
+        });
+        Route::Batched
+    }
+
+    /// The bodies that an element moves, in the order in which they lie in memory, so that it sees what comes.
+    #[inline(always)]
+    fn find_bodies<'b>(
+        &self,
+        row: &mut ElementRow,
+        members: &Members,
+        bodies: &mut [BodyRow],
+        set: &'b RigidBodySet,
+        stale: &mut bool,
+    ) -> Result<Bodies<'b>, Route> {
+        let mut sleepers = 0;
+        let mut found = [None; 2];
+        for (found, index) in found.iter_mut().zip(members.bodies) {
+            let Some(body) = self.movable(set, bodies[*index].handle, stale) else {
+                row.active = false;
+                return Err(Route::Gone);
+            };
+            bodies[*index].can_touch = !body.colliders().is_empty();
+            sleepers += usize::from(body.is_sleeping());
+            *found = Some((*index, body));
+        }
+        if sleepers == 0 {
+            return Ok(found);
+        }
+        let disturbed = row.changed || members.bodies.iter().any(|b| bodies[*b].disturbed);
+        if sleepers < members.bodies.len() || disturbed || self.has_moved(row, set) {
+            return Err(Route::GeneralOnce);
+        }
+        row.active = false;
+        Err(Route::Asleep(match [0, 1].map(|end| row.movable(end)) {
+            [Some(a), Some(b)] if row.watched == [false; 2] => {
+                Some([bodies[a].handle, bodies[b].handle])
+            }
+            _ => None,
+        }))
+    }
+
+    /// Both ends as points.
+    #[inline(always)]
+    fn find_points(
+        &self,
+        row: &ElementRow,
+        found: &Bodies,
+        bodies: &[BodyRow],
+        set: &RigidBodySet,
+    ) -> Result<[FreePoint; 2], Route> {
+        let mut points = [FreePoint::default(); 2];
+        for (end, point) in points.iter_mut().enumerate() {
+            let body = |index| found.iter().flatten().find(|(b, _)| *b == index);
+            *point = match row.movable(end).and_then(body) {
+                Some(&(index, body)) => FreePoint::of(&bodies[index], body, self)?,
+                None => {
+                    let (from, to) = self.path(&row.held[end], set);
+                    FreePoint {
+                        position: from,
+                        velocity: (to - from) / self.plan.time,
+                        ..FreePoint::default()
+                    }
+                }
+            };
+        }
+        Ok(points)
+    }
+
+    /// The element and its motion; none where its direction or its law means nothing. Captures its rest length if need be.
+    #[inline(always)]
+    fn pair_of(
+        &self,
+        row: &mut ElementRow,
+        [a, b]: &[FreePoint; 2],
+        set: &RigidBodySet,
+    ) -> Option<(Pair, Separation)> {
+        let (d, v) = (b.position - a.position, b.velocity - a.velocity);
+        let rounding = rounding(a.position, b.position);
+        let rest_length = row.parameters.rest_length.map(f64::from);
+        let coincide = d.length_squared() <= rounding * rounding;
+        if coincide && row.memory.direction.is_none() && rest_length != Some(0.0) {
+            return None;
+        }
+        let length = d.length();
+        if self.has_moved(row, set) {
+            row.account_for_leap(length);
+        }
+        row.memory.length = length;
+        if !row.is_sound(v, d) {
+            return None;
+        }
         let rest_length = rest_length.unwrap_or_else(|| {
             row.parameters.rest_length = Some(length as f32);
             row.captured = true;
@@ -187,44 +246,37 @@ impl Step {
             stiffness: f64::from(row.parameters.stiffness),
             damping: f64::from(row.parameters.damping),
             rest_length,
-            inverse_mass,
+            inverse_mass: a.inverse_mass + b.inverse_mass,
             outside: b.acceleration - a.acceleration,
             rounding,
         };
-        let start = Separation::new(d, v, row.memory.direction);
-        // What is lost is what its damper took: exact for a linear one at any damping.
-        let damped = match &row.companion.law {
-            Some(law) => law.damps(),
-            None => row.parameters.damping > 0.0,
+        Some((pair, Separation::new(d, v, row.memory.direction)))
+    }
+
+    /// Has a linear element solved in a lane beside others, if it is plain; says whether.
+    #[inline(always)]
+    fn put_in_lane(
+        &self,
+        row: &mut ElementRow,
+        batch: &mut Batch,
+        pair: &Pair,
+        start: &Separation,
+    ) -> bool {
+        let count = self.accuracy.plain();
+        let Some(count) = count.filter(|_| row.companion.law.is_none()) else {
+            return false;
         };
-        let energy = damped.then(|| row.energy_of(&pair, &start, length));
-        let count = self
-            .accuracy
-            .plain()
-            .filter(|_| row.companion.law.is_none());
-        let step = count.map_or(0.0, |count| time / f64::from(count));
-        let plain = count.is_some() && pair.is_plain(step);
-        if plain {
-            let (at, lane) = (batch.plain / LANES, batch.plain % LANES);
-            if batch.lanes.len() <= at {
-                batch.lanes.push(Lanes::default());
-            }
-            let memo = &mut row.memory.memo;
-            batch.lanes[at].take_in(lane, &pair, &start, step, memo);
-            batch.plain += 1;
+        let step = self.plan.time / f64::from(count);
+        if !pair.is_plain(step) {
+            return false;
         }
-        batch.pending.push(PendingPair {
-            group,
-            element,
-            points,
-            movable,
-            pair,
-            start,
-            energy,
-            restless,
-            plain,
-        });
-        Route::Batched
+        let (at, lane) = (batch.plain / LANES, batch.plain % LANES);
+        if batch.lanes.len() <= at {
+            batch.lanes.push(Lanes::default());
+        }
+        batch.lanes[at].take_in(lane, pair, start, step, &mut row.memory.memo);
+        batch.plain += 1;
+        true
     }
 
     /// Takes what has been read through the step; the groups of those that need the general solver after all

@@ -7,7 +7,7 @@
 //! - [`prepare`] finds out whether the scene is still the same, by [`watch`], [`parts`], [`companions`], [`find`] and
 //!   [`ends`]; [`renew`] fills it anew where it is not. [`check`] and [`report`] say what is wrong.
 //! - [`solve`] takes each component its way: what contacts or joints hold through [`inside`] (and [`held`], which is what it
-//!   leaves in the engine); of the rest lone elements through [`lone`], everything else through [`assembly`], where
+//!   leaves in the engine); of the rest, in [`free`], lone elements through [`lone`], everything else through [`assembly`], where
 //!   [`warm_start`] takes networks of points past most of the work. [`sleep`] and [`still`] leave out what rests.
 //! - [`measure`] shows what came of it, [`energy`] where the energy went.
 
@@ -21,6 +21,7 @@ mod ends;
 mod energy;
 mod find;
 mod forces;
+mod free;
 mod group;
 mod held;
 mod inside;
