@@ -6,6 +6,7 @@
 //! else through [`assembly`], where [`carry`] takes networks of points past most of the work, and [`still`] a world asleep
 //! past all of it.
 
+mod anchoring;
 mod assembly;
 mod body;
 mod breaking;
@@ -24,6 +25,7 @@ mod lone;
 mod measure;
 mod parts;
 mod point;
+mod pose;
 mod prepare;
 mod renew;
 mod report;
@@ -32,12 +34,15 @@ mod scene;
 mod setup;
 mod sleep;
 mod solve;
+mod statics;
 mod step;
 mod still;
+mod strays;
 mod timestep;
 mod tune;
 mod watch;
 
+pub(crate) use anchoring::anchor;
 pub(crate) use breaking::break_overloaded;
 pub use forces::SpringLoad;
 pub(crate) use forces::read_users;
@@ -46,3 +51,4 @@ pub(crate) use prepare::prepare;
 pub(crate) use scene::{Scene, mark};
 pub(crate) use setup::{Watched, check_schedule, check_timestep, in_place};
 pub(crate) use solve::solve;
+pub(crate) use strays::{Role, Strays, any_strays, notice, tell_strays};

@@ -133,6 +133,7 @@ fn refresh(
         if !parameters.is_held_like(&row.parameters)
             || companion.guide != row.companion.guide
             || companions.tuning(entity).is_some()
+            || companions.pose(entity).is_some()
         {
             return false;
         }
