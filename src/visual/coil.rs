@@ -12,9 +12,9 @@ use bevy::prelude::*;
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 #[require(Transform, Visibility, Placement)]
 pub struct Coil {
-    /// From the axis to the centre of the wire, m.
+    /// From the axis to the centre of the wire, m, or a share if it is [fitted](Self::fitted).
     pub radius: f32,
-    /// Half the thickness of the wire, m.
+    /// Half the thickness of the wire, m, or a share.
     pub wire_radius: f32,
     /// Turns of the wire from end to end, the flat ones at the ends included.
     pub turns: f32,

@@ -24,7 +24,7 @@ pub struct Placement {
     /// Its coil has been shorter than its turns are thick, and that was said.
     squeezed: bool,
     /// It was in sight when that was last found out.
-    seen: bool,
+    pub(super) seen: bool,
     /// Some part of it was in some view in the last frame, be it for its shadow.
     pub(super) shows: bool,
     /// The state of the views for which sight and level are right.
