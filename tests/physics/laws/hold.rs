@@ -260,6 +260,65 @@ fn a_sag_of_a_ball_that_can_touch_is_held_as_well() {
 }
 
 #[test]
+fn a_sag_of_a_chassis_over_a_wheel_is_found_once_the_wheel_stands() {
+    let mut lab = Lab::new();
+    lab.spawn((
+        Collider::halfspace(Vec3::Y).expect("up"),
+        Transform::default(),
+    ));
+    let guided = LockedAxes::ROTATION_LOCKED
+        | LockedAxes::TRANSLATION_LOCKED_X
+        | LockedAxes::TRANSLATION_LOCKED_Z;
+    let load = lab.spawn((body(300.0, Vec3::Y * 0.8), guided));
+    let wheel = lab.spawn((
+        RigidBody::Dynamic,
+        Transform::from_xyz(0.0, 0.3, 0.0),
+        Collider::ball(0.3),
+        ColliderMassProperties::Mass(20.0),
+    ));
+    lab.spawn((SpringDamper::new(load, wheel), SpringTuning::sag(0.1, 0.3)));
+    // It falls for one step, which is 3 mm, and comes to rest where it began.
+    let moved = strays(&mut lab, load);
+    assert!(moved < 0.02, "{moved}");
+    let off = lab.position(load).y - 0.8;
+    assert!(off.abs() < 5e-3, "{off}");
+}
+
+#[test]
+fn a_pose_is_found_anew_after_a_reset() {
+    let mut lab = Lab::new();
+    let hook = lab.point(Vec3::Y * 5.0);
+    let body = lab.body(3.0, Vec3::Y * 4.0);
+    let element = SpringDamper::new(hook, body).with_stiffness(100.0);
+    let element = lab.spawn((element, HoldPose::new()));
+    lab.run(0.5);
+    lab.get_mut::<Transform>(body).translation.y = 3.5;
+    lab.app
+        .world_mut()
+        .entity_mut(element)
+        .insert(HoldPose::new());
+    let moved = strays(&mut lab, body);
+    assert!(moved < 1e-3, "{moved}");
+    // Half a metre more of the spring holds 50 N of it.
+    let preload = lab.get::<Preload>(element).0;
+    assert!(
+        (preload - (3.0 * GRAVITY as f32 - 50.0)).abs() < 0.01,
+        "{preload}"
+    );
+    // Or at a new rest length, which is captured like the first one.
+    lab.get_mut::<Transform>(body).translation.y = 4.0;
+    lab.get_mut::<SpringDamper>(element).rest_length = None;
+    lab.app
+        .world_mut()
+        .entity_mut(element)
+        .insert(HoldPose::new());
+    let moved = strays(&mut lab, body);
+    assert!(moved < 1e-3, "{moved}");
+    let pair = lab.get::<SpringDamper>(element);
+    assert_eq!(pair.rest_length, Some(1.0));
+}
+
+#[test]
 fn a_sag_longer_than_the_element_is_a_fault() {
     let mut lab = Lab::new();
     let hook = lab.point(Vec3::Y * 5.0);
