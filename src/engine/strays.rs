@@ -16,6 +16,7 @@ pub(crate) enum Role {
     /// It changes what an element does.
     Companion,
     /// It draws a linear element.
+    #[cfg_attr(not(feature = "visual"), allow(dead_code))]
     Look,
 }
 

@@ -12,7 +12,7 @@ use bevy::prelude::*;
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 #[require(Transform, Visibility, Placement)]
 pub struct Coil {
-    /// From the axis to the centre of the wire, m, or a share if it is [fitted](Self::fitted).
+    /// From the axis to the centre of the wire, m, or a share if it is [fitted](Self::fitted()).
     pub radius: f32,
     /// Half the thickness of the wire, m, or a share.
     pub wire_radius: f32,
@@ -24,12 +24,12 @@ pub struct Coil {
     pub handedness: Handedness,
     /// Paint.
     pub color: Color,
-    /// Its radii are shares of the length between the ends when first drawn, not metres; see [`Coil::fitted`].
+    /// Its radii are shares of the length between the ends when first drawn, not metres; see [`Coil::fitted()`].
     pub fitted: bool,
 }
 
 impl Default for Coil {
-    /// Of the size of a car's coilover, whatever the scene; see [`Coil::fitted`].
+    /// Of the size of a car's coilover, whatever the scene; see [`Coil::fitted()`].
     fn default() -> Self {
         Self {
             radius: 0.13,
@@ -69,7 +69,7 @@ impl Coil {
     /// 2.4 % of that length thick.
     ///
     /// The length is taken once, to within 5 %, so that springs of nearly one length share a mesh. A [`Telescope`]
-    /// beside it should be [fitted](crate::Telescope::fitted) too.
+    /// beside it should be [fitted](crate::Telescope::fitted()) too.
     ///
     /// [`Telescope`]: crate::Telescope
     pub fn fitted() -> Self {

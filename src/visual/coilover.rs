@@ -85,7 +85,7 @@ impl Coilover {
         self
     }
 
-    /// Scales both looks with the length between the ends: [`Coil::fitted`] and [`Telescope::fitted`].
+    /// Scales both looks with the length between the ends: [`Coil::fitted()`] and [`Telescope::fitted()`].
     pub fn fitted(mut self) -> Self {
         self.coil = Coil::fitted();
         self.telescope = Telescope::fitted();

@@ -31,12 +31,12 @@ pub struct Telescope {
     /// Paint of the tube.
     pub color: Color,
     /// Its radii and lengths are shares of the length between the ends when first drawn, not metres; see
-    /// [`Telescope::fitted`].
+    /// [`Telescope::fitted()`].
     pub fitted: bool,
 }
 
 impl Default for Telescope {
-    /// Of the size of a car's damper, whatever the scene; see [`Telescope::fitted`].
+    /// Of the size of a car's damper, whatever the scene; see [`Telescope::fitted()`].
     fn default() -> Self {
         Self {
             tube_radius: 0.062,

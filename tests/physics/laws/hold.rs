@@ -355,3 +355,20 @@ fn the_spring_force_holds_preload_and_stops_and_a_slack_rope_has_none() {
     assert!((force(taut) - 1.0).abs() < 1e-3);
     assert_eq!(force(slack), 0.0);
 }
+
+#[test]
+fn a_pose_that_could_not_be_held_is_found_once_that_is_mended() {
+    let mut lab = Lab::weightless();
+    let hook = lab.point(Vec3::Y);
+    let body = lab.body(1.0, Vec3::ZERO);
+    let pose = HoldPose::new().with_share(-1.0);
+    let element = lab.spawn((Spring::new(hook, body), pose));
+    lab.run(0.1);
+    assert_eq!(fault_of(&lab, element).field, "HoldPose::share");
+    lab.get_mut::<HoldPose>(element).share = 1.0;
+    lab.run(0.1);
+    let world = lab.app.world();
+    assert!(world.get::<SpringFault>(element).is_none());
+    assert!(world.get::<HoldPose>(element).is_none());
+    assert_eq!(lab.get::<Preload>(element).0, 0.0);
+}
