@@ -17,9 +17,9 @@ mod visual;
 pub use diagnostics::CoiloverDiagnosticsPlugin;
 pub use element::{
     Anchors, Breakable, CustomDampingLaw, CustomSpringLaw, Damper, DampingLaw, ForceLaw,
-    ForceTable, MaxForce, Polynomial, Preload, Spring, SpringAction, SpringAxis, SpringBroke,
-    SpringDamper, SpringFault, SpringLaw, SpringTravel, SpringTuning, TorsionDamper, TorsionSpring,
-    TorsionSpringDamper, WhenBroken, wire_stiffness,
+    ForceTable, HeldEnd, HoldPose, MaxForce, Polynomial, Preload, Spring, SpringAction, SpringAxis,
+    SpringBroke, SpringDamper, SpringFault, SpringLaw, SpringTravel, SpringTuning, TorsionDamper,
+    TorsionSpring, TorsionSpringDamper, WhenBroken, WorldAnchors, wire_stiffness,
 };
 pub use engine::SpringLoad;
 pub use plugin::{CoiloverPlugin, CoiloverSystems};
@@ -28,9 +28,9 @@ pub use recommend::recommend;
 pub use settings::CoiloverSettings;
 #[cfg(feature = "visual")]
 pub use visual::{
-    Coil, CoiloverVisualPlugin, CoiloverVisualSystems, Handedness, Helix, HelixEnds, HelixError,
-    HelixMeshBuilder, RoundWire, RoundWireMaterial, ShowSpringGizmos, SpringGizmos, SpringSkin,
-    Telescope, WoundCoil, coilover,
+    Coil, Coilover, CoiloverVisualPlugin, CoiloverVisualSystems, Handedness, Helix, HelixEnds,
+    HelixError, HelixMeshBuilder, RoundWire, RoundWireMaterial, ShowSpringGizmos, SpringGizmos,
+    SpringSkin, Telescope, WoundCoil, coilover,
 };
 
 use bevy::app::{PluginGroup, PluginGroupBuilder};
@@ -45,6 +45,24 @@ use bevy::app::{PluginGroup, PluginGroupBuilder};
 /// ```
 #[derive(Clone, Copy, Debug, Default)]
 pub struct CoiloverPlugins;
+
+impl CoiloverPlugins {
+    /// The group with [`CoiloverPlugin::at_hz`]: both rates, of physics and of `FixedUpdate`, are so many ticks per
+    /// second.
+    ///
+    /// ```no_run
+    /// # use bevy::prelude::*;
+    /// # use bevy_coilover::prelude::*;
+    /// # use bevy_rapier3d::prelude::*;
+    /// App::new()
+    ///     .add_plugins((DefaultPlugins, CoiloverPlugins::at_hz(60.0)))
+    ///     .add_plugins(RapierPhysicsPlugin::<NoUserData>::default().in_fixed_schedule())
+    ///     .run();
+    /// ```
+    pub fn at_hz(hertz: f64) -> PluginGroupBuilder {
+        Self.set(CoiloverPlugin::at_hz(hertz))
+    }
+}
 
 impl PluginGroup for CoiloverPlugins {
     fn build(self) -> PluginGroupBuilder {
@@ -136,15 +154,15 @@ pub mod prelude {
     pub use crate::{
         Anchors, Breakable, CoiloverDiagnosticsPlugin, CoiloverPlugin, CoiloverPlugins,
         CoiloverSettings, CoiloverSystems, CustomDampingLaw, CustomSpringLaw, Damper, DampingLaw,
-        ForceLaw, ForceTable, MaxForce, Polynomial, Preload, Spring, SpringAction, SpringAxis,
-        SpringBroke, SpringDamper, SpringFault, SpringLaw, SpringLoad, SpringMethod, SpringReadout,
-        SpringTravel, SpringTuning, TorsionDamper, TorsionSpring, TorsionSpringDamper, WhenBroken,
-        recommend,
+        ForceLaw, ForceTable, HeldEnd, HoldPose, MaxForce, Polynomial, Preload, Spring,
+        SpringAction, SpringAxis, SpringBroke, SpringDamper, SpringFault, SpringLaw, SpringLoad,
+        SpringMethod, SpringReadout, SpringTravel, SpringTuning, TorsionDamper, TorsionSpring,
+        TorsionSpringDamper, WhenBroken, WorldAnchors, recommend,
     };
     #[cfg(feature = "visual")]
     pub use crate::{
-        Coil, CoiloverVisualPlugin, CoiloverVisualSystems, Handedness, Helix, HelixEnds, RoundWire,
-        RoundWireMaterial, ShowSpringGizmos, SpringGizmos, SpringSkin, Telescope, WoundCoil,
-        coilover,
+        Coil, Coilover, CoiloverVisualPlugin, CoiloverVisualSystems, Handedness, Helix, HelixEnds,
+        RoundWire, RoundWireMaterial, ShowSpringGizmos, SpringGizmos, SpringSkin, Telescope,
+        WoundCoil, coilover,
     };
 }

@@ -1,7 +1,7 @@
 //! The physics plugin: schedule and system sets.
 
 use crate::element::*;
-use crate::engine::{self, Scene, SpringLoad, Watched};
+use crate::engine::{self, Role, Scene, SpringLoad, Strays, Watched};
 use crate::readout::SpringReadout;
 use crate::settings::CoiloverSettings;
 use bevy::ecs::schedule::ScheduleLabel;
@@ -18,6 +18,8 @@ use bevy_rapier3d::prelude::{PhysicsSet, TimestepMode};
 #[derive(Clone, Copy, Debug)]
 pub struct CoiloverPlugin {
     settings: CoiloverSettings,
+    /// Ticks per second, if the plugin is to set them.
+    rate: Option<f64>,
 }
 
 /// What the plugin does in its schedule, in this order.
@@ -51,6 +53,31 @@ impl CoiloverPlugin {
                 max_substeps: 64,
                 schedule: schedule.intern(),
             },
+            rate: None,
+        }
+    }
+
+    /// Runs in `FixedUpdate`, with so many ticks per second (finite and above zero, else an error is logged and
+    /// the rates stay as they are).
+    ///
+    /// It sets both rates, which must be equal: that of physics, `TimestepMode::Fixed` with one substep, and that
+    /// of the schedule, `Time<Fixed>`. What you insert afterwards takes their place.
+    ///
+    /// ```
+    /// # use bevy::prelude::*;
+    /// # use bevy_coilover::prelude::*;
+    /// # use bevy_rapier3d::prelude::*;
+    /// # let mut app = App::new();
+    /// app.add_plugins((
+    ///     CoiloverPlugin::at_hz(120.0),
+    ///     RapierPhysicsPlugin::<NoUserData>::default().in_fixed_schedule(),
+    /// ));
+    /// assert_eq!(app.world().resource::<Time<Fixed>>().timestep().as_secs_f32(), 1.0 / 120.0);
+    /// ```
+    pub fn at_hz(hertz: f64) -> Self {
+        Self {
+            rate: Some(hertz),
+            ..Self::default()
         }
     }
 
@@ -110,15 +137,23 @@ impl Plugin for CoiloverPlugin {
             .register_type::<MaxForce>()
             .register_type::<Breakable>()
             .register_type::<SpringTuning>()
+            .register_type::<HoldPose>()
+            .register_type::<WorldAnchors>()
             .register_type::<SpringReadout>()
             .register_type::<SpringLoad>()
             .register_type::<SpringFault>()
             .insert_resource(self.settings)
             .init_resource::<Scene>()
             .init_resource::<Watched>()
+            .init_resource::<Strays>()
             .add_systems(PreStartup, engine::check_schedule);
+        if let Some(hertz) = self.rate {
+            set_rates(app, hertz);
+        }
+        notice_strays(app);
 
         let schedule = self.settings.schedule;
+        app.add_systems(schedule, engine::tell_strays.run_if(engine::any_strays));
         app.configure_sets(
             schedule,
             (
@@ -132,8 +167,12 @@ impl Plugin for CoiloverPlugin {
         .add_systems(
             schedule,
             (
-                (engine::check_timestep, engine::prepare)
-                    .chain()
+                (
+                    engine::check_timestep,
+                    engine::anchor.run_if(any_with_component::<WorldAnchors>),
+                    engine::prepare,
+                )
+                    .chain_ignore_deferred()
                     .in_set(CoiloverSystems::Prepare),
                 (engine::read_users, engine::solve)
                     .chain()
@@ -146,5 +185,46 @@ impl Plugin for CoiloverPlugin {
                 .run_if(resource_exists::<TimestepMode>)
                 .run_if(engine::in_place),
         );
+    }
+}
+
+/// Sets the rates of physics and of `FixedUpdate` alike.
+fn set_rates(app: &mut App, hertz: f64) {
+    let seconds = hertz.recip();
+    if !(seconds.is_normal() && seconds > 0.0 && seconds < 1e6) {
+        log::error!(
+            "bevy_coilover: CoiloverPlugin::at_hz({hertz}): a rate must be finite and above zero; the rates stay \
+             as they are"
+        );
+        return;
+    }
+    app.insert_resource(TimestepMode::Fixed {
+        dt: seconds as f32,
+        substeps: 1,
+    })
+    .insert_resource(Time::<Fixed>::from_seconds(seconds));
+}
+
+/// What stands where no element is does nothing, and that is told.
+fn notice_strays(app: &mut App) {
+    use engine::notice;
+    notice::<Anchors>(app, Role::Companion, "Anchors");
+    notice::<WorldAnchors>(app, Role::Companion, "WorldAnchors");
+    notice::<SpringLaw>(app, Role::Companion, "SpringLaw");
+    notice::<CustomSpringLaw>(app, Role::Companion, "CustomSpringLaw");
+    notice::<DampingLaw>(app, Role::Companion, "DampingLaw");
+    notice::<CustomDampingLaw>(app, Role::Companion, "CustomDampingLaw");
+    notice::<SpringAction>(app, Role::Companion, "SpringAction");
+    notice::<SpringTravel>(app, Role::Companion, "SpringTravel");
+    notice::<SpringAxis>(app, Role::Companion, "SpringAxis");
+    notice::<Preload>(app, Role::Companion, "Preload");
+    notice::<MaxForce>(app, Role::Companion, "MaxForce");
+    notice::<Breakable>(app, Role::Companion, "Breakable");
+    notice::<SpringTuning>(app, Role::Companion, "SpringTuning");
+    notice::<HoldPose>(app, Role::Companion, "HoldPose");
+    #[cfg(feature = "visual")]
+    {
+        notice::<crate::Coil>(app, Role::Look, "Coil");
+        notice::<crate::Telescope>(app, Role::Look, "Telescope");
     }
 }

@@ -19,11 +19,13 @@ pub struct SpringReadout {
     pub length: f32,
     /// Rate of the length, m/s.
     pub rate: f32,
-    /// Tension of the spring, N.
+    /// Tension of all that does not depend on the rate, N: spring and [`Preload`](crate::Preload), as
+    /// [`SpringAction`](crate::SpringAction) and [`MaxForce`](crate::MaxForce) leave them, and pressed stops on top.
+    /// 0 where a rope is slack.
     pub spring_force: f32,
-    /// Tension of the damper, N.
+    /// Tension of the damper and of the dampers of pressed stops, N.
     pub damper_force: f32,
-    /// Energy in the spring, J.
+    /// Energy in spring and stops, J: 0 where they give no force.
     pub stored_energy: f32,
     /// Power that the damper turns into heat, W.
     pub dissipated_power: f32,

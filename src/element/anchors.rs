@@ -4,7 +4,8 @@ use bevy::prelude::*;
 /// [`SpringDamper`](crate::SpringDamper): a point in each end's local frame, as a child entity with
 /// that translation would stand (so the end's scale counts). Off-centre points load a body with torque.
 ///
-/// Without this component both are zero: the origin of each end.
+/// Without this component both are zero: the origin of each end. [`WorldAnchors`](crate::WorldAnchors) takes points of
+/// the world instead.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]

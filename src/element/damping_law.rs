@@ -2,7 +2,8 @@ use super::ForceTable;
 use bevy::prelude::*;
 
 /// Force of the damper over the rate of its length, beside [`Damper`](crate::Damper) or
-/// [`SpringDamper`](crate::SpringDamper); without this component it is linear.
+/// [`SpringDamper`](crate::SpringDamper); without this component it is linear. Beside a
+/// [`CustomDampingLaw`](crate::CustomDampingLaw) the element is at fault and does not act.
 ///
 /// All but `Linear` have coefficients of their own, and the element's damping plays no part. *Bump* is while
 /// the length shrinks, *rebound* while it grows.

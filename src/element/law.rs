@@ -5,7 +5,8 @@ use std::fmt;
 use std::sync::Arc;
 
 /// Force of the spring over its stretch (length less rest length), beside [`Spring`](crate::Spring) or
-/// [`SpringDamper`](crate::SpringDamper); without this component it is linear.
+/// [`SpringDamper`](crate::SpringDamper); without this component it is linear. Beside a [`CustomSpringLaw`] the element
+/// is at fault and does not act.
 ///
 /// On a torsion element angles (rad) and moments (N m) take the place of lengths and forces, in every
 /// companion.
@@ -118,7 +119,7 @@ impl<F: Fn(f64) -> f64 + Send + Sync + 'static> ForceLaw for F {
 }
 
 /// [`ForceLaw`] of your own as the spring's force, instead of a [`SpringLaw`]; the element's stiffness
-/// plays no part.
+/// plays no part. With both on one entity the element is at fault and does not act.
 ///
 /// ```
 /// # use bevy_coilover::CustomSpringLaw;
@@ -128,7 +129,7 @@ impl<F: Fn(f64) -> f64 + Send + Sync + 'static> ForceLaw for F {
 pub struct CustomSpringLaw(pub(crate) Arc<dyn ForceLaw>);
 
 /// [`ForceLaw`] of your own as the damper's force over the rate of the length, instead of a
-/// [`DampingLaw`](crate::DampingLaw). It must have the sign of the rate; where it has not it is taken as zero.
+/// [`DampingLaw`](crate::DampingLaw); with both on one entity the element is at fault and does not act. It must have the sign of the rate; where it has not it is taken as zero.
 #[derive(Component, Clone)]
 pub struct CustomDampingLaw(pub(crate) Arc<dyn ForceLaw>);
 

@@ -9,13 +9,19 @@ pub enum SpringAction {
     /// Pulls and pushes.
     #[default]
     Both,
-    /// Pulls only: a rope, a bungee. Slack is slack, without damping.
+    /// Pulls only: a rope, a bungee. Slack is slack, without damping. A [`Preload`] is added before the cut: a
+    /// preload P on a stiffness k lets it go slack at P/k below its rest length, not at the rest length.
     Pull,
     /// Pushes only: a seat, a buffer.
     Push,
 }
 
 /// A constant tension beside the spring's, N: the force at rest length. Negative pushes the ends apart.
+///
+/// It is part of [`SpringReadout::spring_force`](crate::SpringReadout::spring_force). Beside
+/// [`SpringAction::Pull`] or [`Push`](SpringAction::Push), spring and preload are added first, and the sum is cut at
+/// zero: a slack rope has no force whatever its preload. [`HoldPose`](crate::HoldPose) finds the preload that holds a
+/// load.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]

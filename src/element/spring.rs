@@ -17,7 +17,8 @@ pub struct Spring {
     /// The end that the spring goes to.
     #[entities]
     pub body_b: Entity,
-    /// Length without force, m; `None` is the length at the first step it acts, written back here then.
+    /// Length without force, m; `None` is the length at the first step it acts, written back here then. A load then sags
+    /// first: see [`HoldPose`](crate::HoldPose).
     pub rest_length: Option<f32>,
     /// N/m, finite and not negative.
     pub stiffness: f32,

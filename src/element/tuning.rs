@@ -9,6 +9,12 @@ use std::f32::consts::TAU;
 /// hinge, and a wheel that stands on the ground does not move. The engine knows contacts only after a step, so where a
 /// body has colliders they are worked out once more before the second step. What falls freely then counts as free: for
 /// what will land later, take [`SpringTuning::coefficients`] for the mass that the spring is to carry.
+///
+/// A sag finds the rest length too, if the element has none: such that the load stays where it was spawned. A rest length
+/// that you give is kept, and the load sags from there. Where two ends move, and neither stands on the ground after the
+/// first step, nothing says which is the load, and the rest length is the length at the first step, as ever: put a
+/// [`HoldPose`](crate::HoldPose) beside it. For several springs under one load take [`SpringTuning::coefficients`] with
+/// each spring's share of the mass, and [`HoldPose::share`](crate::HoldPose::share).
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
@@ -21,7 +27,7 @@ pub enum SpringTuning {
         /// c/(2 √(k m)): 0 swings for ever, 1 is critical.
         damping_ratio: f32,
     },
-    /// Gives way so far under the weight of its effective mass.
+    /// Gives way so far under the weight of its effective mass; sets the rest length too, if it is `None`.
     Sag {
         /// m, above zero.
         sag: f32,
@@ -39,7 +45,8 @@ impl SpringTuning {
         }
     }
 
-    /// Static sag (m) under the engine's gravity and damping ratio.
+    /// Static sag (m) under the engine's gravity and damping ratio. Without a rest length, the load stays where it was
+    /// spawned; with one, it sags.
     pub const fn sag(sag: f32, damping_ratio: f32) -> Self {
         Self::Sag { sag, damping_ratio }
     }

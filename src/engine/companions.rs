@@ -24,6 +24,7 @@ pub(crate) struct Beside {
     axis: Option<&'static SpringAxis>,
     breakable: Option<&'static Breakable>,
     tuning: Option<&'static SpringTuning>,
+    pose: Option<&'static HoldPose>,
 }
 
 type AnyBeside = Or<(
@@ -38,6 +39,7 @@ type AnyBeside = Or<(
     With<SpringAxis>,
     With<Breakable>,
     With<SpringTuning>,
+    With<HoldPose>,
 )>;
 
 type ChangedBeside = Or<(
@@ -52,12 +54,13 @@ type ChangedBeside = Or<(
     Changed<SpringAxis>,
     Changed<Breakable>,
     Changed<SpringTuning>,
+    Changed<HoldPose>,
 )>;
 
 /// Finds them, and those that changed or went.
 #[derive(SystemParam)]
 pub(crate) struct Companions<'w, 's> {
-    all: Query<'w, 's, Beside, AnyBeside>,
+    pub(super) all: Query<'w, 's, Beside, AnyBeside>,
     changed: Query<'w, 's, Entity, ChangedBeside>,
     gone: (
         RemovedComponents<'w, 's, SpringLaw>,
@@ -103,6 +106,11 @@ impl Companions<'_, '_> {
         self.all.get(entity).ok()?.tuning.copied()
     }
 
+    /// Whether an element has yet to find the preload that holds its load, and how.
+    pub(super) fn pose(&self, entity: Entity) -> Option<HoldPose> {
+        self.all.get(entity).ok()?.pose.copied()
+    }
+
     /// What stands beside an element, as its law.
     pub(super) fn of(&self, entity: Entity, p: &Parameters) -> Result<Companion, Fault> {
         let mut guide = p.guide();
@@ -136,7 +144,7 @@ impl Companions<'_, '_> {
 
 impl BesideItem<'_, '_> {
     /// Nothing but an axis, if at all.
-    fn is_linear(&self) -> bool {
+    pub(super) fn is_linear(&self) -> bool {
         matches!(self.spring, None | Some(SpringLaw::Linear))
             && matches!(self.damping, None | Some(DampingLaw::Linear))
             && matches!(self.action, None | Some(SpringAction::Both))
@@ -147,7 +155,7 @@ impl BesideItem<'_, '_> {
             && self.max_force.is_none()
     }
 
-    fn recipe(&self, p: &Parameters, guide: Guide) -> Result<Recipe, Fault> {
+    pub(super) fn recipe(&self, p: &Parameters, guide: Guide) -> Result<Recipe, Fault> {
         let most = self
             .max_force
             .map_or(Ok(f64::INFINITY), |most| check_most(*most))?;

@@ -22,6 +22,7 @@ type Springs<'a> = (
     Option<&'a mut SpringDamper>,
     Option<&'a mut TorsionSpring>,
     Option<&'a mut TorsionSpringDamper>,
+    Option<&'a SpringTuning>,
 );
 
 /// Writes readouts, captured rest lengths, and faults found while solving.
@@ -98,12 +99,16 @@ pub(crate) fn measure(
 
 /// Writes a captured rest length into the element's component, and coefficients that were worked out.
 fn write_back(row: &ElementRow, tuned: bool, springs: &mut Query<Springs, IsElement>) {
-    let Ok((spring, pair, torsion, torsion_pair)) = springs.get_mut(row.entity) else {
+    let Ok((spring, pair, torsion, torsion_pair, tuning)) = springs.get_mut(row.entity) else {
         return;
     };
     let p = &row.parameters;
+    // What a sag makes of the rest length is found anew with the stiffness.
+    let passing = tuned && row.tuned_again && matches!(tuning, Some(SpringTuning::Sag { .. }));
     let write = |rest: &mut Option<f32>, stiffness: &mut f32, damping: Option<&mut f32>| {
-        *rest = p.rest_length;
+        if !passing {
+            *rest = p.rest_length;
+        }
         if tuned {
             *stiffness = p.stiffness;
             if let Some(damping) = damping {

@@ -11,6 +11,7 @@
 //!   [`warm_start`] takes networks of points past most of the work. [`sleep`] and [`still`] leave out what rests.
 //! - [`measure`] shows what came of it, [`energy`] where the energy went.
 
+mod anchoring;
 mod assembly;
 mod body;
 mod breaking;
@@ -29,6 +30,7 @@ mod lone;
 mod measure;
 mod parts;
 mod point;
+mod pose;
 mod prepare;
 mod renew;
 mod report;
@@ -37,13 +39,16 @@ mod scene;
 mod setup;
 mod sleep;
 mod solve;
+mod statics;
 mod step;
 mod still;
+mod strays;
 mod timestep;
 mod tune;
 mod warm_start;
 mod watch;
 
+pub(crate) use anchoring::anchor;
 pub(crate) use breaking::break_overloaded;
 pub use forces::SpringLoad;
 pub(crate) use forces::read_users;
@@ -52,3 +57,4 @@ pub(crate) use prepare::prepare;
 pub(crate) use scene::{Scene, mark};
 pub(crate) use setup::{Watched, check_schedule, check_timestep, in_place};
 pub(crate) use solve::solve;
+pub(crate) use strays::{Role, Strays, any_strays, notice, tell_strays};

@@ -1,6 +1,6 @@
 //! Before the step: is the scene still the one we know? Mostly it is, and only what can move is read.
 
-use super::check::Parameters;
+use super::check::{Fault, Parameters};
 use super::companions::Companions;
 use super::ends::{Ends, Place};
 use super::find::Finder;
@@ -133,6 +133,7 @@ fn refresh(
         if !parameters.is_held_like(&row.parameters)
             || companion.guide != row.companion.guide
             || companions.tuning(entity).is_some()
+            || companions.pose(entity).is_some()
         {
             return false;
         }
@@ -215,15 +216,32 @@ fn still_faulty(
     if row.trouble.lasting().is_none() || row.parameters.ends == Parameters::NONE.ends {
         return true;
     }
-    let found = companions
-        .of(row.entity, &row.parameters)
-        .and_then(|c| finder.find(&row.parameters, c.guide, &mut row.memory.scales, modified));
-    match found {
+    match judge(row, companions, finder, modified) {
         Err(fault) => {
             row.trouble.set_lasting(Some(fault));
             report(row, commands);
             true
         }
-        Ok(_) => false,
+        Ok(()) => false,
     }
+}
+
+/// What is wrong with an inert element now.
+fn judge(
+    row: &mut ElementRow,
+    companions: &Companions,
+    finder: &mut Finder,
+    modified: &EntityHashSet,
+) -> Result<(), Fault> {
+    let (entity, mut parameters) = (row.entity, row.parameters);
+    let guide = companions.of(entity, &parameters)?.guide;
+    let found = finder.find(&parameters, guide, &mut row.memory.scales, modified)?;
+    if let Some(tuning) = companions.tuning(entity) {
+        finder.tune(tuning, guide, &found.places, &mut parameters)?;
+        parameters.check()?;
+    }
+    if let Some(pose) = companions.pose(entity) {
+        companions.hold(entity, pose, &parameters, guide, &found.places, finder)?;
+    }
+    Ok(())
 }

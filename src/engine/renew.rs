@@ -8,6 +8,7 @@ use super::parts::{IsElement, Parts};
 use super::report::report;
 use super::rows::{BodyRow, ElementRow, mix};
 use super::scene::{Scene, Scratch};
+use crate::element::{HoldPose, Preload};
 use bevy::ecs::entity::EntityHashSet;
 use bevy::prelude::*;
 use std::mem::{swap, take};
@@ -67,6 +68,17 @@ impl Scene {
                     row.parameters = tuned;
                     row.tuned = true;
                     row.tuned_again = can_touch && !row.tuned_again;
+                }
+                if let Some(pose) = companions.pose(entity) {
+                    let places = &found.places;
+                    let held =
+                        companions.hold(entity, pose, &row.parameters, guide, places, finder)?;
+                    companion = held.0;
+                    let mut element = commands.entity(entity);
+                    element.try_insert(Preload(held.1));
+                    if !row.tuned_again {
+                        element.try_remove::<HoldPose>();
+                    }
                 }
                 row.change(|row| row.companion = companion);
                 Ok(found)

@@ -4,26 +4,34 @@ use super::check::{Fault, Parameters};
 use super::ends::Place;
 use super::find::Finder;
 use super::inside::{Holding, inverse_mass};
+use crate::dynamics::body::Body;
 use crate::dynamics::element::{Element, End, Path};
 use crate::dynamics::guide::Guide;
+use crate::dynamics::line::Line;
 use crate::element::SpringTuning;
 use bevy::math::DVec3;
 use bevy::prelude::*;
+use bevy_rapier3d::rapier::dynamics::RigidBodyHandle;
 
 /// What an element acts on.
-struct Lever {
-    /// Of both ends along the line, with what joints and contacts leave, 1/kg.
-    inverse_mass: f64,
+pub(super) struct Lever {
+    pub line: Line,
+    /// The bodies at its ends that can be moved, with their weight, and what the engine calls them.
+    pub bodies: Vec<Body>,
+    pub handles: Vec<RigidBodyHandle>,
     /// The Rapier context.
-    context: Entity,
+    pub context: Entity,
     /// A body of it has colliders.
     can_touch: bool,
+    /// m/s².
+    gravity: Vec3,
 }
 
 impl Finder<'_, '_> {
     /// Puts the coefficients that a tuning asks for into an element's numbers; says whether contacts may hold its ends.
+    /// A sag sets the rest length too, where there is none.
     pub(super) fn tune(
-        &mut self,
+        &self,
         tuning: SpringTuning,
         guide: Guide,
         places: &[Place; 2],
@@ -43,31 +51,68 @@ impl Finder<'_, '_> {
         if parameters.names.stiffness.is_empty() {
             return fault("stands on a damper without a spring");
         }
-        let Some(Lever {
-            inverse_mass,
-            context,
-            can_touch,
-        }) = self.lever(guide, places)
-        else {
+        let lever = self.lever(guide, places);
+        let moved = lever.filter(|lever| self.left(lever, lever.line) > 0.0);
+        let Some(lever) = moved else {
             return fault("stands on an element whose ends cannot move or coincide");
         };
-        let gravity = self
-            .configurations
-            .get(context)
-            .map_or(0.0, |configuration| configuration.gravity.length());
-        let mass = inverse_mass.recip() as f32;
-        let (stiffness, damping) = tuning.coefficients(mass, gravity);
+        let mass = self.left(&lever, lever.line).recip() as f32;
+        let (stiffness, damping) = tuning.coefficients(mass, lever.gravity.length());
         parameters.stiffness = stiffness;
         if !parameters.names.damping.is_empty() {
             parameters.damping = damping;
         }
-        Ok(can_touch)
+        let sags = matches!(tuning, SpringTuning::Sag { .. }) && parameters.rest_length.is_none();
+        if let Some(stretch) = self.stretch(&lever, stiffness).filter(|_| sags) {
+            let rest = lever.line.distance() - stretch;
+            if guide == Guide::Centres && rest < 0.0 {
+                return fault("has a sag that is longer than the element");
+            }
+            parameters.rest_length = Some(rest as f32);
+        }
+        Ok(lever.can_touch)
     }
 
-    fn lever(&mut self, guide: Guide, places: &[Place; 2]) -> Option<Lever> {
+    /// Stretch with which a spring of this stiffness carries its load where that is, m; none where nothing says which
+    /// end is the load.
+    fn stretch(&self, lever: &Lever, stiffness: f32) -> Option<f64> {
+        let one_sided = |end: usize| {
+            let mut line = lever.line;
+            line.holds[1 - end].body = None;
+            self.left(lever, line)
+        };
+        let (tension, _) = self.tension_alone(lever, lever.load(one_sided)?, None)?;
+        let stretch = tension / f64::from(stiffness);
+        Some(stretch).filter(|stretch| stretch.is_finite())
+    }
+
+    /// Inverse mass of a line, with what joints and contacts leave, 1/kg.
+    fn left(&self, lever: &Lever, line: Line) -> f64 {
+        let Ok((set, colliders, joints, simulation)) = self.sets.get(lever.context) else {
+            return 0.0;
+        };
+        let all = Holding {
+            contacts: true,
+            bodies: &set.bodies,
+            joints,
+            colliders: &colliders.colliders,
+            narrow: &simulation.narrow_phase,
+        };
+        inverse_mass(&line, |body| lever.handles[body], all)
+    }
+
+    /// An element's line as it is now, if it has one and either end can move.
+    pub(super) fn lever(&self, guide: Guide, places: &[Place; 2]) -> Option<Lever> {
         let (mut bodies, mut handles) = (Vec::new(), Vec::new());
         let mut context = None;
         let mut can_touch = false;
+        let on = |place: &Place| match place {
+            Place::OnBody { context, .. } => Some(*context),
+            Place::Point(_) => None,
+        };
+        let gravity = places.iter().find_map(on);
+        let gravity = gravity.and_then(|context| self.configurations.get(context).ok());
+        let gravity = gravity.map_or(Vec3::ZERO, |configuration| configuration.gravity);
         let ends = places.map(|place| match place {
             Place::Point(at) => End::Path(Path::straight(at, DVec3::ZERO)),
             Place::OnBody {
@@ -90,7 +135,7 @@ impl Finder<'_, '_> {
                 can_touch |= !body.colliders().is_empty();
                 handles.push(handle);
                 let none = bevy_rapier3d::prelude::ExternalForce::default();
-                bodies.push(super::body::read(body, Vec3::ZERO, &none, true));
+                bodies.push(super::body::read(body, gravity, &none, true));
                 End::Body {
                     index: bodies.len() - 1,
                     arm: local - body.local_center_of_mass().as_dvec3(),
@@ -111,21 +156,13 @@ impl Finder<'_, '_> {
             stiff_damper: false,
         };
         let line = element.line(&bodies)?;
-        let context = context?;
-        let (set, colliders, joints, simulation) = self.sets.get(context).ok()?;
-        let all = Holding {
-            contacts: true,
-            bodies: &set.bodies,
-            joints,
-            colliders: &colliders.colliders,
-            narrow: &simulation.narrow_phase,
-        };
-        let inverse_mass = inverse_mass(&line, |body| handles[body], all);
-        let lever = Lever {
-            inverse_mass,
-            context,
+        Some(Lever {
+            line,
+            bodies,
+            handles,
+            context: context?,
             can_touch,
-        };
-        Some(lever).filter(|lever| lever.inverse_mass > 0.0)
+            gravity,
+        })
     }
 }

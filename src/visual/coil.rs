@@ -12,9 +12,9 @@ use bevy::prelude::*;
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 #[require(Transform, Visibility, Placement)]
 pub struct Coil {
-    /// From the axis to the centre of the wire, m.
+    /// From the axis to the centre of the wire, m, or a share if it is [fitted](Self::fitted()).
     pub radius: f32,
-    /// Half the thickness of the wire, m.
+    /// Half the thickness of the wire, m, or a share.
     pub wire_radius: f32,
     /// Turns of the wire from end to end, the flat ones at the ends included.
     pub turns: f32,
@@ -24,9 +24,12 @@ pub struct Coil {
     pub handedness: Handedness,
     /// Paint.
     pub color: Color,
+    /// Its radii are shares of the length between the ends when first drawn, not metres; see [`Coil::fitted()`].
+    pub fitted: bool,
 }
 
 impl Default for Coil {
+    /// Of the size of a car's coilover, whatever the scene; see [`Coil::fitted()`].
     fn default() -> Self {
         Self {
             radius: 0.13,
@@ -35,6 +38,7 @@ impl Default for Coil {
             ends: HelixEnds::default(),
             handedness: Handedness::default(),
             color: Color::srgb(0.80, 0.09, 0.07),
+            fitted: false,
         }
     }
 }
@@ -58,6 +62,33 @@ impl Coil {
             wire_radius,
             turns,
             ..default()
+        }
+    }
+
+    /// A coil that fits its scene: its radius is a tenth of the length between the ends when first drawn, and its wire
+    /// 2.4 % of that length thick.
+    ///
+    /// The length is taken once, to within 5 %, so that springs of nearly one length share a mesh. A [`Telescope`]
+    /// beside it should be [fitted](crate::Telescope::fitted()) too.
+    ///
+    /// [`Telescope`]: crate::Telescope
+    pub fn fitted() -> Self {
+        Self {
+            radius: 0.1,
+            wire_radius: 0.012,
+            fitted: true,
+            ..default()
+        }
+    }
+
+    /// In metres, where the ends are `first` apart when first drawn.
+    pub(super) fn at(self, first: f32) -> Self {
+        let scale = if self.fitted { rounded(first) } else { 1.0 };
+        Self {
+            radius: scale * self.radius,
+            wire_radius: scale * self.wire_radius,
+            fitted: false,
+            ..self
         }
     }
 
@@ -119,7 +150,7 @@ impl Coil {
         self
     }
 
-    /// Its shape at this length, m.
+    /// Its shape at this length, m; of a fitted one, both are in shares.
     pub const fn helix(&self, length: f32) -> Helix {
         Helix {
             radius: self.radius,
@@ -131,8 +162,14 @@ impl Coil {
         }
     }
 
-    /// The length at which all turns touch, m.
+    /// The length at which all turns touch, m; of a fitted one, as a share.
     pub fn solid_length(&self) -> f32 {
         self.helix(1.0).solid_length()
     }
+}
+
+/// A length to within 5 %: a power of 1.1.
+pub(super) fn rounded(length: f32) -> f32 {
+    let step = 1.1_f32.ln();
+    ((length.ln() / step).round() * step).exp()
 }

@@ -55,7 +55,13 @@ pub(super) fn lay(
                 }
                 shows() || has_changed()
             }
-            Due::All => true,
+            Due::All => {
+                // In the next frame it may not have its turn.
+                if !placement.seen && shows() {
+                    placement.bypass_change_detection().shows = true;
+                }
+                true
+            }
         };
         if !is_due {
             continue;

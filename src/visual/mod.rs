@@ -7,6 +7,7 @@
 //! keeps one of each for all equal springs.
 
 mod coil;
+mod coilover;
 mod fitting;
 mod gizmos;
 mod heading;
@@ -22,13 +23,13 @@ mod telescope;
 mod views;
 
 pub use coil::{Coil, WoundCoil};
+pub use coilover::{Coilover, coilover};
 pub use gizmos::{ShowSpringGizmos, SpringGizmos};
 pub use helix::{Handedness, Helix, HelixEnds, HelixError, HelixMeshBuilder};
 pub use round_wire::{RoundWire, RoundWireMaterial};
 pub use skin::SpringSkin;
 pub use telescope::Telescope;
 
-use crate::element::{Anchors, SpringDamper};
 use bevy::asset::{AssetServer, Assets};
 use bevy::camera::visibility::VisibilitySystems;
 use bevy::mesh::Mesh;
@@ -41,6 +42,10 @@ use bevy::prelude::*;
 /// it says so once and draws nothing.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct CoiloverVisualPlugin;
+
+/// Says that looks are drawn.
+#[derive(Resource, Clone, Copy, Debug)]
+pub(crate) struct IsDrawn;
 
 /// Updates of what is drawn, in `PostUpdate` after transform propagation.
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -58,6 +63,7 @@ impl Plugin for CoiloverVisualPlugin {
             .register_type::<Helix>()
             .register_type::<RoundWire>()
             .init_resource::<shapes::Shapes>()
+            .insert_resource(IsDrawn)
             .add_systems(PreStartup, say_what_is_missing)
             .configure_sets(
                 PostUpdate,
@@ -110,20 +116,4 @@ fn say_what_is_missing(
         "bevy_coilover: CoiloverVisualPlugin finds no {missing}, so nothing is drawn; add DefaultPlugins \
          (or AssetPlugin, MeshPlugin and PbrPlugin) before it, or use CoiloverPlugin alone"
     );
-}
-
-/// A coil spring around a telescoping damper between two ends: physics and looks.
-///
-/// A [`SpringDamper`] of 1000 N/m and 60 N s/m whose rest length is the length at the first step, with
-/// [`Coil`], [`Telescope`] and centred [`Anchors`]; give your own values by inserting those components
-/// after it: in one bundle with it, Bevy panics at the second of a kind.
-pub fn coilover(body_a: Entity, body_b: Entity) -> impl Bundle {
-    (
-        SpringDamper::new(body_a, body_b)
-            .with_stiffness(1000.0)
-            .with_damping(60.0),
-        Anchors::default(),
-        Coil::default(),
-        Telescope::default(),
-    )
 }

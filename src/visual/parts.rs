@@ -139,11 +139,13 @@ pub(super) fn build(
             return true;
         };
         workshop.clear(element);
-        let coil = sound(element, "Coil", coil, |c| {
+        let first = placement.first(length);
+        let (coil, telescope) = (coil.map(|c| c.at(first)), telescope.map(|t| t.at(first)));
+        let coil = sound(element, "Coil", coil.as_ref(), |c| {
             c.helix(1.0).check().map_err(|e| e.to_string())
         });
-        let telescope = sound(element, "Telescope", telescope, Telescope::check);
-        placement.dress(length, |first| Layout::new(coil, telescope, first));
+        let telescope = sound(element, "Telescope", telescope.as_ref(), Telescope::check);
+        placement.dress(Layout::new(coil, telescope, first));
         if let Some(coil) = coil {
             workshop.coil(element, coil);
         }
@@ -175,7 +177,11 @@ pub(super) fn take_skins(
         commands.entity(entity).insert(Part::Custom(skin.length));
         commands
             .entity(parent.parent())
-            .insert_if_new((Placement::default(), Visibility::default()))
+            .insert_if_new((
+                Placement::default(),
+                Transform::default(),
+                Visibility::default(),
+            ))
             .entry::<Placement>()
             .and_modify(|mut placement| placement.recall());
     }

@@ -3,7 +3,7 @@
 use super::heading::{Heading, upright};
 use super::layout::{Layout, Part, SHORT};
 use super::views::{Cameras, Views, level};
-use crate::element::{Anchors, Damper, Spring, SpringDamper};
+use crate::element::{Anchors, Damper, Spring, SpringDamper, WorldAnchors};
 use bevy::ecs::query::QueryData;
 use bevy::ecs::system::SystemParam;
 use bevy::math::Vec3A;
@@ -24,7 +24,7 @@ pub struct Placement {
     /// Its coil has been shorter than its turns are thick, and that was said.
     squeezed: bool,
     /// It was in sight when that was last found out.
-    seen: bool,
+    pub(super) seen: bool,
     /// Some part of it was in some view in the last frame, be it for its shadow.
     pub(super) shows: bool,
     /// The state of the views for which sight and level are right.
@@ -80,14 +80,18 @@ impl Ends {
 }
 
 impl Placement {
-    /// Gives an element new looks, now that its ends are this far apart.
-    pub(super) fn dress(&mut self, length: f32, layout: impl FnOnce(f32) -> Layout) {
-        let first = *self.first.get_or_insert(length.max(SHORT));
-        self.layout = layout(first);
+    /// Gives an element new looks.
+    pub(super) fn dress(&mut self, layout: Layout) {
+        self.layout = layout;
         self.level = 0;
         self.squeezed = false;
         self.seen = false;
         self.recall();
+    }
+
+    /// Length when first drawn, m: this one, if that is now.
+    pub(super) fn first(&mut self, length: f32) -> f32 {
+        *self.first.get_or_insert(length.max(SHORT))
     }
 
     /// Lays all parts anew, whatever has been laid before.
@@ -164,6 +168,8 @@ pub(super) struct Line {
     damper: Option<&'static Damper>,
     pair: Option<&'static SpringDamper>,
     anchors: Option<&'static Anchors>,
+    /// It has not been stepped yet: here are its anchors.
+    points: Option<&'static WorldAnchors>,
 }
 
 /// Where entities are in this frame; parts, which follow, aside.
@@ -192,6 +198,10 @@ impl Lines<'_, '_> {
                 b.transform_point3a(anchors.b.into()),
             ),
             None => (a.translation, b.translation),
+        };
+        let (from, to) = match line.points {
+            Some(points) => (points.a.into(), points.b.into()),
+            None => (from, to),
         };
         Some(Ends {
             x: a.matrix3.x_axis,

@@ -4,6 +4,10 @@ use bevy::prelude::*;
 /// [`SpringDamper`](crate::SpringDamper): whatever it draws, with any mesh and any material, is laid
 /// between the ends, its +Y from end A to end B, scaled along it.
 ///
+/// The mesh has to stand on its origin: its foot at y = 0, its top at y = [`length`](Self::length). Bevy's cylinder, say,
+/// has its middle there unless it is made with `CylinderAnchor::Bottom`. The element gets the `Transform` and `Visibility`
+/// that a parent of drawn entities needs.
+///
 /// A mesh scaled like that flattens or fattens its wire; [`Coil`](crate::Coil) does not.
 ///
 /// ```
@@ -16,8 +20,6 @@ use bevy::prelude::*;
 /// let brass = materials.add(Color::srgb(0.7, 0.5, 0.2));
 /// commands.spawn((
 ///     Spring::new(a, b),
-///     Transform::default(),
-///     Visibility::default(),
 ///     children![(SpringSkin { length: 1.0 }, Mesh3d(mesh), MeshMaterial3d(brass))],
 /// ));
 /// # }
@@ -28,7 +30,7 @@ use bevy::prelude::*;
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 #[require(Transform, Visibility)]
 pub struct SpringSkin {
-    /// Height of what is drawn, from the origin, where it is not scaled, m.
+    /// Height of what is drawn, from its foot at the origin, where it is not scaled, m.
     pub length: f32,
 }
 

@@ -1,3 +1,4 @@
+use super::coil::rounded;
 use super::place::Placement;
 use bevy::prelude::*;
 
@@ -29,9 +30,13 @@ pub struct Telescope {
     pub bump_rubber: bool,
     /// Paint of the tube.
     pub color: Color,
+    /// Its radii and lengths are shares of the length between the ends when first drawn, not metres; see
+    /// [`Telescope::fitted()`].
+    pub fitted: bool,
 }
 
 impl Default for Telescope {
+    /// Of the size of a car's damper, whatever the scene; see [`Telescope::fitted()`].
     fn default() -> Self {
         Self {
             tube_radius: 0.062,
@@ -42,6 +47,7 @@ impl Default for Telescope {
             eyes: false,
             bump_rubber: false,
             color: Color::srgb(0.10, 0.11, 0.13),
+            fitted: false,
         }
     }
 }
@@ -53,6 +59,31 @@ impl Telescope {
             tube_radius,
             rod_radius,
             ..default()
+        }
+    }
+
+    /// A telescope that fits its scene: its tube's radius is 4.8 % of the length between the ends when first drawn, its
+    /// rod's 2 %. Lengths that are set count in the same measure: `with_stroke(0.5)` is half of that length.
+    pub fn fitted() -> Self {
+        Self {
+            tube_radius: 0.048,
+            rod_radius: 0.02,
+            fitted: true,
+            ..default()
+        }
+    }
+
+    /// In metres, where the ends are `first` apart when first drawn.
+    pub(super) fn at(self, first: f32) -> Self {
+        let scale = if self.fitted { rounded(first) } else { 1.0 };
+        Self {
+            tube_radius: scale * self.tube_radius,
+            rod_radius: scale * self.rod_radius,
+            tube_length: self.tube_length.map(|length| scale * length),
+            rod_length: self.rod_length.map(|length| scale * length),
+            stroke: self.stroke.map(|length| scale * length),
+            fitted: false,
+            ..self
         }
     }
 

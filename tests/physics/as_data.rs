@@ -31,6 +31,8 @@ fn every_public_component_is_in_the_type_registry() {
         "MaxForce",
         "Breakable",
         "SpringTuning",
+        "HoldPose",
+        "WorldAnchors",
     ] {
         let registration = registry.get_with_short_type_path(name);
         let registration = registration.unwrap_or_else(|| panic!("{name} is registered"));

@@ -5,6 +5,7 @@ mod harness;
 
 mod adams;
 mod against_rapier;
+mod anchoring;
 mod as_data;
 mod bad_input;
 mod car;
@@ -34,9 +35,12 @@ mod stability;
 mod static_sag;
 mod still;
 mod strangers;
+mod strays;
 mod tolerance;
 mod user_force;
 #[cfg(feature = "visual")]
 mod visual_data;
+#[cfg(feature = "visual")]
+mod visual_looks;
 #[cfg(feature = "visual")]
 mod visual_rest;

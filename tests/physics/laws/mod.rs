@@ -7,6 +7,7 @@ mod breaking;
 mod driven;
 mod extreme;
 mod given;
+mod hold;
 mod ledger;
 mod light;
 mod one_way;

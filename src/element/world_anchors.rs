@@ -1,0 +1,36 @@
+use super::Anchors;
+use bevy::prelude::*;
+
+/// Where an element is held, as points of the world: an easier way to [`Anchors`].
+///
+/// At the next step both points are turned into [`Anchors`], in the frames that the ends have then, and this
+/// component is removed. From there on each point goes with its end. Insert it again to hold the element elsewhere.
+///
+/// ```
+/// # use bevy::prelude::*;
+/// # use bevy_coilover::prelude::*;
+/// # fn hang(commands: &mut Commands, ceiling: Entity, sign: Entity) {
+/// commands.spawn((
+///     Spring::new(ceiling, sign).with_stiffness(200.0),
+///     WorldAnchors::new(Vec3::new(0.5, 3.0, 0.0), Vec3::new(0.5, 2.0, 0.0)),
+/// ));
+/// # }
+/// ```
+#[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
+#[reflect(Component, Default, Debug, PartialEq, Clone)]
+#[require(Anchors)]
+pub struct WorldAnchors {
+    /// Where end A is held, in the world, m.
+    pub a: Vec3,
+    /// Where end B is held, in the world, m.
+    pub b: Vec3,
+}
+
+impl WorldAnchors {
+    /// Points of the world for end A and end B.
+    pub const fn new(a: Vec3, b: Vec3) -> Self {
+        Self { a, b }
+    }
+}

@@ -1,0 +1,109 @@
+//! Are anchors and rates taken as they were given?
+
+use crate::harness::*;
+use crate::messages::Log;
+use bevy::prelude::*;
+use bevy_coilover::prelude::*;
+use bevy_rapier3d::prelude::*;
+
+#[test]
+fn points_of_the_world_become_points_of_the_ends_at_the_first_step() {
+    let mut lab = Lab::weightless();
+    // An end with a place, a turn and a scale, below another entity.
+    let root =
+        lab.spawn(Transform::from_xyz(1.0, 0.0, 2.0).with_rotation(Quat::from_rotation_y(0.7)));
+    let hook = lab.spawn((
+        Transform::from_xyz(0.0, 3.0, 0.0).with_scale(Vec3::splat(2.0)),
+        ChildOf(root),
+    ));
+    let load = lab.body(1.0, Vec3::new(1.0, 1.0, 2.0));
+    lab.get_mut::<Transform>(load).rotation = Quat::from_rotation_z(0.5);
+    let points = WorldAnchors::new(Vec3::new(1.5, 2.5, 2.0), Vec3::new(1.2, 1.1, 2.3));
+    let element = lab.spawn((Spring::new(hook, load).with_stiffness(5.0), points));
+    lab.tick();
+    let length = lab.readout(element).length;
+    assert!(
+        (length - points.a.distance(points.b)).abs() < 1e-5,
+        "{length}"
+    );
+    assert!(lab.app.world().get::<WorldAnchors>(element).is_none());
+    let anchors = *lab.get::<Anchors>(element);
+    let at = |e: Entity, anchor: Vec3| lab.get::<GlobalTransform>(e).transform_point(anchor);
+    assert!(at(hook, anchors.a).distance(points.a) < 1e-5);
+    assert!(at(load, anchors.b).distance(points.b) < 1e-5);
+}
+
+#[test]
+fn points_of_the_world_can_be_given_again() {
+    let mut lab = Lab::weightless();
+    let hook = lab.point(Vec3::Y);
+    let load = lab.body(1.0, Vec3::ZERO);
+    let element = lab.spawn((
+        Spring::new(hook, load),
+        WorldAnchors::new(Vec3::Y, Vec3::ZERO),
+    ));
+    lab.run(0.1);
+    assert_eq!(
+        *lab.get::<Anchors>(element),
+        Anchors::new(Vec3::ZERO, Vec3::ZERO)
+    );
+    let again = WorldAnchors::new(Vec3::new(0.5, 1.0, 0.0), Vec3::new(0.5, 0.0, 0.0));
+    lab.app.world_mut().entity_mut(element).insert(again);
+    lab.run(0.1);
+    assert_eq!(
+        *lab.get::<Anchors>(element),
+        Anchors::new(Vec3::X * 0.5, Vec3::X * 0.5)
+    );
+}
+
+#[test]
+fn an_end_that_is_scaled_to_nothing_is_told_as_a_bad_anchor() {
+    let mut lab = Lab::weightless();
+    let hook = lab.spawn(Transform::from_scale(Vec3::ZERO));
+    let load = lab.body(1.0, Vec3::ZERO);
+    let points = WorldAnchors::new(Vec3::Y, Vec3::X);
+    let element = lab.spawn((Spring::new(hook, load), points));
+    lab.run(0.1);
+    assert_eq!(lab.get::<SpringFault>(element).field, "Anchors::a");
+}
+
+fn rates(app: &App) -> (f32, f32) {
+    let tick = app.world().resource::<Time<Fixed>>().timestep();
+    let step = match *app.world().resource::<TimestepMode>() {
+        TimestepMode::Fixed { dt, substeps: 1 } => dt,
+        other => panic!("{other:?}"),
+    };
+    (tick.as_secs_f32(), step)
+}
+
+#[test]
+fn one_call_sets_the_rates_of_physics_and_schedule_in_either_order_of_plugins() {
+    let log = Log::capture();
+    let rapier = || RapierPhysicsPlugin::<NoUserData>::default().in_fixed_schedule();
+    for ours_first in [true, false] {
+        let mut app = App::new();
+        app.add_plugins((MinimalPlugins, TransformPlugin));
+        if ours_first {
+            app.add_plugins((CoiloverPlugin::at_hz(90.0), rapier()));
+        } else {
+            app.add_plugins((rapier(), CoiloverPlugin::at_hz(90.0)));
+        }
+        single_threaded(&mut app);
+        app.update();
+        assert_eq!(rates(&app), (1.0 / 90.0, 1.0 / 90.0));
+    }
+    assert_eq!(log.take(), Vec::<String>::new());
+}
+
+#[test]
+fn a_rate_that_is_none_is_told_and_changes_nothing() {
+    for hertz in [0.0, -60.0, f64::NAN, f64::INFINITY] {
+        let log = Log::capture();
+        let mut app = App::new();
+        app.add_plugins((MinimalPlugins, CoiloverPlugin::at_hz(hertz)));
+        let told = log.take();
+        assert_eq!(told.len(), 1, "{told:?}");
+        assert!(told[0].contains("at_hz"));
+        assert!(app.world().get_resource::<TimestepMode>().is_none());
+    }
+}

@@ -1,0 +1,108 @@
+//! Is what stands where no element is told of, once, and nothing else?
+
+use crate::harness::*;
+use crate::messages::Log;
+use bevy::prelude::*;
+use bevy_coilover::prelude::*;
+
+#[test]
+fn companions_without_an_element_are_told_once_for_each_entity() {
+    let log = Log::capture();
+    let mut lab = Lab::new();
+    let lone = lab.spawn((
+        Preload(3.0),
+        Breakable::at_force(1.0),
+        Anchors::default(),
+        SpringLaw::Cubic,
+        DampingLaw::Linear,
+        SpringAction::Pull,
+        SpringTravel::new(0.1, 1.0, 1.0),
+        MaxForce(1.0),
+        SpringAxis::World(Vec3::Y),
+        SpringTuning::frequency(1.0, 0.1),
+    ));
+    let other = lab.spawn(HoldPose::new());
+    lab.run(0.03);
+    assert_eq!(log.take(), Vec::<String>::new(), "too early");
+    lab.run(1.0);
+    let told = log.take();
+    assert_eq!(told.len(), 2, "{told:?}");
+    for (entity, names) in [
+        (
+            lone,
+            &[
+                "Preload",
+                "Breakable",
+                "Anchors",
+                "SpringLaw",
+                "DampingLaw",
+                "SpringAction",
+                "SpringTravel",
+                "MaxForce",
+                "SpringAxis",
+                "SpringTuning",
+            ][..],
+        ),
+        (other, &["HoldPose"][..]),
+    ] {
+        let said = told.iter().find(|t| t.starts_with(&format!("{entity}: ")));
+        let said = said.unwrap_or_else(|| panic!("{told:?} say nothing of {entity}"));
+        for name in names {
+            assert!(said.contains(name), "{said} does not name {name}");
+        }
+    }
+    lab.app.world_mut().entity_mut(other).insert(MaxForce(1.0));
+    lab.run(0.5);
+    assert_eq!(log.take(), Vec::<String>::new(), "told twice");
+}
+
+#[test]
+fn what_gets_its_element_within_a_few_ticks_or_is_gone_by_then_is_not_told() {
+    let log = Log::capture();
+    let mut lab = Lab::new();
+    let (hook, body) = (lab.point(Vec3::Y), lab.body(1.0, Vec3::ZERO));
+    let late = lab.spawn(Preload(1.0));
+    let gone = lab.spawn(Preload(1.0));
+    lab.tick();
+    let world = lab.app.world_mut();
+    world.entity_mut(late).insert(Spring::new(hook, body));
+    world.despawn(gone);
+    lab.run(0.5);
+    assert_eq!(log.take(), Vec::<String>::new());
+}
+
+#[cfg(feature = "visual")]
+#[test]
+fn looks_without_an_element_and_on_a_torsion_element_are_told() {
+    let log = Log::capture();
+    let mut lab = crate::visual_data::lab();
+    let lone = lab.spawn((Coil::default(), Telescope::default()));
+    let (hook, body) = (lab.body(1.0, Vec3::Y), lab.body(1.0, Vec3::ZERO));
+    let bar = lab.spawn((TorsionSpring::new(hook, body, Vec3::Y), Coil::default()));
+    let linear = lab.spawn((Spring::new(hook, body), Coil::new(0.1, 0.01, 4.0)));
+    lab.run(0.5);
+    let told = log.take();
+    assert_eq!(told.len(), 2, "{told:?}");
+    let of = |e: Entity| told.iter().find(|t| t.starts_with(&format!("{e}: ")));
+    assert!(
+        of(lone).is_some_and(|t| t.contains("Coil, Telescope") && t.contains("without an element"))
+    );
+    assert!(of(bar).is_some_and(|t| t.contains("Coil") && t.contains("torsion element")));
+    assert!(of(linear).is_none());
+}
+
+#[cfg(feature = "visual")]
+#[test]
+fn a_coil_without_the_plugin_that_draws_it_is_told_once() {
+    let log = Log::capture();
+    let mut lab = Lab::new();
+    let (hook, body) = (lab.point(Vec3::Y), lab.body(1.0, Vec3::ZERO));
+    lab.spawn((Spring::new(hook, body), Coil::default()));
+    lab.spawn((Spring::new(hook, body), Telescope::default()));
+    lab.run(0.5);
+    let told = log.take();
+    assert_eq!(told.len(), 1, "{told:?}");
+    assert!(
+        told[0].contains("CoiloverVisualPlugin is missing") && told[0].contains("CoiloverPlugins")
+    );
+}

@@ -1,0 +1,116 @@
+//! Do looks fit their scene, and can a coilover be built in one expression?
+
+use crate::harness::*;
+use crate::visual_data::{lab, parts};
+use bevy::prelude::*;
+use bevy_coilover::prelude::*;
+
+#[test]
+fn a_coilover_is_built_in_one_bundle() {
+    let mut lab = lab();
+    let hook = lab.point(Vec3::Y * 3.0);
+    let load = lab.body(5.0, Vec3::Y * 2.0);
+    let coil = Coil::new(0.05, 0.005, 6.0);
+    let element = lab.spawn((
+        Coilover::new(hook, load)
+            .with_stiffness(500.0)
+            .with_damping(20.0)
+            .with_rest_length(0.9)
+            .with_anchors(Vec3::NEG_Y * 0.1, Vec3::Y * 0.1)
+            .with_coil(coil)
+            .with_telescope(Telescope::new(0.02, 0.01)),
+        SpringTravel::new(0.2, 2.0, 1e4),
+    ));
+    lab.run(0.1);
+    let pair = SpringDamper::new(hook, load)
+        .with_stiffness(500.0)
+        .with_damping(20.0)
+        .with_rest_length(0.9);
+    assert_eq!(*lab.get::<SpringDamper>(element), pair);
+    assert_eq!(*lab.get::<Coil>(element), coil);
+    assert_eq!(lab.get::<Telescope>(element).tube_radius, 0.02);
+    assert_eq!(
+        *lab.get::<Anchors>(element),
+        Anchors::new(Vec3::NEG_Y * 0.1, Vec3::Y * 0.1)
+    );
+    assert_eq!(parts(&lab, element).len(), 6);
+    assert_eq!(coilover(hook, load), Coilover::new(hook, load));
+}
+
+#[test]
+fn fitted_looks_are_as_thick_as_their_first_length_asks_and_stay_so() {
+    let mut lab = lab();
+    for length in [0.05_f32, 1.0, 40.0] {
+        let (a, b) = (lab.point(Vec3::ZERO), lab.point(Vec3::Y * length));
+        let telescope = lab.spawn((Damper::new(a, b), Telescope::fitted()));
+        let both = lab.spawn(Coilover::new(a, b).fitted());
+        lab.tick();
+        lab.tick();
+        // The widest of the telescope's parts is its collar, a little wider than the tube.
+        let widest = |lab: &Lab| {
+            let scales = parts(lab, telescope).into_iter().map(|part| part.scale().x);
+            scales.fold(0.0, f32::max)
+        };
+        let before = widest(&lab);
+        let share = before / length;
+        assert!((0.95 * 0.0537..1.05 * 0.0538).contains(&share), "{share}");
+        assert_eq!(parts(&lab, both).len(), 6);
+        lab.get_mut::<Transform>(b).translation *= 1.2;
+        lab.tick();
+        lab.tick();
+        assert!((widest(&lab) - before).abs() < 1e-5 * before);
+    }
+}
+
+#[test]
+fn fitted_springs_of_nearly_one_length_share_a_mesh() {
+    let mut lab = lab();
+    for i in 0..20 {
+        let at = Vec3::X * i as f32;
+        let (a, b) = (
+            lab.point(at),
+            lab.point(at + Vec3::Y * (1.0 + 0.002 * i as f32)),
+        );
+        lab.spawn((Spring::new(a, b), Coil::fitted()));
+    }
+    lab.run(0.1);
+    // One mesh for each level of detail.
+    assert_eq!(lab.app.world().resource::<Assets<Mesh>>().len(), 4);
+}
+
+#[test]
+fn a_skin_gives_its_element_what_drawing_needs() {
+    let mut lab = lab();
+    let (a, b) = (lab.point(Vec3::X), lab.point(Vec3::X * 3.0));
+    let mesh = Cylinder::new(0.02, 1.0)
+        .mesh()
+        .anchor(bevy::mesh::CylinderAnchor::Bottom);
+    let mesh = lab.app.world_mut().resource_mut::<Assets<Mesh>>().add(mesh);
+    let element = lab.spawn((
+        Spring::new(a, b),
+        children![(SpringSkin { length: 1.0 }, Mesh3d(mesh))],
+    ));
+    // Within the frame in which it was spawned, at whose end Bevy warns of parents without them.
+    lab.tick();
+    let world = lab.app.world();
+    assert!(world.get::<GlobalTransform>(element).is_some());
+    assert!(world.get::<InheritedVisibility>(element).is_some());
+    lab.tick();
+    let skin = parts(&lab, element)[0];
+    assert!(skin.transform_point(Vec3::ZERO).distance(Vec3::X) < 1e-5);
+    assert!(skin.transform_point(Vec3::Y).distance(Vec3::X * 3.0) < 1e-5);
+}
+
+#[test]
+fn a_coil_on_points_of_the_world_is_drawn_there_before_the_first_step() {
+    let mut lab = lab();
+    let (a, b) = (lab.point(Vec3::ZERO), lab.point(Vec3::Y));
+    let points = WorldAnchors::new(Vec3::X, Vec3::X + Vec3::Y);
+    let element = lab.spawn((Spring::new(a, b), points, Coil::default()));
+    lab.app.world_mut().run_schedule(PostUpdate);
+    let before = lab.app.world().get::<WorldAnchors>(element).is_some();
+    assert!(before, "no step yet");
+    lab.app.world_mut().run_schedule(PostUpdate);
+    let foot = parts(&lab, element)[0].transform_point(Vec3::ZERO);
+    assert!(foot.distance(Vec3::X) < 1e-4, "{foot}");
+}
