@@ -72,7 +72,7 @@ impl CoiloverPlugin {
     ///     CoiloverPlugin::at_hz(120.0),
     ///     RapierPhysicsPlugin::<NoUserData>::default().in_fixed_schedule(),
     /// ));
-    /// assert_eq!(app.world().resource::<Time<Fixed>>().timestep().as_secs_f32(), 1.0 / 120.0);
+    /// assert_eq!(app.world().resource::<Time<Fixed>>().timestep().as_micros(), 8333);
     /// ```
     pub fn at_hz(hertz: f64) -> Self {
         Self {
