@@ -19,6 +19,7 @@ mod engine_settings;
 mod free_fall;
 mod ground;
 mod hard_cases;
+mod house;
 mod joints;
 mod laws;
 mod messages;
