@@ -177,8 +177,8 @@ fn rig(mut commands: Commands) {
     let column = commands
         .spawn((
             RigidBody::Fixed,
-            Transform::from_translation(center + Vec3::Y * 0.45),
-            Shape::Cylinder(0.06, 0.9, Paint::Ivory),
+            Transform::from_translation(center + Vec3::Y * 0.6),
+            Shape::Cylinder(0.06, 1.2, Paint::Ivory),
         ))
         .id();
     commands.entity(car).insert(ImpulseJoint::new(

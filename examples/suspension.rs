@@ -26,7 +26,7 @@ const SPEED: f32 = 3.0;
 /// Where it starts, on x, m.
 const START: f32 = -5.4;
 /// Seconds after which it brakes.
-const BRAKE: f32 = 1.9;
+const BRAKE: f32 = 2.1;
 /// Of the engine and of the brakes on each wheel, N m s.
 const GRIP: f32 = 80.0;
 const BRAKES: f32 = 250.0;

@@ -1,6 +1,7 @@
 //! Does a scene still look as it should after many minutes? Watched without drawing anything.
 
 use super::{Again, DT, Stage, again, headless_app};
+use bevy::ecs::schedule::SingleThreadedExecutor;
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
 use std::collections::HashMap;
@@ -19,6 +20,10 @@ const ASPECT: f32 = 16.0 / 9.0;
 pub fn watch(stage: &Stage, minutes: f32) -> AppExit {
     let mut app = headless_app(stage);
     again::repeat(&mut app, stage.again);
+    // For so little in each system, threads cost more than they gain.
+    for (_, schedule) in app.world_mut().resource_mut::<Schedules>().iter_mut() {
+        schedule.set_executor(SingleThreadedExecutor::new());
+    }
     app.finish();
     app.cleanup();
     let mut outside = HashMap::new();

@@ -1,7 +1,7 @@
 //! A camera that goes around what it looks at.
 
 use super::{Stage, hand::Hand};
-use bevy::input::mouse::{AccumulatedMouseMotion, AccumulatedMouseScroll, MouseScrollUnit};
+use bevy::input::mouse::{MouseScrollUnit, MouseWheel};
 use bevy::prelude::*;
 
 /// Radians for a pixel of the mouse.
@@ -40,20 +40,22 @@ fn turn(
     mut orbit: ResMut<Orbit>,
     hand: Res<Hand>,
     buttons: Res<ButtonInput<MouseButton>>,
-    motion: Res<AccumulatedMouseMotion>,
-    scroll: Res<AccumulatedMouseScroll>,
+    mut moves: MessageReader<CursorMoved>,
+    mut wheel: MessageReader<MouseWheel>,
     mut cameras: Query<&mut Transform, With<Camera3d>>,
 ) {
     let left = buttons.pressed(MouseButton::Left) && hand.is_empty();
+    let moved: Vec2 = moves.read().filter_map(|moved| moved.delta).sum();
     let drag = if left || buttons.pressed(MouseButton::Right) {
-        motion.delta
+        moved
     } else {
         Vec2::ZERO
     };
-    let notches = match scroll.unit {
-        MouseScrollUnit::Line => scroll.delta.y,
-        MouseScrollUnit::Pixel => scroll.delta.y / PIXELS,
+    let notches = |turned: &MouseWheel| match turned.unit {
+        MouseScrollUnit::Line => turned.y,
+        MouseScrollUnit::Pixel => turned.y / PIXELS,
     };
+    let notches: f32 = wheel.read().map(notches).sum();
     if drag == Vec2::ZERO && notches == 0.0 {
         return;
     }
