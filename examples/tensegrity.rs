@@ -33,8 +33,8 @@ fn main() -> AppExit {
                 .add_systems(Begin, (stage::fresh::<Energy>, setup))
                 .add_systems(FixedUpdate, record.after(CoiloverSystems::Readout));
         },
-        seconds: 11.0,
-        again: 13.0,
+        seconds: 9.0,
+        again: 11.0,
         check,
         eye: Vec3::new(1.6, 1.9, 6.0),
         target: Vec3::new(0.1, 1.15, 0.0),
