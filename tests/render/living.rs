@@ -33,7 +33,7 @@ fn after_ten_minutes_nothing_has_left_the_picture_or_lies_askew() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     // Two at a time; each is one thread's work.
     for pair in SCENES.chunks(2) {
-        let begin = |(scene, minutes): &(&str, &str)| {
+        let begin = |(scene, minutes): &(&'static str, &str)| {
             let mut watched: Command = command(root, scene);
             watched.current_dir(root).args(["--minutes", minutes]);
             watched.stdout(Stdio::piped()).stderr(Stdio::piped());
