@@ -9,7 +9,7 @@ mod stage;
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
-use stage::{Finding, Paint, PictureAt, Shape, Stage, Track, tracks};
+use stage::{Begin, Finding, Paint, PictureAt, Shape, Stage, Track, Upright, tracks};
 use std::f32::consts::TAU;
 
 const MASS: f32 = 300.0;
@@ -40,11 +40,12 @@ fn main() -> AppExit {
         title: "active_suspension",
         setup: |app| {
             app.insert_resource(PictureAt(2.85))
-                .add_systems(Startup, (road, cars).chain())
+                .add_systems(Begin, (road, cars).chain())
                 .add_systems(FixedUpdate, (roll, act).before(PhysicsSet::SyncBackend))
                 .add_systems(FixedUpdate, trace.after(CoiloverSystems::Readout));
         },
-        seconds: 6.0,
+        seconds: 4.8,
+        again: 4.8,
         check,
         eye: Vec3::new(3.4, 2.0, 5.7),
         target: Vec3::new(-0.1, 0.62, 0.0),
@@ -108,6 +109,7 @@ fn cars(mut commands: Commands) {
                 Transform::from_xyz(START, level(), z),
                 Shape::Cuboid(2.0 * HALF, Paint::Blue),
                 Body::default(),
+                Upright(0.05),
             ))
             .id();
         let color = if active {
@@ -173,8 +175,8 @@ fn act(
 }
 
 /// Notes each body's height, and leaves a mark twenty times a second.
-fn trace(mut tick: Local<u32>, mut bodies: Query<(&Transform, &mut Body)>, mut commands: Commands) {
-    *tick += 1;
+fn trace(time: Res<Time>, mut bodies: Query<(&Transform, &mut Body)>, mut commands: Commands) {
+    let tick = stage::tick(&time);
     for (at, mut body) in &mut bodies {
         body.0.push(at.translation.y);
         if tick.is_multiple_of(3) {

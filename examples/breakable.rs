@@ -8,7 +8,7 @@ mod stage;
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
-use stage::{Finding, Paint, PictureAt, Shape, Stage};
+use stage::{Begin, Finding, Paint, PictureAt, Shape, Stage};
 
 /// What the springs bear, N, from left to right: not in order.
 const LIMITS: [f32; 5] = [150.0, 50.0, 250.0, 100.0, 200.0];
@@ -29,13 +29,13 @@ fn main() -> AppExit {
     stage::run(&Stage {
         title: "breakable",
         setup: |app| {
-            app.init_resource::<Breaks>()
-                .insert_resource(PictureAt(8.35))
-                .add_systems(Startup, setup)
+            app.insert_resource(PictureAt(8.35))
+                .add_systems(Begin, (stage::fresh::<Breaks>, setup))
                 .add_systems(FixedUpdate, load.before(PhysicsSet::SyncBackend))
                 .add_observer(snap);
         },
         seconds: 14.0,
+        again: 18.0,
         check,
         eye: Vec3::new(0.6, 1.9, 5.4),
         target: Vec3::new(0.0, 1.2, 0.0),
@@ -111,13 +111,12 @@ fn setup(mut commands: Commands) {
 
 /// A disc more on each, every second.
 fn load(
-    mut tick: Local<u32>,
+    time: Res<Time>,
     mut weights: Query<(Entity, &mut Weight, &mut ColliderMassProperties)>,
     springs: Query<&SpringDamper>,
     mut commands: Commands,
 ) {
-    *tick += 1;
-    if !tick.is_multiple_of(60) {
+    if !stage::tick(&time).is_multiple_of(60) {
         return;
     }
     for (entity, mut weight, mut mass) in &mut weights {

@@ -8,7 +8,7 @@ mod stage;
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
-use stage::{Finding, Paint, PictureAt, Shape, Stage, Track, tracks};
+use stage::{Begin, Finding, Paint, PictureAt, Shape, Stage, Track, Upright, tracks};
 
 const MASS: f32 = 70.0;
 const STIFFNESS: f32 = 400.0;
@@ -24,9 +24,10 @@ fn main() -> AppExit {
         title: "bungee",
         setup: |app| {
             app.insert_resource(PictureAt(2.3))
-                .add_systems(Startup, setup);
+                .add_systems(Begin, setup);
         },
         seconds: 90.0,
+        again: 92.0,
         check,
         eye: Vec3::new(4.0, 9.5, 39.0),
         target: Vec3::new(0.0, 11.0, 0.0),
@@ -70,6 +71,7 @@ fn setup(mut commands: Commands) {
             AdditionalMassProperties::Mass(MASS),
             Transform::from_xyz(0.0, BRIDGE - 0.1 - START - 0.9, 0.0),
             Shape::Capsule(0.35, 1.1, Paint::Blue),
+            Upright(0.05),
             children![(
                 Transform::from_xyz(0.0, -1.15, 0.0),
                 Shape::Ball(0.28, Paint::Ivory),

@@ -7,7 +7,7 @@ mod stage;
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
-use stage::{Finding, Paint, Shape, Stage, Track, tracks};
+use stage::{Begin, Finding, Paint, Shape, Stage, Track, Upright, tracks};
 
 const MASS: f32 = 350.0;
 const DAMPING: f32 = 2_500.0;
@@ -18,9 +18,10 @@ fn main() -> AppExit {
     stage::run(&Stage {
         title: "coilover_visible",
         setup: |app| {
-            app.add_systems(Startup, setup);
+            app.add_systems(Begin, setup);
         },
         seconds: 4.0,
+        again: 7.0,
         check,
         eye: Vec3::new(0.45, 0.85, 1.3),
         target: Vec3::new(0.0, 0.47, 0.0),
@@ -53,6 +54,7 @@ fn setup(mut commands: Commands) {
                 | LockedAxes::TRANSLATION_LOCKED_Z,
             Transform::from_xyz(0.0, 0.24 + REST + 0.1, 0.0),
             Shape::Cuboid(Vec3::new(0.5, 0.12, 0.4), Paint::Blue),
+            Upright(0.01),
         ))
         .id();
     let wound = wound();

@@ -7,7 +7,7 @@ mod stage;
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
-use stage::{Finding, Paint, Shape, Stage, Track, tracks};
+use stage::{Begin, Finding, Paint, Shape, Stage, Track, tracks};
 
 const DAMPING: f32 = 1.5;
 const MASSES: [f32; 2] = [1.0, 2.0];
@@ -18,9 +18,10 @@ fn main() -> AppExit {
     stage::run(&Stage {
         title: "damper_3d",
         setup: |app| {
-            app.add_systems(Startup, setup);
+            app.add_systems(Begin, setup);
         },
         seconds: 2.0,
+        again: 4.0,
         check,
         eye: Vec3::new(0.1, 1.8, 3.8),
         target: Vec3::new(-0.6, 0.75, 0.0),

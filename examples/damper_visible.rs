@@ -7,7 +7,7 @@ mod stage;
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
-use stage::{Finding, Paint, Shape, Stage, Track, tracks};
+use stage::{Begin, Finding, Paint, Shape, Stage, Track, Upright, tracks};
 
 const DAMPING: f32 = 60.0;
 const MASS: f32 = 2.0;
@@ -17,9 +17,10 @@ fn main() -> AppExit {
     stage::run(&Stage {
         title: "damper_visible",
         setup: |app| {
-            app.add_systems(Startup, setup);
+            app.add_systems(Begin, setup);
         },
         seconds: 1.4,
+        again: 3.0,
         check,
         eye: Vec3::new(1.0, 1.5, 3.6),
         target: Vec3::new(0.0, 1.0, 0.0),
@@ -41,6 +42,7 @@ fn setup(mut commands: Commands) {
             AdditionalMassProperties::Mass(MASS),
             Transform::from_xyz(0.0, 1.0, 0.0),
             Shape::Cuboid(Vec3::splat(0.3), Paint::Blue),
+            Upright(0.05),
         ))
         .id();
     commands.spawn((

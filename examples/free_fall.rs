@@ -7,7 +7,7 @@ mod stage;
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
-use stage::{DT, Finding, Paint, Shape, Stage, Track, tracks};
+use stage::{Begin, DT, Finding, Paint, Shape, Stage, Track, tracks};
 
 const GRAVITY: f32 = 9.81;
 const SECONDS: f32 = 0.5;
@@ -17,9 +17,10 @@ fn main() -> AppExit {
     stage::run(&Stage {
         title: "free_fall",
         setup: |app| {
-            app.add_systems(Startup, setup);
+            app.add_systems(Begin, setup);
         },
         seconds: SECONDS,
+        again: 4.0,
         check,
         eye: Vec3::new(0.8, 1.9, 5.6),
         target: Vec3::new(0.0, 1.2, 0.0),
@@ -33,11 +34,15 @@ struct Lone;
 struct Joined;
 
 fn setup(mut commands: Commands) {
-    commands.spawn(stage::floor());
+    commands
+        .spawn(stage::floor())
+        .insert(Collider::cuboid(20.0, 0.05, 20.0));
     let ball = |x: f32, y: f32, paint| {
         (
             RigidBody::Dynamic,
-            AdditionalMassProperties::Mass(1.0),
+            Collider::ball(0.16),
+            ColliderMassProperties::Mass(1.0),
+            Restitution::coefficient(0.6),
             Transform::from_xyz(x, y, 0.0),
             Shape::Ball(0.16, paint),
         )

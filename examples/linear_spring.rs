@@ -8,7 +8,7 @@ mod stage;
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
-use stage::{DT, Finding, Paint, PictureAt, Shape, Stage, Track, tracks};
+use stage::{Begin, DT, Finding, Paint, PictureAt, Shape, Stage, Track, tracks};
 
 const STIFFNESS: f32 = 20.0;
 const MASS: f32 = 1.0;
@@ -27,13 +27,13 @@ fn main() -> AppExit {
     stage::run(&Stage {
         title: "linear_spring",
         setup: |app| {
-            app.init_resource::<Drift>()
-                .insert_resource(PictureAt(5.1))
-                .add_systems(Startup, setup)
+            app.insert_resource(PictureAt(5.1))
+                .add_systems(Begin, (stage::fresh::<Drift>, setup))
                 .add_systems(FixedUpdate, follow.before(PhysicsSet::SyncBackend))
                 .add_systems(FixedUpdate, trace.after(CoiloverSystems::Readout));
         },
-        seconds: 10.0,
+        seconds: 7.6,
+        again: 7.6,
         check,
         eye: Vec3::new(0.5, 1.75, 5.9),
         target: Vec3::new(-0.1, 0.7, 0.0),
@@ -94,14 +94,14 @@ fn follow(
 
 /// Leaves a mark twenty times a second, and notes how steady the drift is.
 fn trace(
-    mut tick: Local<u32>,
+    time: Res<Time>,
     mut drift: ResMut<Drift>,
     bodies: Query<&Transform, With<Body>>,
     mut commands: Commands,
 ) {
-    *tick += 1;
+    let tick = stage::tick(&time);
     for body in &bodies {
-        let steady = START + DRIFT * DT * *tick as f32;
+        let steady = START + DRIFT * DT * tick as f32;
         drift.0 = drift.0.max((body.translation.x - steady).abs());
         if tick.is_multiple_of(3) {
             let behind = Transform::from_translation(body.translation.with_z(-HALF - 0.05));

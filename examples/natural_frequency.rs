@@ -7,7 +7,7 @@ mod stage;
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
-use stage::{Finding, Paint, Shape, Stage, Track, tracks};
+use stage::{Begin, Finding, Paint, Shape, Stage, Track, Upright, tracks};
 use std::f32::consts::TAU;
 
 const STIFFNESS: [f32; 4] = [40.0, 160.0, 640.0, 2_560.0];
@@ -21,9 +21,10 @@ fn main() -> AppExit {
     stage::run(&Stage {
         title: "natural_frequency",
         setup: |app| {
-            app.add_systems(Startup, setup);
+            app.add_systems(Begin, setup);
         },
         seconds: 10.0,
+        again: f32::INFINITY,
         check,
         eye: Vec3::new(0.9, 1.9, 5.4),
         target: Vec3::new(0.0, 1.25, 0.0),
@@ -54,6 +55,7 @@ fn setup(mut commands: Commands) {
                 AdditionalMassProperties::Mass(MASS),
                 Transform::from_xyz(x, BEAM - length - 0.15, 0.0),
                 Shape::Cuboid(Vec3::splat(0.3), Paint::Blue),
+                Upright(0.05),
             ))
             .id();
         // The stiffer, the thicker the wire: with its fourth power.

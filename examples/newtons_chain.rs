@@ -9,7 +9,7 @@ mod stage;
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
-use stage::{DT, Finding, Paint, Shape, Stage};
+use stage::{Begin, DT, Finding, Paint, Shape, Stage};
 use std::f32::consts::TAU;
 
 const BEADS: usize = 20;
@@ -31,11 +31,12 @@ fn main() -> AppExit {
     stage::run(&Stage {
         title: "newtons_chain",
         setup: |app| {
-            app.add_systems(Startup, setup)
+            app.add_systems(Begin, setup)
                 .add_systems(FixedUpdate, shake.before(PhysicsSet::SyncBackend))
                 .add_systems(FixedUpdate, watch.after(CoiloverSystems::Readout));
         },
         seconds: SECONDS,
+        again: f32::INFINITY,
         check,
         eye: Vec3::new(1.3, 2.1, 5.9),
         target: Vec3::new(0.25, 0.97, 0.0),

@@ -7,7 +7,7 @@ mod stage;
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
-use stage::{Finding, Paint, PictureAt, Shape, Stage, Track, tracks};
+use stage::{Begin, Finding, Paint, PictureAt, Shape, Stage, Track, tracks};
 use std::f32::consts::TAU;
 
 /// N/m³
@@ -26,9 +26,10 @@ fn main() -> AppExit {
         title: "nonlinear_spring",
         setup: |app| {
             app.insert_resource(PictureAt(10.1))
-                .add_systems(Startup, setup);
+                .add_systems(Begin, setup);
         },
         seconds: 16.0,
+        again: f32::INFINITY,
         check,
         eye: Vec3::new(1.3, 2.2, 5.4),
         target: Vec3::new(-0.05, 0.95, 0.0),

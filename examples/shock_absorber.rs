@@ -11,7 +11,7 @@ use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
 use image::Rgb;
-use stage::{DT, Finding, Paint, PictureAt, Plot, Shape, Stage, Track, tracks};
+use stage::{Begin, DT, Finding, Paint, PictureAt, Plot, Shape, Stage, Track, Upright, tracks};
 use std::f32::consts::{PI, TAU};
 
 const STIFFNESS: f32 = 6_000.0;
@@ -40,11 +40,12 @@ fn main() -> AppExit {
         title: "shock_absorber",
         setup: |app| {
             app.insert_resource(PictureAt(2.2))
-                .add_systems(Startup, (driven, pressed, board).chain())
+                .add_systems(Begin, (driven, pressed, board).chain())
                 .add_systems(FixedUpdate, drive.before(PhysicsSet::SyncBackend))
                 .add_systems(FixedUpdate, draw.after(CoiloverSystems::Readout));
         },
         seconds: 6.0,
+        again: 14.0,
         check,
         eye: Vec3::new(0.4, 1.1, 3.0),
         target: Vec3::new(0.03, 0.58, 0.0),
@@ -122,6 +123,7 @@ fn pressed(mut commands: Commands) {
                 | LockedAxes::TRANSLATION_LOCKED_Z,
             Transform::from_xyz(x, FOOT + REST + 0.2, 0.0),
             Shape::Cylinder(0.24, 0.2, Paint::Blue),
+            Upright(0.01),
         ))
         .id();
     commands.spawn(absorber(foot, weight, 0.2));

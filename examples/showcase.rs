@@ -8,7 +8,7 @@ mod stage;
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
-use stage::{Finding, Paint, Shape, Stage, Track, tracks};
+use stage::{Begin, Finding, Paint, Shape, Stage, Track, Upright, tracks};
 use std::f32::consts::TAU;
 
 const GRAVITY: f32 = 9.81;
@@ -27,12 +27,12 @@ fn main() -> AppExit {
     stage::run(&Stage {
         title: "showcase",
         setup: |app| {
-            app.init_resource::<Trace>()
-                .add_systems(Startup, (hang, spin, rig))
+            app.add_systems(Begin, (stage::fresh::<Trace>, hang, spin, rig))
                 .add_systems(FixedUpdate, move_posts.before(PhysicsSet::SyncBackend))
                 .add_systems(FixedUpdate, record.after(CoiloverSystems::Readout));
         },
         seconds: 10.0,
+        again: 30.0,
         check,
         eye: Vec3::new(1.4, 2.5, 8.3),
         target: Vec3::new(0.25, 1.42, 0.0),
@@ -79,6 +79,7 @@ fn hang(mut commands: Commands) {
             ColliderMassProperties::Mass(MASS),
             Transform::from_xyz(-2.4, 2.83 - hanging - 0.22, 0.0),
             Shape::Cuboid(Vec3::new(0.6, 0.44, 0.6), Paint::Blue),
+            Upright(0.1),
         ))
         .id();
     commands.spawn(coilover(beam, weight)).insert((
@@ -160,14 +161,30 @@ fn rig(mut commands: Commands) {
             RigidBody::Dynamic,
             Collider::cuboid(0.8, 0.16, 0.5),
             ColliderMassProperties::Mass(CAR),
-            // Four upright springs carry a car but do not guide it; the rig does.
-            LockedAxes::TRANSLATION_LOCKED_X
-                | LockedAxes::TRANSLATION_LOCKED_Z
-                | LockedAxes::ROTATION_LOCKED_Y,
             Transform::from_translation(center + Vec3::Y * 1.23),
             Shape::Cuboid(Vec3::new(1.6, 0.32, 1.0), Paint::Blue),
+            Upright(0.3),
         ))
         .id();
+    // Four coilovers on ball ends carry a car but do not guide it; a column in the middle does, on which it
+    // slides up and down, pitches and rolls. It holds the heading itself: a car that may not *turn* about
+    // the vertical still comes out of every round of pitch and roll with another heading.
+    let guide = GenericJointBuilder::new(
+        JointAxesMask::LIN_X | JointAxesMask::LIN_Z | JointAxesMask::ANG_Y,
+    )
+    .limits(JointAxis::AngX, [-0.25, 0.25])
+    .limits(JointAxis::AngZ, [-0.25, 0.25]);
+    let column = commands
+        .spawn((
+            RigidBody::Fixed,
+            Transform::from_translation(center + Vec3::Y * 0.6),
+            Shape::Cylinder(0.06, 1.2, Paint::Ivory),
+        ))
+        .id();
+    commands.entity(car).insert(ImpulseJoint::new(
+        column,
+        TypedJoint::GenericJoint(guide.build()),
+    ));
     for (i, (x, z)) in [(-0.7, -0.42), (0.7, -0.42), (-0.7, 0.42), (0.7, 0.42)]
         .into_iter()
         .enumerate()

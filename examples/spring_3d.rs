@@ -7,7 +7,7 @@ mod stage;
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
-use stage::{Finding, Paint, Shape, Stage, Track, tracks};
+use stage::{Begin, Finding, Paint, Shape, Stage, Track, tracks};
 use std::f32::consts::TAU;
 
 const STIFFNESS: f32 = 60.0;
@@ -18,9 +18,10 @@ fn main() -> AppExit {
     stage::run(&Stage {
         title: "spring_3d",
         setup: |app| {
-            app.add_systems(Startup, setup);
+            app.add_systems(Begin, setup);
         },
         seconds: 6.2,
+        again: f32::INFINITY,
         check,
         eye: Vec3::new(0.6, 1.9, 4.2),
         target: Vec3::new(0.0, 0.9, 0.0),

@@ -7,7 +7,7 @@ mod stage;
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
-use stage::{Finding, Paint, Shape, Stage, Track, tracks};
+use stage::{Begin, Finding, Paint, Shape, Stage, Track, Upright, tracks};
 
 const STIFFNESS: f32 = 7.0;
 const DAMPING: f32 = 2.0;
@@ -19,9 +19,10 @@ fn main() -> AppExit {
     stage::run(&Stage {
         title: "spring_damper",
         setup: |app| {
-            app.add_systems(Startup, setup);
+            app.add_systems(Begin, setup);
         },
         seconds: 8.0,
+        again: 11.0,
         check,
         eye: Vec3::new(1.4, 2.3, 6.0),
         target: Vec3::new(0.0, 1.75, 0.0),
@@ -43,6 +44,7 @@ fn setup(mut commands: Commands) {
             AdditionalMassProperties::Mass(MASS),
             Transform::from_xyz(0.0, 3.15 - REST - 0.2, 0.0),
             Shape::Cuboid(Vec3::splat(0.4), Paint::Blue),
+            Upright(0.05),
         ))
         .id();
     commands.spawn((

@@ -8,7 +8,7 @@ mod stage;
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
-use stage::{Finding, Paint, PictureAt, Shape, Stage, Track, tracks};
+use stage::{Begin, DT, Finding, Paint, PictureAt, Shape, Stage, Track, Upright, tracks};
 use std::f32::consts::TAU;
 
 const CHASSIS: f32 = 1_200.0;
@@ -26,9 +26,10 @@ const SPEED: f32 = 3.0;
 /// Where it starts, on x, m.
 const START: f32 = -5.4;
 /// Seconds after which it brakes.
-const BRAKE: f32 = 2.2;
-/// Torque of the engine, and of the brakes, on each wheel, N m s.
+const BRAKE: f32 = 2.1;
+/// Of the engine and of the brakes on each wheel, N m s.
 const GRIP: f32 = 80.0;
+const BRAKES: f32 = 250.0;
 /// Of the bumps above the ground, m.
 const BUMP: f32 = 0.09;
 
@@ -36,13 +37,13 @@ fn main() -> AppExit {
     stage::run(&Stage {
         title: "suspension",
         setup: |app| {
-            app.init_resource::<Ride>()
-                .insert_resource(PictureAt(1.36))
-                .add_systems(Startup, (road, car))
+            app.insert_resource(PictureAt(1.36))
+                .add_systems(Begin, (stage::fresh::<Ride>, road, car))
                 .add_systems(FixedUpdate, brake.before(PhysicsSet::SyncBackend))
                 .add_systems(FixedUpdate, record.after(CoiloverSystems::Readout));
         },
         seconds: 8.0,
+        again: 9.0,
         check,
         eye: Vec3::new(2.4, 1.75, 6.0),
         target: Vec3::new(-0.5, 0.5, 0.0),
@@ -95,6 +96,7 @@ fn car(mut commands: Commands) {
             Transform::from_xyz(START, height, 0.0),
             Shape::Cuboid(hull, Paint::Blue),
             Chassis,
+            Upright(0.2),
             children![(
                 Transform::from_xyz(-0.35, 0.35, 0.0),
                 Shape::Cuboid(Vec3::new(1.3, 0.3, 0.8), Paint::Ivory),
@@ -160,11 +162,11 @@ fn car(mut commands: Commands) {
 }
 
 /// The motors that drove the wheels against the chassis now slow them.
-fn brake(time: Res<Time>, mut braking: Local<bool>, mut wheels: Query<&mut ImpulseJoint>) {
-    if time.elapsed_secs() > BRAKE && !std::mem::replace(&mut *braking, true) {
+fn brake(time: Res<Time>, mut wheels: Query<&mut ImpulseJoint>) {
+    if stage::tick(&time) == (BRAKE / DT) as u32 {
         for mut wheel in &mut wheels {
             let joint: &mut GenericJoint = wheel.data.as_mut();
-            joint.set_motor_velocity(JointAxis::AngZ, 0.0, GRIP);
+            joint.set_motor_velocity(JointAxis::AngZ, 0.0, BRAKES);
         }
     }
 }

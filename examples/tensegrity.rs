@@ -8,7 +8,7 @@ mod stage;
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
-use stage::{Finding, Paint, PictureAt, Shape, Stage};
+use stage::{Begin, Finding, Paint, PictureAt, Shape, Stage};
 
 /// Length of a strut, m.
 const STRUT: f32 = 1.6;
@@ -29,12 +29,12 @@ fn main() -> AppExit {
     stage::run(&Stage {
         title: "tensegrity",
         setup: |app| {
-            app.init_resource::<Energy>()
-                .insert_resource(PictureAt(0.4))
-                .add_systems(Startup, setup)
+            app.insert_resource(PictureAt(0.4))
+                .add_systems(Begin, (stage::fresh::<Energy>, setup))
                 .add_systems(FixedUpdate, record.after(CoiloverSystems::Readout));
         },
         seconds: 9.0,
+        again: 11.0,
         check,
         eye: Vec3::new(1.6, 1.9, 6.0),
         target: Vec3::new(0.1, 1.15, 0.0),

@@ -8,7 +8,7 @@ mod stage;
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
-use stage::{Finding, Paint, PictureAt, Shape, Stage, Track, tracks};
+use stage::{Begin, Finding, Paint, PictureAt, Shape, Stage, Track, tracks};
 use std::f32::consts::TAU;
 
 /// Of the disc about its axis, kg m².
@@ -34,9 +34,10 @@ fn main() -> AppExit {
         title: "torsion_bar",
         setup: |app| {
             app.insert_resource(PictureAt(0.62))
-                .add_systems(Startup, (wire, bar).chain());
+                .add_systems(Begin, (wire, bar).chain());
         },
         seconds: 12.0,
+        again: 20.0,
         check,
         eye: Vec3::new(-1.3, 2.0, 4.1),
         target: Vec3::new(-0.08, 0.78, 0.0),

@@ -8,7 +8,7 @@ mod stage;
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
-use stage::{DT, Finding, Paint, PictureAt, Shape, Stage};
+use stage::{Begin, DT, Finding, Paint, PictureAt, Shape, Stage};
 
 /// Points along an edge; the outermost are fixed to the frame.
 const SIDE: usize = 16;
@@ -37,13 +37,13 @@ fn main() -> AppExit {
     stage::run(&Stage {
         title: "trampoline",
         setup: |app| {
-            app.init_resource::<Seen>()
-                .insert_resource(PictureAt(DROP + 0.78))
-                .add_systems(Startup, setup)
+            app.insert_resource(PictureAt(DROP + 0.78))
+                .add_systems(Begin, (stage::fresh::<Seen>, setup))
                 .add_systems(FixedUpdate, drop.before(PhysicsSet::SyncBackend))
                 .add_systems(FixedUpdate, record.after(CoiloverSystems::Readout));
         },
         seconds: SECONDS,
+        again: 12.0,
         check,
         eye: Vec3::new(0.9, 2.7, 6.0),
         target: Vec3::new(0.0, 1.2, 0.0),

@@ -1,6 +1,7 @@
 //! Frames without a window.
 
 use super::means::Film;
+use super::progress::Progress;
 use super::{DT, PictureAt, Stage, look, offscreen, physics, say};
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
@@ -70,17 +71,18 @@ pub fn shoot(stage: &Stage, film: Film) -> AppExit {
         Film::Animation(_) => ticks.saturating_sub((LENGTH as f32 / DT) as u32),
         _ => 0,
     };
-    pass(&mut app, begun);
+    if begun > 0 {
+        offscreen::undrawn(&mut app, |app| pass(app, begun));
+    }
+    let progress = Progress::new(frames);
+    offscreen::settle(&mut app);
     let mut taken = 0;
     for frame in 0..frames {
         // All the ticks up to this frame in one update, then one picture of where they led.
         let upto = |f: u32| begun + (shown - begun) * f / frames;
-        pass(&mut app, upto(frame + 1) - upto(frame));
-        // Later pictures of an animation need nothing new.
-        if frame == 0 || animation.is_none() {
-            offscreen::settle(&mut app);
-        }
-        let Some(picture) = offscreen::shoot(&mut app, &image) else {
+        set_ticks(&mut app, upto(frame + 1) - upto(frame));
+        let picture = offscreen::shoot_next(&mut app, &image, |app| set_ticks(app, 0));
+        let Some(picture) = picture else {
             continue;
         };
         let saved = match &mut animation {
@@ -88,12 +90,16 @@ pub fn shoot(stage: &Stage, film: Film) -> AppExit {
             None => save(picture, &path(frame)),
         };
         match saved {
-            Ok(()) => taken += 1,
+            Ok(()) => {
+                taken += 1;
+                progress.taken(&path(frame));
+            }
             Err(wrong) => eprintln!("{}: {wrong}", path(frame).display()),
         }
     }
+    progress.done();
     if shown < ticks {
-        pass(&mut app, ticks - shown);
+        offscreen::undrawn(&mut app, |app| pass(app, ticks - shown));
     }
     let good = say(stage, app.world_mut());
     println!(
@@ -109,7 +115,11 @@ pub fn shoot(stage: &Stage, film: Film) -> AppExit {
 
 fn save(picture: Image, path: &Path) -> Result<(), String> {
     let picture = picture.try_into_dynamic().map_err(|e| e.to_string())?;
-    picture.to_rgb8().save(path).map_err(|e| e.to_string())
+    // Under its name only when it is whole: whoever stops the program finds no half of one.
+    let unfinished = path.with_extension("part.png");
+    let saved = picture.to_rgb8().save(&unfinished);
+    saved.map_err(|e| e.to_string())?;
+    std::fs::rename(unfinished, path).map_err(|e| e.to_string())
 }
 
 /// An animated GIF, picture by picture.

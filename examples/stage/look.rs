@@ -1,5 +1,6 @@
 //! Light, ground, camera, and simple solids for bodies.
 
+use super::again::Stays;
 use bevy::camera::RenderTarget;
 use bevy::core_pipeline::tonemapping::Tonemapping;
 use bevy::light::CascadeShadowConfigBuilder;
@@ -15,6 +16,18 @@ pub enum Shape {
     Cylinder(f32, f32, Paint),
     /// Radius, and height without the round ends, about Y.
     Capsule(f32, f32, Paint),
+}
+
+impl Shape {
+    /// Of the box around it.
+    pub fn half_size(&self) -> Vec3 {
+        match *self {
+            Shape::Cuboid(size, _) => 0.5 * size,
+            Shape::Ball(radius, _) => Vec3::splat(radius),
+            Shape::Cylinder(radius, height, _) => Vec3::new(radius, 0.5 * height, radius),
+            Shape::Capsule(radius, height, _) => Vec3::new(radius, 0.5 * height + radius, radius),
+        }
+    }
 }
 
 #[derive(Clone, Copy)]
@@ -56,6 +69,7 @@ pub fn dress(app: &mut App, eye: Vec3, target: Vec3, image: Option<RenderTarget>
         .add_systems(PreUpdate, show_shapes)
         .add_systems(Startup, move |mut commands: Commands| {
             let mut camera = commands.spawn((
+                Stays,
                 Camera3d::default(),
                 Transform::from_translation(eye).looking_at(target, Vec3::Y),
                 Projection::Perspective(PerspectiveProjection {
@@ -74,6 +88,7 @@ pub fn dress(app: &mut App, eye: Vec3, target: Vec3, image: Option<RenderTarget>
                 camera.insert(image.clone());
             }
             commands.spawn((
+                Stays,
                 DirectionalLight {
                     illuminance: 9_000.0,
                     shadow_maps_enabled: true,
@@ -89,6 +104,7 @@ pub fn dress(app: &mut App, eye: Vec3, target: Vec3, image: Option<RenderTarget>
             ));
             // A second light from the other side lifts the shadows off black.
             commands.spawn((
+                Stays,
                 DirectionalLight {
                     illuminance: 2_200.0,
                     color: Color::srgb(0.8, 0.88, 1.0),

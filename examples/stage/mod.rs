@@ -1,19 +1,27 @@
 //! What the examples share: a window where there is a display, frames where there is only an adapter,
 //! and read-outs everywhere.
 //!
-//! A scene is a [`Stage`]: a `setup` that adds systems (spawn in `Startup`; give bodies a [`Shape`], and
-//! elements to be measured a [`Track`]), and a `check` that returns [`Finding`]s. `main` returns
-//! `stage::run(&Stage { .. })`, whose exit code says whether all findings are good.
+//! A scene is a [`Stage`]: a `setup` that adds systems (spawn in [`Begin`], which runs again whenever the scene
+//! starts again; give bodies a [`Shape`], and elements to be measured a [`Track`]), and a `check` that returns
+//! [`Finding`]s. `main` returns `stage::run(&Stage { .. })`, whose exit code says whether all findings are good.
 #![allow(dead_code, unused_imports, reason = "no example uses everything")]
 
+mod again;
 mod check;
 mod film;
+mod hand;
+mod keys;
+mod living;
 mod look;
 mod means;
 mod offscreen;
+mod orbit;
 mod plot;
+mod progress;
 
+pub use again::{Again, Begin, fresh, tick};
 pub use check::{Finding, Track, tracks};
+pub use living::Upright;
 pub use look::{Paint, Shape, floor};
 pub use plot::Plot;
 
@@ -31,10 +39,12 @@ pub const DT: f32 = 1.0 / 60.0;
 #[derive(Clone, Copy)]
 pub struct Stage {
     pub title: &'static str,
-    /// Adds systems and resources; spawn in `Startup`.
+    /// Adds systems and resources; spawn in [`Begin`].
     pub setup: fn(&mut App),
     /// Seconds after which the check is due.
     pub seconds: f32,
+    /// Seconds after which it starts again in a window, at least those of the check.
+    pub again: f32,
     /// Measured against theory.
     pub check: fn(&mut World) -> Vec<Finding>,
     /// From where it is seen.
@@ -50,6 +60,8 @@ pub struct PictureAt(pub f32);
 #[derive(Default)]
 struct Arguments {
     headless: bool,
+    /// To be watched for so long.
+    minutes: Option<f32>,
     film: Option<Film>,
 }
 
@@ -66,6 +78,10 @@ impl Arguments {
             };
             match word.as_str() {
                 "--headless" => out.headless = true,
+                "--minutes" => {
+                    let minutes = words.next().and_then(|m| m.parse().ok());
+                    out.minutes = Some(minutes.ok_or("--minutes needs a number")?);
+                }
                 "--screenshot" => out.film = Some(Film::Still(path()?)),
                 "--frames" => out.film = Some(Film::Frames(path()?)),
                 // Read by the scenes that have something to plot.
@@ -90,10 +106,15 @@ pub fn run(stage: &Stage) -> AppExit {
     let arguments = match Arguments::read() {
         Ok(arguments) => arguments,
         Err(wrong) => {
-            eprintln!("{wrong}; use --headless, --screenshot FILE, --frames FOLDER or --film FILE");
+            eprintln!(
+                "{wrong}; use --headless, --minutes NUMBER, --screenshot FILE, --frames FOLDER or --film FILE"
+            );
             return AppExit::error();
         }
     };
+    if let Some(minutes) = arguments.minutes {
+        return living::watch(stage, minutes);
+    }
     let means = Means::find(arguments.headless, arguments.film);
     println!("{}: {means}", stage.title);
     match means {
@@ -103,11 +124,17 @@ pub fn run(stage: &Stage) -> AppExit {
     }
 }
 
-/// Physics alone, as fast as it runs.
-fn headless(stage: &Stage) -> AppExit {
+/// Physics alone, a tick in each update.
+fn headless_app(stage: &Stage) -> App {
     let mut app = App::new();
     app.add_plugins((MinimalPlugins, TransformPlugin, CoiloverPlugin::default()));
     physics(&mut app, stage, 1);
+    app
+}
+
+/// The check alone, as fast as it runs.
+fn headless(stage: &Stage) -> AppExit {
+    let mut app = headless_app(stage);
     app.finish();
     app.cleanup();
     for _ in 0..=(stage.seconds / DT).round() as u32 {
@@ -133,7 +160,11 @@ fn window(stage: &Stage) -> AppExit {
         CoiloverPlugins,
     ));
     physics(&mut app, stage, 0);
+    again::repeat(&mut app, stage.again);
     look::dress(&mut app, stage.eye, stage.target, None);
+    hand::add(&mut app);
+    orbit::add(&mut app, stage);
+    keys::add(&mut app, stage);
     let (stage, mut told) = (*stage, false);
     app.add_systems(Last, move |world: &mut World| {
         if !told && world.resource::<Time<Fixed>>().elapsed_secs() >= stage.seconds {
@@ -156,7 +187,15 @@ fn physics(app: &mut App, stage: &Stage, ticks: u32) {
         let tick = app.world().resource::<Time<Fixed>>().timestep();
         app.insert_resource(TimeUpdateStrategy::ManualDuration(tick * ticks));
     }
-    app.add_systems(FixedUpdate, check::record.after(CoiloverSystems::Readout));
+    // What the check does not look at need not be kept.
+    let due = stage.seconds + 0.5 * DT;
+    app.add_systems(
+        FixedUpdate,
+        check::record
+            .after(CoiloverSystems::Readout)
+            .run_if(move |time: Res<Time>| time.elapsed_secs() < due),
+    );
+    again::begin(app);
     (stage.setup)(app);
 }
 

@@ -67,8 +67,7 @@ pub fn settle(app: &mut App) {
     let mut quiet = 0;
     while quiet < QUIET && begun.elapsed() < PATIENCE {
         app.update();
-        let cache = app.sub_app(RenderApp).world().resource::<PipelineCache>();
-        let busy = cache.waiting_pipelines().next().is_some();
+        let busy = is_compiling(app);
         quiet = if busy { 0 } else { quiet + 1 };
         if busy {
             std::thread::sleep(Duration::from_millis(5));
@@ -76,8 +75,51 @@ pub fn settle(app: &mut App) {
     }
 }
 
+fn is_compiling(app: &App) -> bool {
+    let cache = app.sub_app(RenderApp).world().resource::<PipelineCache>();
+    cache.waiting_pipelines().next().is_some()
+}
+
+/// What the camera sees at the end of the next update, which is the only one that draws. Before any other, `then` is
+/// called.
+pub fn shoot_next(
+    app: &mut App,
+    image: &Handle<Image>,
+    then: impl FnOnce(&mut App),
+) -> Option<Image> {
+    ask(app, image);
+    app.update();
+    then(app);
+    let picture = undrawn(app, wait);
+    if !is_compiling(app) {
+        return picture;
+    }
+    // Something is in sight that never was before.
+    settle(app);
+    shoot(app, image)
+}
+
 /// What the camera sees now.
 pub fn shoot(app: &mut App, image: &Handle<Image>) -> Option<Image> {
+    ask(app, image);
+    wait(app)
+}
+
+/// Does something without drawing: software adapters take long for a picture that nobody looks at.
+pub fn undrawn<T>(app: &mut App, act: impl FnOnce(&mut App) -> T) -> T {
+    let draw = |app: &mut App, is_active: bool| {
+        let mut cameras = app.world_mut().query::<&mut Camera>();
+        for mut camera in cameras.iter_mut(app.world_mut()) {
+            camera.is_active = is_active;
+        }
+    };
+    draw(app, false);
+    let out = act(app);
+    draw(app, true);
+    out
+}
+
+fn ask(app: &mut App, image: &Handle<Image>) {
     app.world_mut()
         .spawn(Screenshot::image(image.clone()))
         .observe(
@@ -85,6 +127,10 @@ pub fn shoot(app: &mut App, image: &Handle<Image>) -> Option<Image> {
                 picture.0 = Some(shot.image.clone());
             },
         );
+}
+
+/// Updates until the picture has come that was asked for.
+fn wait(app: &mut App) -> Option<Image> {
     let begun = Instant::now();
     while begun.elapsed() < PATIENCE {
         app.update();

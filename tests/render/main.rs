@@ -5,6 +5,8 @@
 
 mod batches;
 mod canvas;
+mod living;
+#[allow(dead_code, reason = "the examples use more of it")]
 #[path = "../../examples/stage/offscreen.rs"]
 mod offscreen;
 mod references;

@@ -50,7 +50,7 @@ fn likeness(a: &RgbImage, b: &RgbImage) -> f64 {
 
 /// The example as it was built along with this test, if that is newer than all sources; else by cargo, which for
 /// a whole workspace would first build Bevy again with this package's features alone.
-fn command(root: &Path, scene: &str) -> Command {
+pub fn command(root: &Path, scene: &str) -> Command {
     let built = std::env::current_exe().ok().and_then(|test| {
         let folder = test.parent()?.parent()?.join("examples");
         let built = folder.join(format!("{scene}{}", std::env::consts::EXE_SUFFIX));

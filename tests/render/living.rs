@@ -1,0 +1,51 @@
+//! Do the examples still look as they should after ten minutes in their windows? Nothing is drawn for that: each
+//! example watches where its bodies are.
+
+use crate::references::command;
+use std::path::Path;
+use std::process::{Command, Stdio};
+
+/// Scenes, and the minutes that each is watched.
+const SCENES: [(&str, &str); 19] = [
+    ("trampoline", "1"),
+    ("tensegrity", "5"),
+    ("newtons_chain", "10"),
+    ("showcase", "10"),
+    ("suspension", "10"),
+    ("active_suspension", "10"),
+    ("breakable", "10"),
+    ("bungee", "10"),
+    ("coilover_visible", "10"),
+    ("damper_3d", "10"),
+    ("damper_visible", "10"),
+    ("free_fall", "10"),
+    ("linear_spring", "10"),
+    ("natural_frequency", "10"),
+    ("nonlinear_spring", "10"),
+    ("shock_absorber", "10"),
+    ("spring_3d", "10"),
+    ("spring_damper", "10"),
+    ("torsion_bar", "10"),
+];
+
+#[test]
+fn after_ten_minutes_nothing_has_left_the_picture_or_lies_askew() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    // Two at a time; each is one thread's work.
+    for pair in SCENES.chunks(2) {
+        let begin = |(scene, minutes): &(&'static str, &str)| {
+            let mut watched: Command = command(root, scene);
+            watched.current_dir(root).args(["--minutes", minutes]);
+            watched.stdout(Stdio::piped()).stderr(Stdio::piped());
+            (*scene, watched.spawn().expect("the example starts"))
+        };
+        let running: Vec<_> = pair.iter().map(begin).collect();
+        for (scene, running) in running {
+            let run = running.wait_with_output().expect("the example runs");
+            let told = String::from_utf8_lossy(&run.stdout);
+            println!("{}", told.lines().last().unwrap_or(scene));
+            let wrong = String::from_utf8_lossy(&run.stderr);
+            assert!(run.status.success(), "{scene}: {wrong}");
+        }
+    }
+}
