@@ -30,7 +30,13 @@ pub(super) struct Plan {
     sums: Vec<f64>,
     /// and its acceleration by all springs and outside forces, beside the sum of their sizes.
     forces: Vec<(DVec3, f64)>,
+    /// Springs pull some body to and fro by far more than its weight, while the component rests on something.
+    tense: bool,
 }
+
+/// Sum of what springs pull at a body, in units of its weight, above which one sweep over all joints leaves it trembling
+/// on what it stands on: a tensegrity of struts does. Pinned by the check of the example `tensegrity`.
+const TENSE: f64 = 100.0;
 
 /// Share of all forces on a body that may be left of them where they are in balance. Pinned by `ground::heap`.
 const BALANCE: f64 = 5e-3;
@@ -139,6 +145,12 @@ impl Plan {
         let pressed = pressed.filter(|row| row.pressed);
         // How fast what lies on something goes, if there is any such body.
         let creeping = pressed.map(|row| row.rest.rate).reduce(f32::max);
+        let pulled = self.bodies.iter().zip(&self.forces);
+        self.tense = creeping.is_some()
+            && pulled.into_iter().any(|(body, (_, all))| {
+                let weight = body.acceleration.length();
+                weight > 0.0 && *all > TENSE * weight
+            });
         for (b, (net, all)) in members.bodies.iter().zip(&self.forces) {
             let row = &mut bodies[*b];
             let taken_along = creeping.is_some_and(|rate| {
@@ -232,11 +244,12 @@ impl Plan {
 
     /// Whether joints are to be solved more than once in substeps of so long: a damper is to know what they leave of a push.
     pub(super) fn needs_more_sweeps(&self, substep: f64) -> bool {
-        self.orders.iter().any(|order| {
-            let damped = order.tangent.damping * order.line.inverse_mass * substep;
-            // Where contacts press, the engine's warm start has brought their answer already.
-            order.jointed < LIGHT && damped > DAMPED && !order.touched
-        })
+        self.tense
+            || self.orders.iter().any(|order| {
+                let damped = order.tangent.damping * order.line.inverse_mass * substep;
+                // Where contacts press, the engine's warm start has brought their answer already.
+                order.jointed < LIGHT && damped > DAMPED && !order.touched
+            })
     }
 
     /// Whether its joints may be solved in finer substeps than they are made for.
