@@ -80,16 +80,17 @@ fn is_compiling(app: &App) -> bool {
     cache.waiting_pipelines().next().is_some()
 }
 
-/// What the camera sees at the end of the next update, which is the only one that draws. Before any other, `then` is
-/// called.
+/// What the camera sees at the end of the next update, which draws, and so does one more: what no camera has seen before is
+/// drawn only then. After the first, `then` is called.
 pub fn shoot_next(
     app: &mut App,
     image: &Handle<Image>,
     then: impl FnOnce(&mut App),
 ) -> Option<Image> {
-    ask(app, image);
     app.update();
     then(app);
+    ask(app, image);
+    app.update();
     let picture = undrawn(app, wait);
     if !is_compiling(app) {
         return picture;
