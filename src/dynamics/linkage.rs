@@ -57,8 +57,8 @@ impl Constraint {
         }
     }
 
-    /// What an element pushes.
-    fn of_line(line: &Line) -> Self {
+    /// What an element pushes, its ends apart.
+    pub(crate) fn of_line(line: &Line) -> Self {
         let side = |(end, sign): (usize, f64)| {
             let hold = &line.holds[end];
             let push = sign * line.direction;
@@ -87,8 +87,13 @@ pub(crate) struct Linkage {
 }
 
 impl Linkage {
-    /// What is left of the inverse mass of a line between two of the bodies, 1/kg.
-    pub(crate) fn inverse_mass(&self, line: &Line) -> f64 {
+    /// How far an impulse along `push` moves what each of some pushes acts along, with what holds the bodies: 1/kg. None
+    /// where what holds them makes no sense.
+    pub(crate) fn response<const N: usize>(
+        &self,
+        push: &Constraint,
+        along: [&Constraint; N],
+    ) -> Option<[f64; N]> {
         let inertia: Vec<DMat3> = self.bodies.iter().map(Body::inverse_inertia).collect();
         let coupling = |a: &Constraint, b: &Constraint| -> f64 {
             let mut sum = 0.0;
@@ -100,8 +105,6 @@ impl Linkage {
             }
             sum
         };
-        let own = Constraint::of_line(line);
-        let free = coupling(&own, &own);
         let count = self.constraints.len();
         let mut matrix = DMatrix::from_fn(count, count, |i, j| {
             coupling(&self.constraints[i], &self.constraints[j])
@@ -110,12 +113,18 @@ impl Linkage {
         for i in 0..count {
             matrix[(i, i)] += TWICE * most + f64::MIN_POSITIVE;
         }
-        let side = DVector::from_fn(count, |i, _| coupling(&self.constraints[i], &own));
-        let held = matrix
-            .cholesky()
-            .map_or(0.0, |factors| side.dot(&factors.solve(&side)));
+        let moved =
+            |by: &Constraint| DVector::from_fn(count, |i, _| coupling(&self.constraints[i], by));
+        let reactions = matrix.cholesky()?.solve(&moved(push));
+        Some(along.map(|to| coupling(push, to) - reactions.dot(&moved(to))))
+    }
+
+    /// What is left of the inverse mass of a line between two of the bodies, 1/kg.
+    pub(crate) fn inverse_mass(&self, line: &Line) -> f64 {
+        let own = Constraint::of_line(line);
+        let free = line.inverse_mass;
+        let [left] = self.response(&own, [&own]).unwrap_or([free]);
         // What is held altogether leaves nothing but rounding.
-        let left = free - held;
         if left > 10.0 * TWICE.sqrt() * free {
             left
         } else {

@@ -4,20 +4,18 @@ use super::body::is_movable;
 use super::check::Fault;
 use super::find::Finder;
 use super::held::is_ours;
+use super::inside::locks;
 use super::tune::Lever;
 use crate::dynamics::body::Body;
-use crate::dynamics::linkage::{Constraint, Side};
+use crate::dynamics::linkage::{Constraint, Linkage, Side};
 use crate::element::{HeldEnd, HoldPose};
-use bevy::math::{DMat3, DVec3};
-use bevy_rapier3d::rapier::dynamics::{GenericJoint, JointAxesMask, RigidBodyHandle};
-use nalgebra::{DMatrix, DVector};
+use bevy::math::DVec3;
+use bevy_rapier3d::rapier::dynamics::RigidBodyHandle;
 
 /// Below this cosine between an element and gravity it is level, and no tension of it holds a weight.
 const LEVEL: f64 = 0.1;
 /// What joints leave of an element's mobility, as a share: below, they hold the load without it.
 const HELD: f64 = 1e-4;
-/// Share of the greatest diagonal entry that is added to all of them: joints may say the same twice.
-const TWICE: f64 = 1e-9;
 
 fn fault<T>(reason: &'static str) -> Result<T, Fault> {
     Err(Fault::new("HoldPose", reason))
@@ -40,68 +38,6 @@ impl Lever {
     }
 }
 
-/// What holds a load besides the element: rows of constraints on its body.
-struct Held<'a> {
-    body: &'a Body,
-    inertia: DMat3,
-    rows: Vec<Side>,
-}
-
-impl Held<'_> {
-    /// How much one row moves along another, per impulse.
-    fn coupling(&self, a: &Side, b: &Side) -> f64 {
-        (self.body.inverse_mass * a.linear).dot(b.linear)
-            + (self.inertia * a.angular).dot(b.angular)
-    }
-
-    fn push(&mut self, constraint: Constraint) {
-        self.rows.extend(constraint.sides.into_iter().flatten());
-    }
-
-    fn joint(&mut self, joint: &GenericJoint, frame: bevy::math::DQuat, at: DVec3) {
-        let masks = [
-            [JointAxesMask::LIN_X, JointAxesMask::ANG_X],
-            [JointAxesMask::LIN_Y, JointAxesMask::ANG_Y],
-            [JointAxesMask::LIN_Z, JointAxesMask::ANG_Z],
-        ];
-        for (axis, [linear, angular]) in DVec3::AXES.into_iter().zip(masks) {
-            let axis = frame * axis;
-            if joint.locked_axes.contains(linear) {
-                let body = self.body;
-                self.push(Constraint::along(axis, at, [None, Some((0, body))]));
-            }
-            if joint.locked_axes.contains(angular) {
-                self.push(Constraint::about(axis, [None, Some(0)]));
-            }
-        }
-    }
-
-    /// The tension, N, at which the load does not accelerate along the element, whose unit of tension pushes it like
-    /// this; none where the joints hold it without.
-    fn tension(&self, pull: &Side, weight: DVec3) -> Option<f64> {
-        let weight = Side {
-            body: 0,
-            linear: weight,
-            angular: DVec3::ZERO,
-        };
-        let count = self.rows.len();
-        let mut matrix = DMatrix::from_fn(count, count, |i, j| {
-            self.coupling(&self.rows[i], &self.rows[j])
-        });
-        let most = matrix.diagonal().iter().fold(0.0_f64, |m, x| m.max(*x));
-        for i in 0..count {
-            matrix[(i, i)] += TWICE * most + f64::MIN_POSITIVE;
-        }
-        let with_pull = DVector::from_fn(count, |i, _| self.coupling(&self.rows[i], pull));
-        let with_weight = DVector::from_fn(count, |i, _| self.coupling(&self.rows[i], &weight));
-        let reactions = matrix.cholesky()?.solve(&with_pull);
-        let free = self.coupling(pull, pull);
-        let left = free - reactions.dot(&with_pull);
-        let fall = self.coupling(pull, &weight) - reactions.dot(&with_weight);
-        (left > HELD * free).then(|| -fall / left)
-    }
-}
-
 impl Finder<'_, '_> {
     /// The tension that this element alone has to have, N, for its load at one end not to accelerate along it; and
     /// whether joints take part in holding it.
@@ -114,39 +50,44 @@ impl Finder<'_, '_> {
         let hold = &lever.line.holds[end];
         let index = hold.body?;
         let body = &lever.bodies[index];
-        let mut held = Held {
-            body,
-            inertia: body.inverse_inertia(),
-            rows: Vec::new(),
-        };
         let handle = lever.handles[index];
         let other = lever.line.holds[1 - end].body.map(|b| lever.handles[b]);
-        self.joints_of(lever, handle, other.filter(|_| hold.twist), &mut held);
-        // Tension draws end A forward along the line, and end B back.
-        let push = if end == 0 { 1.0 } else { -1.0 } * lever.line.direction;
-        let pull = Side {
-            body: 0,
-            linear: if hold.twist { DVec3::ZERO } else { push },
-            angular: if hold.twist {
-                push
-            } else {
-                hold.arm.cross(push)
-            },
+        let held = Linkage {
+            bodies: vec![*body],
+            constraints: self.locks_of(lever, body, handle, other.filter(|_| hold.twist)),
         };
-        let tension = held.tension(&pull, weight(body, mass))?;
-        Some((tension, !held.rows.is_empty()))
+        // The other end counts as fixed.
+        let mut line = lever.line;
+        line.holds[1 - end].body = None;
+        line.holds[end].body = Some(0);
+        let apart = Constraint::of_line(&line);
+        let falling = Constraint {
+            sides: [
+                None,
+                Some(Side {
+                    body: 0,
+                    linear: weight(body, mass),
+                    angular: DVec3::ZERO,
+                }),
+            ],
+        };
+        let [left, fall] = held.response(&apart, [&apart, &falling])?;
+        // Tension draws the ends together.
+        let carries = left > HELD * lever.free(end);
+        carries.then(|| (fall / left, !held.constraints.is_empty()))
     }
 
-    /// Takes in the joints between a load and what cannot move, or a body that counts as such.
-    fn joints_of(
+    /// What the joints between a load and what cannot move lock, or between it and a body that counts as such.
+    fn locks_of(
         &self,
         lever: &Lever,
+        load: &Body,
         handle: RigidBodyHandle,
         still: Option<RigidBodyHandle>,
-        held: &mut Held,
-    ) {
+    ) -> Vec<Constraint> {
+        let mut held = Vec::new();
         let Ok((set, _, joints, _)) = self.sets.get(lever.context) else {
-            return;
+            return held;
         };
         for (a, b, _, joint) in joints.impulse_joints.attached_enabled_joints(handle) {
             let other = if a == handle { b } else { a };
@@ -160,8 +101,11 @@ impl Finder<'_, '_> {
             let data = &joint.data;
             let frame = (*first.position() * data.local_frame1).rotation;
             let at = (*second.position() * data.local_frame2).translation;
-            held.joint(data, frame.as_dquat().normalize(), at.as_dvec3());
+            let rotation = frame.as_dquat().normalize();
+            let on = [None, Some((0, load))];
+            held.extend(locks(data, rotation, at.as_dvec3(), on));
         }
+        held
     }
 
     /// The tension that an element has to have to carry its share of its load, N.

@@ -5,7 +5,7 @@ use crate::dynamics::line::Line;
 use crate::dynamics::linkage::{Constraint, Linkage};
 use crate::engine::body::{is_movable, read};
 use crate::engine::held::is_ours;
-use bevy::math::{DVec3, Vec3};
+use bevy::math::{DQuat, DVec3, Vec3};
 use bevy_rapier3d::prelude::{ExternalForce, RapierContextJoints};
 use bevy_rapier3d::rapier::dynamics::{GenericJoint, JointAxesMask, RigidBodyHandle, RigidBodySet};
 use bevy_rapier3d::rapier::geometry::{ColliderSet, ContactPair, NarrowPhase};
@@ -26,6 +26,29 @@ pub(in crate::engine) struct Holding<'a> {
     pub joints: &'a RapierContextJoints,
     pub colliders: &'a ColliderSet,
     pub narrow: &'a NarrowPhase,
+}
+
+/// What a joint locks between two bodies, where it is, in its first frame's axes.
+pub(in crate::engine) fn locks(
+    joint: &GenericJoint,
+    rotation: DQuat,
+    at: DVec3,
+    on: [Option<(usize, &Body)>; 2],
+) -> impl Iterator<Item = Constraint> {
+    let masks = [
+        [JointAxesMask::LIN_X, JointAxesMask::ANG_X],
+        [JointAxesMask::LIN_Y, JointAxesMask::ANG_Y],
+        [JointAxesMask::LIN_Z, JointAxesMask::ANG_Z],
+    ];
+    let turning = on.map(|body| body.map(|(index, _)| index));
+    let both = DVec3::AXES.into_iter().zip(masks);
+    both.flat_map(move |(axis, [linear, angular])| {
+        let axis = rotation * axis;
+        let locked = |mask| joint.locked_axes.contains(mask);
+        let along = locked(linear).then(|| Constraint::along(axis, at, on));
+        let about = locked(angular).then(|| Constraint::about(axis, turning));
+        along.into_iter().chain(about)
+    })
 }
 
 /// Bodies that hang together, as they are found.
@@ -68,20 +91,9 @@ impl Found<'_> {
             .as_dvec3();
         let on = between.map(|handle| self.index(handle));
         let rotation = frame.rotation.as_dquat().normalize();
-        let axes = DVec3::AXES.map(|axis| rotation * axis);
-        let masks = [
-            [JointAxesMask::LIN_X, JointAxesMask::ANG_X],
-            [JointAxesMask::LIN_Y, JointAxesMask::ANG_Y],
-            [JointAxesMask::LIN_Z, JointAxesMask::ANG_Z],
-        ];
-        for (axis, [linear, angular]) in axes.into_iter().zip(masks) {
-            if joint.locked_axes.contains(linear) {
-                self.along(axis, at, on);
-            }
-            if joint.locked_axes.contains(angular) {
-                self.linkage.constraints.push(Constraint::about(axis, on));
-            }
-        }
+        let linkage = &mut self.linkage;
+        let on = on.map(|index| index.map(|index| (index, &linkage.bodies[index])));
+        linkage.constraints.extend(locks(joint, rotation, at, on));
     }
 
     /// What presses on each other neither parts nor slides.

@@ -16,6 +16,6 @@ mod step;
 mod touch;
 mod write;
 
-pub(super) use linkage::{Holding, inverse_mass};
+pub(super) use linkage::{Holding, inverse_mass, locks};
 pub(super) use step::View;
 pub(super) use write::{Engine as EngineParts, Solver};
