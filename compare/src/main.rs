@@ -12,12 +12,12 @@ mod follow;
 mod front;
 mod ground;
 mod machine;
+mod marked;
 mod method;
 mod options;
 mod paint;
 mod peers;
 mod problem;
-mod readme;
 mod report;
 mod rig;
 mod scale;
@@ -131,6 +131,6 @@ fn publish(options: &Options, folder: &Path, extras: &str) -> Result<(), Box<dyn
         options.out.join("docs/speed_vs_error.md"),
         text.trim_end().to_owned() + "\n",
     )?;
-    readme::copy(&options.out.join("docs/accuracy.md"), &headline)?;
+    marked::copy(&options.out.join("docs/accuracy.md"), &headline)?;
     Ok(())
 }

@@ -2,8 +2,8 @@
 
 use crate::front::{find, front};
 use crate::machine;
+use crate::marked::mark;
 use crate::method::{Dial, Method, Setting};
-use crate::readme::mark;
 use crate::scenes::Scene;
 use crate::table::Row;
 use crate::words::{best_of, digits, length, time, verdict};
