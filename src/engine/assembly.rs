@@ -95,9 +95,8 @@ impl Assembly {
         self.start.clear();
         self.warm.centers.clear();
         component.perturbed = self.warm.perturbed;
-        for (slot, b) in members.bodies.iter().enumerate() {
+        for b in members.bodies {
             let row = &mut bodies[*b];
-            row.slot = slot;
             let Some(body) = step.movable(set, row.handle, stale) else {
                 return;
             };

@@ -1,9 +1,7 @@
 //! Which elements have to be solved together.
 
 use super::assembly::Assembly;
-use super::rows::Members;
-use super::rows::mix;
-use super::rows::{BodyRow, ElementRow};
+use super::rows::{BodyRow, ElementRow, Members, mix};
 use bevy::platform::collections::HashMap;
 use bevy::prelude::Entity;
 use bevy_rapier3d::rapier::dynamics::RigidBodyHandle;

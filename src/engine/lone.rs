@@ -5,8 +5,7 @@
 
 use super::group::{Group, Groups};
 use super::point::{Flight, FreePoint, Route};
-use super::rows::Members;
-use super::rows::{BodyRow, ElementRow};
+use super::rows::{BodyRow, ElementRow, Members};
 use super::step::Step;
 use crate::dynamics::body::is_within;
 use crate::dynamics::element::rounding;
@@ -87,6 +86,44 @@ pub(super) fn prefetch(
 /// The bodies that a lone element moves, with the indices of their rows.
 type Bodies<'b> = [Option<(usize, &'b RapierBody)>; 2];
 
+/// The element and its motion; none where its direction or its law means nothing. Captures its rest length if need be.
+#[inline(always)]
+fn pair_of(
+    row: &mut ElementRow,
+    [a, b]: &[FreePoint; 2],
+    has_moved: bool,
+) -> Option<(Pair, Separation)> {
+    let (d, v) = (b.position - a.position, b.velocity - a.velocity);
+    let rounding = rounding(a.position, b.position);
+    let rest_length = row.parameters.rest_length.map(f64::from);
+    let coincide = d.length_squared() <= rounding * rounding;
+    if coincide && row.memory.direction.is_none() && rest_length != Some(0.0) {
+        return None;
+    }
+    let length = d.length();
+    if has_moved {
+        row.account_for_leap(length);
+    }
+    row.memory.length = length;
+    if !row.is_sound(v, d) {
+        return None;
+    }
+    let rest_length = rest_length.unwrap_or_else(|| {
+        row.parameters.rest_length = Some(length as f32);
+        row.captured = true;
+        f64::from(length as f32)
+    });
+    let pair = Pair {
+        stiffness: f64::from(row.parameters.stiffness),
+        damping: f64::from(row.parameters.damping),
+        rest_length,
+        inverse_mass: a.inverse_mass + b.inverse_mass,
+        outside: b.acceleration - a.acceleration,
+        rounding,
+    };
+    Some((pair, Separation::new(d, v, row.memory.direction)))
+}
+
 impl Step {
     /// Reads the element of a group, if it is an ordinary one.
     pub(super) fn gather_lone(
@@ -117,11 +154,12 @@ impl Step {
             Ok(points) => points,
             Err(route) => return route,
         };
-        let Some((pair, start)) = self.pair_of(row, &points, set) else {
+        let has_moved = self.has_moved(row, set);
+        let Some((pair, start)) = pair_of(row, &points, has_moved) else {
             return Route::GeneralOnce;
         };
         let omega = (row.slope() * pair.inverse_mass).sqrt();
-        let mut restless = row.changed || self.has_moved(row, set);
+        let mut restless = row.changed || has_moved;
         for (b, body) in found.into_iter().flatten() {
             restless |= std::mem::take(&mut bodies[b].disturbed);
             restless |= self.is_restless(&mut bodies[b], body, omega as f32);
@@ -212,45 +250,6 @@ impl Step {
             };
         }
         Ok(points)
-    }
-
-    /// The element and its motion; none where its direction or its law means nothing. Captures its rest length if need be.
-    #[inline(always)]
-    fn pair_of(
-        &self,
-        row: &mut ElementRow,
-        [a, b]: &[FreePoint; 2],
-        set: &RigidBodySet,
-    ) -> Option<(Pair, Separation)> {
-        let (d, v) = (b.position - a.position, b.velocity - a.velocity);
-        let rounding = rounding(a.position, b.position);
-        let rest_length = row.parameters.rest_length.map(f64::from);
-        let coincide = d.length_squared() <= rounding * rounding;
-        if coincide && row.memory.direction.is_none() && rest_length != Some(0.0) {
-            return None;
-        }
-        let length = d.length();
-        if self.has_moved(row, set) {
-            row.account_for_leap(length);
-        }
-        row.memory.length = length;
-        if !row.is_sound(v, d) {
-            return None;
-        }
-        let rest_length = rest_length.unwrap_or_else(|| {
-            row.parameters.rest_length = Some(length as f32);
-            row.captured = true;
-            f64::from(length as f32)
-        });
-        let pair = Pair {
-            stiffness: f64::from(row.parameters.stiffness),
-            damping: f64::from(row.parameters.damping),
-            rest_length,
-            inverse_mass: a.inverse_mass + b.inverse_mass,
-            outside: b.acceleration - a.acceleration,
-            rounding,
-        };
-        Some((pair, Separation::new(d, v, row.memory.direction)))
     }
 
     /// Has a linear element solved in a lane beside others, if it is plain; says whether.

@@ -141,9 +141,9 @@ impl Scene {
         self.groups.find(&self.elements, &self.bodies);
         self.handles.clear();
         for (g, group) in self.groups.list().iter().enumerate() {
-            for b in self.groups.members(group).bodies {
+            for (slot, b) in self.groups.members(group).bodies.iter().enumerate() {
                 let row = &mut self.bodies[*b];
-                row.group = g as u32;
+                (row.group, row.slot) = (g as u32, slot);
                 self.handles.insert((row.context, row.handle), *b as u32);
             }
         }

@@ -6,8 +6,7 @@
 //! disturbed is woken as a whole.
 
 use super::body::is_movable;
-use super::rows::Members;
-use super::rows::{BodyRow, ElementRow, Rest};
+use super::rows::{BodyRow, ElementRow, Members, Rest};
 use super::step::Step;
 use crate::dynamics::body::Body;
 use bevy_rapier3d::rapier::dynamics::{RigidBody as RapierBody, RigidBodySet};

@@ -51,12 +51,14 @@ impl Finder<'_, '_> {
         if parameters.names.stiffness.is_empty() {
             return fault("stands on a damper without a spring");
         }
-        let lever = self.lever(guide, places);
-        let moved = lever.filter(|lever| self.left(lever, lever.line) > 0.0);
-        let Some(lever) = moved else {
+        let lever = self.lever(guide, places).map(|lever| {
+            let left = self.left(&lever, lever.line);
+            (lever, left)
+        });
+        let Some((lever, left)) = lever.filter(|(_, left)| *left > 0.0) else {
             return fault("stands on an element whose ends cannot move or coincide");
         };
-        let mass = self.left(&lever, lever.line).recip() as f32;
+        let mass = left.recip() as f32;
         let (stiffness, damping) = tuning.coefficients(mass, lever.gravity.length());
         parameters.stiffness = stiffness;
         if !parameters.names.damping.is_empty() {

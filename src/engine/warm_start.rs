@@ -4,8 +4,7 @@
 use super::assembly::{Assembly, State};
 use super::body::is_movable;
 use super::point::FreePoint;
-use super::rows::Members;
-use super::rows::{BodyRow, ElementRow, pull_mark};
+use super::rows::{BodyRow, ElementRow, Members, pull_mark};
 use super::step::Step;
 use bevy::math::Vec3;
 use bevy_rapier3d::rapier::dynamics::RigidBodySet;

@@ -12,15 +12,11 @@ const STIFF: f64 = 0.3;
 const AHEAD: f32 = 1.5;
 
 impl BodyRow {
-    /// Whether stiff springs push a body that can touch something, in steps of `time` seconds.
-    pub(in crate::engine) fn is_stiff(&self, body: &RapierBody, time: f64) -> bool {
-        let inverse_mass = f64::from(body.mass_properties().local_mprops.inv_mass);
-        self.can_touch && self.stiffness * inverse_mass * time * time > STIFF * STIFF
-    }
-
-    /// Has the engine see its contacts ahead if it is stiff.
+    /// Has the engine see contacts of a body ahead that can touch something and that stiff springs push, in steps of
+    /// `time` seconds; says whether they are stiff.
     pub(in crate::engine) fn look_ahead(&mut self, body: &mut RapierBody, time: f64) -> bool {
-        let stiff = self.is_stiff(body, time);
+        let inverse_mass = f64::from(body.mass_properties().local_mprops.inv_mass);
+        let stiff = self.can_touch && self.stiffness * inverse_mass * time * time > STIFF * STIFF;
         let way = if stiff {
             AHEAD * time as f32 * body.linvel().length()
         } else {

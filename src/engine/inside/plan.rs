@@ -10,8 +10,7 @@ use crate::engine::body::read;
 use crate::engine::element::element;
 use crate::engine::held::Inside;
 use crate::engine::held::Turn;
-use crate::engine::rows::Members;
-use crate::engine::rows::{BodyRow, ElementRow};
+use crate::engine::rows::{BodyRow, ElementRow, Members};
 use crate::engine::step::Step;
 use bevy::math::DVec3;
 use std::mem::take;
@@ -65,9 +64,8 @@ impl Plan {
         self.bodies.clear();
         self.orders.clear();
         self.disturbed = false;
-        for (slot, b) in members.bodies.iter().enumerate() {
-            let row = &mut bodies[*b];
-            row.slot = slot;
+        for b in members.bodies {
+            let row = &bodies[*b];
             let Some(body) = step.movable(set, row.handle, stale) else {
                 return false;
             };
@@ -112,9 +110,12 @@ impl Plan {
                 if inside.leeway.is_due(by, inside.rates.is_some()) {
                     let on = |body: usize| bodies[members.bodies[body]].handle;
                     inside.leeway.left = inverse_mass(&line, on, all);
-                    let contacts = false;
-                    let jointed = inverse_mass(&line, on, Holding { contacts, ..all });
-                    inside.leeway.jointed = jointed / line.inverse_mass;
+                    inside.leeway.jointed = if by[0].0 || by[1].0 {
+                        let contacts = false;
+                        inverse_mass(&line, on, Holding { contacts, ..all }) / line.inverse_mass
+                    } else {
+                        1.0
+                    };
                 }
                 row.inverse_mass = inside.leeway.left;
             }

@@ -124,16 +124,21 @@ impl Scene {
             ..
         } = self;
         let members = groups.members(&groups.list()[g]);
-        solver.look_at_pushes(step, &members, elements, bodies, engine.bodies);
+        // What is new may touch something already: the engine does not know before its first step.
+        let any_new = members.bodies.iter().any(|b| bodies[*b].is_new);
+        if any_new {
+            solver.find_pushes(step, &members, elements, bodies, engine.bodies);
+        }
         let around = Surroundings::new(view.narrow, engine.joints, engine.colliders, crowd);
         let time = step.plan.time / f64::from(step.plan.pipeline_steps.max(1));
         let (mut held, mut stiff) = (false, false);
-        for (b, push) in members.bodies.iter().zip(&solver.pushes) {
+        for (slot, b) in members.bodies.iter().enumerate() {
             let row = &mut bodies[*b];
+            let push = if any_new { solver.pushes[slot] } else { 0.0 };
             if (row.can_touch || around.any_joints || row.lingers > 0.0)
                 && let Some(body) = engine.bodies.get_mut(row.handle)
             {
-                held |= around.look(row, body, step.plan.time, *push);
+                held |= around.look(row, body, step.plan.time, push);
                 stiff |= row.look_ahead(body, time);
             }
         }
@@ -146,6 +151,9 @@ impl Scene {
             groups.list()[g].clear
         };
         if stiff && !held && clear == 0 {
+            if !any_new {
+                solver.find_pushes(step, &members, elements, bodies, engine.bodies);
+            }
             return self.meets_soon(g, view, step, engine, &solver.pushes);
         }
         groups.at(g).clear = clear.saturating_sub(1);

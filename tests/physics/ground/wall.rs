@@ -1,5 +1,6 @@
 //! A box that a spring pulls against a wall.
 
+use super::scenes::box_at_wall;
 use super::stand::*;
 use crate::harness::*;
 use bevy::prelude::*;
@@ -12,25 +13,8 @@ fn a_box_held_against_a_wall_does_not_tremble() {
         for (name, way) in ways() {
             let mut scene = Stand::new(way, Engine::default());
             scene.ground();
-            scene.lab.spawn((
-                RigidBody::Fixed,
-                Collider::cuboid(0.1, 1.0, 1.0),
-                Transform::from_xyz(1.0, 1.0, 0.0),
-            ));
-            let crate_ = scene.body(
-                Transform::from_xyz(0.6, 0.25, 0.0),
-                (
-                    Collider::cuboid(0.25, 0.25, 0.25),
-                    ColliderMassProperties::Mass(5.0),
-                ),
-            );
-            // A hand inside the wall, which holds the box at its middle.
-            let hand = scene.lab.spawn((
-                RigidBody::KinematicPositionBased,
-                Transform::from_xyz(1.0, 0.4, 0.0),
-            ));
-            let c = 0.2 * (k * 5.0).sqrt();
-            scene.coil([hand, crate_], [Vec3::ZERO; 2], [k, c], Some(0.0));
+            // The hand is inside the wall, and holds the box at its middle.
+            box_at_wall(&mut scene, k, 0.4);
             scene.lab.run(10.0);
             let (wander, speed) = (scene.wander(10.0), scene.speed());
             println!("wall, {k} N/m, {name} micro-steps: wanders {wander:.1e} m, {speed:.1e} m/s");
