@@ -31,6 +31,9 @@ pub(super) struct Order {
     pub lively: f64,
     /// A contact touches what it holds.
     pub touched: bool,
+    /// Its damper is solved before all springs. Joints answer a spring only after it is solved, so a damper must not see
+    /// what springs do to bodies that joints hold. Contacts are warm-started: they have answered by then.
+    pub apart: bool,
     /// Of a torsion element.
     pub turn: Option<Turn>,
     /// Share that joints leave of its inverse mass.
@@ -79,9 +82,7 @@ impl Order {
             .as_ref()
             .map_or(0.0, |turn| turn.across_damping(time));
         let floor = across * stiffness.abs();
-        // Joints answer a spring only after it is solved, so a damper must not see what springs do to bodies that joints
-        // hold: it is solved before all springs. Contacts are warm-started: they have answered by then.
-        let apart = damping > 0.0 && !self.touched && limit == f64::INFINITY;
+        let apart = self.apart && damping > 0.0 && limit == f64::INFINITY;
         let left = Tangent {
             damping: if apart { 0.0 } else { damping },
             ..self.tangent

@@ -73,6 +73,7 @@ impl Plan {
                 .push(read(body, step.engine.gravity, &row.user, true));
         }
         let time = step.plan.time;
+        let jointed = members.bodies.iter().any(|b| bodies[*b].jointed);
         for e in members.elements {
             let row = &mut elements[*e];
             let has_moved = step.has_moved(row, set);
@@ -119,7 +120,8 @@ impl Plan {
                 }
                 row.inverse_mass = inside.leeway.left;
             }
-            let order = self.order(*e, inside, (element, line, turn), touched, time);
+            let mut order = self.order(*e, inside, (element, line, turn), touched, time);
+            order.apart = jointed && !touched;
             self.orders.push(order);
         }
         self.bound(members, bodies);
@@ -207,6 +209,7 @@ impl Plan {
             omega: 0.0,
             lively: 0.0,
             touched,
+            apart: false,
             turn,
             jointed: inside.leeway.jointed,
         }
