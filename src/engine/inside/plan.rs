@@ -29,13 +29,20 @@ pub(super) struct Plan {
     sums: Vec<f64>,
     /// and its acceleration by all springs and outside forces, beside the sum of their sizes.
     forces: Vec<(DVec3, f64)>,
+    /// Joints of the game's hold some body of it.
+    jointed: bool,
     /// Springs pull some body to and fro by far more than its weight, while the component rests on something.
     tense: bool,
 }
 
 /// Sum of what springs pull at a body, in units of its weight, above which one sweep over all joints leaves it trembling
-/// on what it stands on: a tensegrity of struts does. Pinned by the check of the example `tensegrity`.
+/// on what it stands on: a tensegrity of struts does, and a bridge of springs under boxes. Pinned by the check of the
+/// example `tensegrity` and by `ground::play`.
 const TENSE: f64 = 100.0;
+
+/// Sweeps over all joints and contacts in a substep of what is tense: with two, the bridge still trembles. They cost
+/// little beside the making of joints in each substep.
+const TENSE_SWEEPS: usize = 4;
 
 /// Share of all forces on a body that may be left of them where they are in balance. Pinned by `ground::heap`.
 const BALANCE: f64 = 5e-3;
@@ -48,6 +55,10 @@ const ALONG: f32 = 2.0;
 /// `ground::hinge`.
 const LIGHT: f64 = 0.7;
 const DAMPED: f64 = 0.02;
+
+/// Sweeps in a substep there: with one, a lamp's arm rests where its damper still pushes; with four, a bridge on hinges
+/// does not come to rest. Pinned by `ground::hinge` and `ground::play`.
+const LIGHT_SWEEPS: usize = 2;
 
 impl Plan {
     /// Reads a component; says whether all its bodies can be moved.
@@ -73,7 +84,7 @@ impl Plan {
                 .push(read(body, step.engine.gravity, &row.user, true));
         }
         let time = step.plan.time;
-        let jointed = members.bodies.iter().any(|b| bodies[*b].jointed);
+        self.jointed = members.bodies.iter().any(|b| bodies[*b].jointed);
         for e in members.elements {
             let row = &mut elements[*e];
             let has_moved = step.has_moved(row, set);
@@ -121,7 +132,7 @@ impl Plan {
                 row.inverse_mass = inside.leeway.left;
             }
             let mut order = self.order(*e, inside, (element, line, turn), touched, time);
-            order.apart = jointed && !touched;
+            order.apart = self.jointed && !touched;
             self.orders.push(order);
         }
         self.bound(members, bodies);
@@ -246,14 +257,21 @@ impl Plan {
             .fold(0.0, f64::max)
     }
 
-    /// Whether joints are to be solved more than once in substeps of so long: a damper is to know what they leave of a push.
-    pub(super) fn needs_more_sweeps(&self, substep: f64) -> bool {
-        self.tense
-            || self.orders.iter().any(|order| {
-                let damped = order.tangent.damping * order.line.inverse_mass * substep;
-                // Where contacts press, the engine's warm start has brought their answer already.
-                order.jointed < LIGHT && damped > DAMPED && !order.touched
-            })
+    /// How often joints and contacts are to be solved in a substep of so long, for a damper to know what joints leave of a
+    /// push, or what other springs do.
+    pub(super) fn sweeps(&self, substep: f64) -> usize {
+        let light = |order: &Order| {
+            let damped = order.tangent.damping * order.line.inverse_mass * substep;
+            // Where contacts press, the engine's warm start has brought their answer already.
+            order.jointed < LIGHT && damped > DAMPED && !order.touched
+        };
+        if self.tense && !self.jointed {
+            TENSE_SWEEPS
+        } else if self.orders.iter().any(light) {
+            LIGHT_SWEEPS
+        } else {
+            1
+        }
     }
 
     /// Whether its joints may be solved in finer substeps than they are made for.

@@ -21,10 +21,6 @@ use std::sync::atomic::Ordering;
 /// what it carries. Pinned by `ground::rolling`.
 const LEAST: u32 = 16;
 
-/// Sweeps over all joints and contacts in a substep where a damper has to know what joints leave of a push: with one, a
-/// lamp's arm rests where its damper still pushes. Pinned by `ground::hinge`.
-const SWEEPS: usize = 2;
-
 /// What of a Rapier context is written.
 pub(in crate::engine) struct Engine<'a> {
     pub bodies: &'a mut RigidBodySet,
@@ -166,9 +162,7 @@ impl Solver {
             let members = groups.members(group);
             let h = substep(chosen);
             let substeps = chosen as u32 * calls;
-            if plan.needs_more_sweeps(h) {
-                self.sweeps = SWEEPS;
-            }
+            self.sweeps = self.sweeps.max(plan.sweeps(h));
             if !group.inside {
                 stagger(plan, -0.5 * h, &members, bodies, engine.bodies);
             }

@@ -9,7 +9,7 @@ use bevy_rapier3d::prelude::*;
 const PLANKS: usize = 30;
 
 /// Planks of 4 kg between two banks, and three boxes above them.
-fn bridge(k: f32, load: f32, hinged: bool) -> Stand {
+pub fn bridge(k: f32, load: f32, hinged: bool) -> Stand {
     let mut scene = Stand::new(CoiloverPlugin::default(), Engine::default());
     let bank = |scene: &mut Stand, x: f32| {
         scene.lab.spawn((

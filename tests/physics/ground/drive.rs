@@ -8,14 +8,14 @@ use bevy_rapier3d::prelude::*;
 
 const RADIUS: f32 = 0.33;
 const REST: f32 = 0.5;
-const CHASSIS: f32 = 1200.0;
-const WHEEL: f32 = 20.0;
+pub const CHASSIS: f32 = 1200.0;
+pub const WHEEL: f32 = 20.0;
 
 /// A car of five bodies that rolls along x.
-struct Car {
-    scene: Stand,
-    chassis: Entity,
-    wheels: Vec<Entity>,
+pub struct Car {
+    pub scene: Stand,
+    pub chassis: Entity,
+    pub wheels: Vec<Entity>,
     law: [f32; 2],
 }
 
@@ -83,7 +83,7 @@ fn corners() -> [Vec3; 4] {
     [(1.3, 0.75), (1.3, -0.75), (-1.3, 0.75), (-1.3, -0.75)].map(|(x, z)| Vec3::new(x, 0.0, z))
 }
 
-fn car(plugin: CoiloverPlugin, kind: &str, height: f32, speed: f32, law: [f32; 2]) -> Car {
+pub fn car(plugin: CoiloverPlugin, kind: &str, height: f32, speed: f32, law: [f32; 2]) -> Car {
     let mut scene = Stand::new(plugin, Engine::default());
     let ground = scene.ground();
     scene.lab.app.world_mut().entity_mut(ground).insert((
@@ -111,18 +111,18 @@ impl Car {
         ));
     }
 
-    fn sag(&self) -> f64 {
+    pub fn sag(&self) -> f64 {
         let lengths: f64 = self.scene.coils.iter().map(|c| self.scene.length(c)).sum();
         f64::from(REST) - lengths / self.scene.coils.len() as f64
     }
 
-    fn theory(&self) -> f64 {
+    pub fn theory(&self) -> f64 {
         let share = self.wheels.len() as f64 / 4.0;
         f64::from(CHASSIS) * share * GRAVITY / (self.wheels.len() as f64 * f64::from(self.law[0]))
     }
 
     /// Locks the wheels.
-    fn brake(&mut self) {
+    pub fn brake(&mut self) {
         for wheel in &self.wheels {
             self.scene.lab.get_mut::<Velocity>(*wheel).angular = Vec3::ZERO;
             let world = self.scene.lab.app.world_mut();
@@ -139,7 +139,7 @@ impl Car {
         self.scene.most(seconds) / first
     }
 
-    fn up(&self) -> f32 {
+    pub fn up(&self) -> f32 {
         self.scene.lab.get::<Transform>(self.chassis).up().y
     }
 }
@@ -188,7 +188,7 @@ fn over(name: &str, mut car: Car, seconds: f64) {
     assert_eq!(car.scene.awake(), 0, "{name}: it sleeps");
 }
 
-const LAW: [f32; 2] = [40e3, 3e3];
+pub const LAW: [f32; 2] = [40e3, 3e3];
 
 #[test]
 fn a_car_whose_springs_stand_beside_its_wheels_rests_where_statics_say() {

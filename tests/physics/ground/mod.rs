@@ -17,6 +17,7 @@ mod hierarchy;
 mod hinge;
 mod motorcycle;
 mod nets;
+mod play;
 mod ragdoll;
 mod rates;
 mod rolling;

@@ -8,7 +8,7 @@ use bevy_rapier3d::prelude::*;
 
 /// What its muscles are.
 #[derive(Clone, Copy, Debug)]
-enum Muscle {
+pub enum Muscle {
     /// N m/rad about the joint.
     Torsion(f32),
     /// N/m beside the joint.
@@ -16,7 +16,7 @@ enum Muscle {
 }
 
 /// A torso, a head, and arms and legs of two parts each, lying in the air.
-fn ragdoll(plugin: CoiloverPlugin, muscle: Muscle) -> Stand {
+pub fn ragdoll(plugin: CoiloverPlugin, muscle: Muscle) -> Stand {
     let mut scene = Stand::new(plugin, Engine::default());
     scene.ground();
     let capsule = |scene: &mut Stand, at: Vec3, half: f32, radius: f32, mass: f32| {
