@@ -1,5 +1,5 @@
+use crate::compat::{Curve, Interval};
 use bevy::prelude::*;
-use bevy_math::curve::{Curve, Interval};
 
 /// Forces (N, tension positive) as a test bench measures them: over stretch (m) in a
 /// [`SpringLaw`](crate::SpringLaw), over the rate of the length (m/s) in a

@@ -7,7 +7,7 @@ mod wire;
 
 pub use mesh::HelixMeshBuilder;
 
-use bevy::math::primitives::Primitive3d;
+use crate::compat::Primitive3d;
 use bevy::prelude::*;
 use std::f32::consts::PI;
 use std::fmt;
