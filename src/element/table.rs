@@ -8,6 +8,7 @@ use bevy::prelude::*;
 /// Between the points it is a monotone cubic (Fritsch and Carlson 1980), which never overshoots; beyond them it
 /// goes straight on as the last two points show. Two points or more, x strictly rising, forces never falling.
 #[derive(Reflect, Clone, Debug, Default, PartialEq)]
+#[type_path = "bevy_coilover"]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Default, Debug, PartialEq, Clone)]

@@ -37,6 +37,7 @@ pub type RoundWireMaterial = ExtendedMaterial<StandardMaterial, RoundWire>;
 
 /// What [`RoundWireMaterial`] knows of the coil: the very [`Helix`] whose mesh it is put on.
 #[derive(Asset, AsBindGroup, Reflect, Clone, Copy, Debug, Default, PartialEq)]
+#[type_path = "bevy_coilover"]
 #[reflect(Default, Debug, PartialEq, Clone)]
 #[uniform(100, RoundWireUniform)]
 pub struct RoundWire {
