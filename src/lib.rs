@@ -3,6 +3,10 @@
 #![doc = include_str!("../README.md")]
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
+/// What differs between versions of Bevy. The folder of each manifest has its own.
+mod compat {
+    include!(concat!(env!("CARGO_MANIFEST_DIR"), "/src/compat.rs"));
+}
 mod diagnostics;
 mod dynamics;
 mod element;

@@ -11,6 +11,7 @@ use bevy::prelude::*;
 /// it; see [`SpringLoad`](crate::SpringLoad).) Zero on an element that has not acted yet,
 /// or is at fault.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq)]
+#[type_path = "bevy_coilover"]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
@@ -54,6 +55,7 @@ pub struct SpringReadout {
 
 /// How an element's step was solved: the cheapest way that is sound.
 #[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[type_path = "bevy_coilover"]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Default, Debug, PartialEq, Clone, Hash)]

@@ -7,6 +7,7 @@ use bevy::prelude::*;
 /// Without this component both are zero: the origin of each end. [`WorldAnchors`](crate::WorldAnchors) takes points of
 /// the world instead.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq)]
+#[type_path = "bevy_coilover"]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]

@@ -3,6 +3,7 @@ use bevy::prelude::*;
 /// Makes an element act along an axis instead of from end to end: its length is then the distance of the
 /// ends along that axis, negative where end B is behind end A. Any length of vector but zero will do.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
+#[type_path = "bevy_coilover"]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Component, Debug, PartialEq, Clone)]

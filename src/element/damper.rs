@@ -3,6 +3,7 @@ use bevy::prelude::*;
 
 /// A viscous damper between two ends: tension = damping · rate of the length.
 #[derive(Component, FromTemplate, Reflect, Clone, Copy, Debug, PartialEq)]
+#[type_path = "bevy_coilover"]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Component, Debug, PartialEq, Clone)]

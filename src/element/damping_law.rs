@@ -8,6 +8,7 @@ use bevy::prelude::*;
 /// All but `Linear` have coefficients of their own, and the element's damping plays no part. *Bump* is while
 /// the length shrinks, *rebound* while it grows.
 #[derive(Component, Reflect, Clone, Debug, Default, PartialEq)]
+#[type_path = "bevy_coilover"]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]

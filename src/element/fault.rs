@@ -5,6 +5,7 @@ use std::fmt;
 ///
 /// The same text is logged once as a warning.
 #[derive(Component, Reflect, Clone, Debug, PartialEq, Eq)]
+#[type_path = "bevy_coilover"]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Component, Debug, PartialEq, Clone)]

@@ -11,6 +11,7 @@ use std::sync::Arc;
 /// On a torsion element angles (rad) and moments (N m) take the place of lengths and forces, in every
 /// companion.
 #[derive(Component, Reflect, Clone, Debug, Default, PartialEq)]
+#[type_path = "bevy_coilover"]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
@@ -33,6 +34,7 @@ pub enum SpringLaw {
 
 /// Force k₁ x + k₂ |x| x + k₃ x³ for a stretch x; none of them negative.
 #[derive(Reflect, Clone, Copy, Debug, Default, PartialEq)]
+#[type_path = "bevy_coilover"]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Default, Debug, PartialEq, Clone)]

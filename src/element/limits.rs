@@ -2,6 +2,7 @@ use bevy::prelude::*;
 
 /// Which way an element acts, spring and damper together.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[type_path = "bevy_coilover"]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Component, Default, Debug, PartialEq, Clone, Hash)]
@@ -23,6 +24,7 @@ pub enum SpringAction {
 /// zero: a slack rope has no force whatever its preload. [`HoldPose`](crate::HoldPose) finds the preload that holds a
 /// load.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq)]
+#[type_path = "bevy_coilover"]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
@@ -31,6 +33,7 @@ pub struct Preload(pub f32);
 /// Most force that spring and damper have together, N, above zero; the stops of a
 /// [`SpringTravel`] are not held back by it.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
+#[type_path = "bevy_coilover"]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Component, Debug, PartialEq, Clone)]
@@ -40,6 +43,7 @@ pub struct MaxForce(pub f32);
 /// `stop_stiffness` · p · (1 + `progression` · p) for a penetration p pushes back, and `stop_damping` takes
 /// energy while it is pressed. A stop never holds anything back that leaves it.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
+#[type_path = "bevy_coilover"]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Component, Debug, PartialEq, Clone)]

@@ -6,6 +6,7 @@ use bevy::prelude::*;
 /// Each end is a body, something below a body in the hierarchy, or any entity with a `Transform`.
 /// It pulls when longer than its rest length and pushes when shorter.
 #[derive(Component, FromTemplate, Reflect, Clone, Copy, Debug, PartialEq)]
+#[type_path = "bevy_coilover"]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Component, Debug, PartialEq, Clone)]

@@ -4,6 +4,7 @@ use bevy::prelude::*;
 /// A spring and a damper side by side (Kelvin–Voigt): tension = stiffness · (length − rest length)
 /// + damping · rate of the length.
 #[derive(Component, FromTemplate, Reflect, Clone, Copy, Debug, PartialEq)]
+#[type_path = "bevy_coilover"]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Component, Debug, PartialEq, Clone)]

@@ -1,5 +1,5 @@
+use crate::compat::{Curve, Interval};
 use bevy::prelude::*;
-use bevy_math::curve::{Curve, Interval};
 
 /// Forces (N, tension positive) as a test bench measures them: over stretch (m) in a
 /// [`SpringLaw`](crate::SpringLaw), over the rate of the length (m/s) in a
@@ -8,6 +8,7 @@ use bevy_math::curve::{Curve, Interval};
 /// Between the points it is a monotone cubic (Fritsch and Carlson 1980), which never overshoots; beyond them it
 /// goes straight on as the last two points show. Two points or more, x strictly rising, forces never falling.
 #[derive(Reflect, Clone, Debug, Default, PartialEq)]
+#[type_path = "bevy_coilover"]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Default, Debug, PartialEq, Clone)]

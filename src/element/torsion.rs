@@ -7,6 +7,7 @@ use bevy::prelude::*;
 
 /// A torsion spring: moment = stiffness · (angle − rest angle).
 #[derive(Component, FromTemplate, Reflect, Clone, Copy, Debug, PartialEq)]
+#[type_path = "bevy_coilover"]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Component, Debug, PartialEq, Clone)]
@@ -54,6 +55,7 @@ impl TorsionSpring {
 
 /// A torsion damper: moment = damping · rate of the angle.
 #[derive(Component, FromTemplate, Reflect, Clone, Copy, Debug, PartialEq)]
+#[type_path = "bevy_coilover"]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Component, Debug, PartialEq, Clone)]
@@ -91,6 +93,7 @@ impl TorsionDamper {
 
 /// A torsion spring and damper side by side.
 #[derive(Component, FromTemplate, Reflect, Clone, Copy, Debug, PartialEq)]
+#[type_path = "bevy_coilover"]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Component, Debug, PartialEq, Clone)]

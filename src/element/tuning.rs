@@ -16,6 +16,7 @@ use std::f32::consts::TAU;
 /// [`HoldPose`](crate::HoldPose) beside it. For several springs under one load take [`SpringTuning::coefficients`] with
 /// each spring's share of the mass, and [`HoldPose::share`](crate::HoldPose::share).
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
+#[type_path = "bevy_coilover"]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Component, Debug, PartialEq, Clone)]

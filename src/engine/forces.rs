@@ -17,6 +17,7 @@ use bevy_rapier3d::rapier::dynamics::RigidBody as RapierBody;
 /// The share of the elements is the force delivered, not the springs' own: together with an impulse
 /// at the start of the step it makes the engine's few substeps end where the springs take the body.
 #[derive(Component, Reflect, Clone, Debug)]
+#[type_path = "bevy_coilover"]
 #[reflect(Component, Debug, Clone)]
 pub struct SpringLoad {
     /// Force (N) and torque (N m) delivered by elements over the last step, world frame.

@@ -3,6 +3,7 @@
 //! Observers see them come, so that a world in which nothing comes pays nothing.
 
 use super::parts::IsElement;
+use crate::compat::Added;
 use crate::element::{Damper, Spring, SpringDamper};
 use bevy::ecs::entity::{EntityHashMap, EntityHashSet};
 use bevy::prelude::*;
@@ -40,7 +41,7 @@ struct Stray {
 /// Makes an app notice where a component stands.
 pub(crate) fn notice<C: Component>(app: &mut App, role: Role, name: &'static str) {
     let observer =
-        move |added: On<Add, C>,
+        move |added: Added<C>,
               elements: Query<(), IsElement>,
               linear: Query<(), Or<(With<Spring>, With<Damper>, With<SpringDamper>)>>,
               mut strays: ResMut<Strays>| {

@@ -7,6 +7,7 @@ use bevy::prelude::*;
 ///
 /// Beside a [`Telescope`](crate::Telescope) it sits around it, between spring seats: a coilover.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
+#[type_path = "bevy_coilover"]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]

@@ -26,6 +26,7 @@ use bevy::prelude::*;
 /// }
 /// ```
 #[derive(GizmoConfigGroup, Reflect, Clone, Debug)]
+#[type_path = "bevy_coilover"]
 #[reflect(Default)]
 pub struct SpringGizmos {
     /// Draw every element that has no [`ShowSpringGizmos`] of its own.
@@ -48,6 +49,7 @@ impl Default for SpringGizmos {
 
 /// On an element: whether its [`SpringGizmos`] are drawn, whatever the group says.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Eq)]
+#[type_path = "bevy_coilover"]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]

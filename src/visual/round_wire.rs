@@ -37,6 +37,7 @@ pub type RoundWireMaterial = ExtendedMaterial<StandardMaterial, RoundWire>;
 
 /// What [`RoundWireMaterial`] knows of the coil: the very [`Helix`] whose mesh it is put on.
 #[derive(Asset, AsBindGroup, Reflect, Clone, Copy, Debug, Default, PartialEq)]
+#[type_path = "bevy_coilover"]
 #[reflect(Default, Debug, PartialEq, Clone)]
 #[uniform(100, RoundWireUniform)]
 pub struct RoundWire {
@@ -69,11 +70,11 @@ impl From<&RoundWire> for RoundWireUniform {
     }
 }
 
-/// Where the shader is embedded, so that it is found wherever the binary runs.
-const SHADER: &str = "bevy_coilover/shaders/round_wire.wgsl";
+/// Where the shader is embedded, so that it is found wherever the binary runs, and its source.
+const SHADER: (&str, &str) = crate::compat::ROUND_WIRE;
 
 fn shader() -> ShaderRef {
-    ShaderRef::Path(format!("embedded://{SHADER}").into())
+    ShaderRef::Path(format!("embedded://{}", SHADER.0).into())
 }
 
 impl MaterialExtension for RoundWire {
@@ -96,16 +97,9 @@ pub(super) fn add(app: &mut App) {
         return;
     };
     embedded.insert_asset(
-        PathBuf::from(concat!(
-            env!("CARGO_MANIFEST_DIR"),
-            "/assets/shaders/round_wire.wgsl"
-        )),
-        Path::new(SHADER),
-        include_bytes!(concat!(
-            env!("CARGO_MANIFEST_DIR"),
-            "/assets/shaders/round_wire.wgsl"
-        ))
-        .as_slice(),
+        PathBuf::from(SHADER.0),
+        Path::new(SHADER.0),
+        SHADER.1.as_bytes(),
     );
     if app.is_plugin_added::<PbrPlugin>() && app.get_sub_app(RenderApp).is_some() {
         app.add_plugins(MaterialPlugin::<RoundWireMaterial>::default());

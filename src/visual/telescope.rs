@@ -8,6 +8,7 @@ use bevy::prelude::*;
 /// Both keep their lengths as long as the ends stay within the stroke. Pulled or pushed beyond it, the rod
 /// or the tube is drawn longer or shorter than it is, rather than apart or through the other end.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
+#[type_path = "bevy_coilover"]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]

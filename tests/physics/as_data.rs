@@ -6,37 +6,70 @@ use bevy::ecs::reflect::AppTypeRegistry;
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
+use std::collections::BTreeSet;
+
+/// Everything of ours in the type registry, by the path that a saved scene writes.
+pub fn paths(lab: &Lab) -> BTreeSet<&'static str> {
+    let registry = lab.app.world().resource::<AppTypeRegistry>().read();
+    registry
+        .iter()
+        .map(|registration| registration.type_info().type_path())
+        .filter(|path| path.starts_with("bevy_coilover"))
+        .collect()
+}
+
+const COMPONENTS: [&str; 21] = [
+    "Spring",
+    "Damper",
+    "SpringDamper",
+    "Anchors",
+    "SpringReadout",
+    "SpringLoad",
+    "SpringFault",
+    "TorsionSpring",
+    "TorsionDamper",
+    "TorsionSpringDamper",
+    "SpringLaw",
+    "DampingLaw",
+    "SpringAction",
+    "SpringTravel",
+    "SpringAxis",
+    "Preload",
+    "MaxForce",
+    "Breakable",
+    "SpringTuning",
+    "HoldPose",
+    "WorldAnchors",
+];
 
 #[test]
 fn every_public_component_is_in_the_type_registry() {
     let lab = Lab::new();
     let registry = lab.app.world().resource::<AppTypeRegistry>().read();
-    for name in [
-        "Spring",
-        "Damper",
-        "SpringDamper",
-        "Anchors",
-        "SpringReadout",
-        "SpringLoad",
-        "SpringFault",
-        "TorsionSpring",
-        "TorsionDamper",
-        "TorsionSpringDamper",
-        "SpringLaw",
-        "DampingLaw",
-        "SpringAction",
-        "SpringTravel",
-        "SpringAxis",
-        "Preload",
-        "MaxForce",
-        "Breakable",
-        "SpringTuning",
-        "HoldPose",
-        "WorldAnchors",
-    ] {
+    for name in COMPONENTS {
         let registration = registry.get_with_short_type_path(name);
         let registration = registration.unwrap_or_else(|| panic!("{name} is registered"));
         assert!(registration.data::<ReflectComponent>().is_some(), "{name}");
+    }
+}
+
+#[test]
+fn a_saved_scene_names_types_by_paths_that_no_moved_file_changes() {
+    let found = paths(&Lab::new());
+    // What components are made of is saved with them.
+    let inside = [
+        "SpringMethod",
+        "ForceTable",
+        "Polynomial",
+        "HeldEnd",
+        "WhenBroken",
+    ];
+    for name in COMPONENTS.into_iter().chain(inside) {
+        let path = format!("bevy_coilover::{name}");
+        assert!(found.contains(path.as_str()), "{path} is not in {found:?}");
+    }
+    for path in found {
+        assert_eq!(path.matches("::").count(), 1, "{path} follows the modules");
     }
 }
 

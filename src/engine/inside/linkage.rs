@@ -1,5 +1,6 @@
 //! What joints and contacts leave of the mass at an element's ends, read from the engine.
 
+use crate::compat;
 use crate::dynamics::body::Body;
 use crate::dynamics::line::Line;
 use crate::dynamics::linkage::{Constraint, Linkage};
@@ -104,7 +105,7 @@ impl Found<'_> {
         };
         let second = all.colliders.get(pair.collider2);
         let on = [Some(first), second].map(|c| self.index(c?.parent()?));
-        for manifold in &pair.manifolds {
+        for manifold in compat::manifolds(pair) {
             let normal = manifold.data.normal.as_dvec3();
             let (across, along) = normal.any_orthonormal_pair();
             let place = match manifold.subshape_pos1() {

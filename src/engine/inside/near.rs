@@ -4,8 +4,8 @@
 //! before that does not answer the blow until the next step, and its energy is won from nothing. So a component of stiff
 //! springs that is free looks ahead.
 
+use crate::compat;
 use crate::engine::rows::BodyRow;
-use bevy_rapier3d::parry;
 use bevy_rapier3d::parry::bounding_volume::{Aabb, BoundingVolume};
 use bevy_rapier3d::parry::query::DefaultQueryDispatcher;
 use bevy_rapier3d::parry::shape::Cuboid;
@@ -76,9 +76,8 @@ impl Outlook<'_> {
                 collider,
                 speed: body.map_or(0.0, speed_of),
             };
-            let apart =
-                parry::query::distance(&place, &shape, collider.position(), collider.shape());
-            let free = (apart.unwrap_or(0.0) - NEAR).max(0.0);
+            let apart = compat::distance([&place, collider.position()], [&shape, collider.shape()]);
+            let free = (apart - NEAR).max(0.0);
             let step = (fastest + other.speed) * self.time;
             let steps = (TRUSTED * free / step.max(f32::MIN_POSITIVE)).min(f32::from(MOST));
             if steps < 1.0 && self.meets(rows, pushes, &other) {
@@ -125,9 +124,7 @@ impl Outlook<'_> {
                     .test(other.collider.collision_groups());
                 groups && own.compute_aabb().intersects(&theirs) && {
                     let (a, b) = (own, other.collider);
-                    let apart =
-                        parry::query::distance(a.position(), a.shape(), b.position(), b.shape());
-                    apart.unwrap_or(0.0) < way
+                    compat::distance([a.position(), b.position()], [a.shape(), b.shape()]) < way
                 }
             })
         })

@@ -2,6 +2,7 @@
 
 use super::linkage::Holding;
 use super::plan::Plan;
+use crate::compat;
 use crate::dynamics::soft::Fineness;
 use crate::engine::body::Push;
 use crate::engine::group::Groups;
@@ -46,13 +47,12 @@ impl Inside {
     pub(in crate::engine) fn remove(&mut self, engine: &mut Engine) {
         self.joints.remove(&mut engine.joints.impulse_joints);
         for handle in self.hidden.iter_mut().filter_map(Option::take) {
-            engine.bodies.remove(
+            compat::remove(
                 handle,
+                engine.bodies,
                 engine.islands,
                 engine.colliders,
-                &mut engine.joints.impulse_joints,
-                &mut engine.joints.multibody_joints,
-                true,
+                engine.joints,
             );
         }
         self.active = false;

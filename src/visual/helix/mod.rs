@@ -7,7 +7,7 @@ mod wire;
 
 pub use mesh::HelixMeshBuilder;
 
-use bevy::math::primitives::Primitive3d;
+use crate::compat::Primitive3d;
 use bevy::prelude::*;
 use std::f32::consts::PI;
 use std::fmt;
@@ -15,6 +15,7 @@ use wire::Wire;
 
 /// How the wire of a coil ends.
 #[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[type_path = "bevy_coilover"]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[reflect(Default, Debug, PartialEq, Clone)]
 pub enum HelixEnds {
@@ -39,6 +40,7 @@ impl HelixEnds {
 
 /// Which way a coil is wound.
 #[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[type_path = "bevy_coilover"]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[reflect(Default, Debug, PartialEq, Clone)]
 pub enum Handedness {
@@ -53,6 +55,7 @@ pub enum Handedness {
 ///
 /// The wire's section is a circle perpendicular to the wire; its ends are capped.
 #[derive(Reflect, Clone, Copy, Debug, PartialEq)]
+#[type_path = "bevy_coilover"]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[reflect(Default, Debug, PartialEq, Clone)]
 pub struct Helix {

@@ -1,6 +1,6 @@
 //! The wire as a formula: where a coil of given length has the surface of its wire.
 //!
-//! `assets/shaders/round_wire.wgsl` evaluates the same formula on the graphics card; change both.
+//! `assets/shaders/tube.wgsl` evaluates the same formula on the graphics card; change both.
 
 use super::{Handedness, Helix, HelixEnds};
 use bevy::math::Vec3;
