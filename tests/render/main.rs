@@ -5,11 +5,9 @@
 
 mod batches;
 mod canvas;
-mod living;
 #[allow(dead_code, reason = "the examples use more of it")]
 #[path = "../../examples/stage/offscreen.rs"]
 mod offscreen;
-mod references;
 mod sight;
 mod wire;
 
