@@ -52,3 +52,5 @@ mod visual_data;
 mod visual_looks;
 #[cfg(feature = "visual")]
 mod visual_rest;
+#[cfg(feature = "visual")]
+mod visual_torsion;

@@ -9,6 +9,7 @@ mod canvas;
 #[path = "../../examples/stage/offscreen.rs"]
 mod offscreen;
 mod sight;
+mod spiral;
 mod wire;
 
 use bevy::prelude::*;
