@@ -1,5 +1,5 @@
-//! Two torsion springs with dampers: a disc that turns to and fro below a wire, and a wheel's arm on a bar
-//! that is twisted by what the wheel carries.
+//! Two torsion springs with dampers: a balance wheel that turns to and fro on a spiral spring, as in a clock, and a
+//! wheel's arm on a bar that is twisted by what the wheel carries.
 //!
 //! Opens a window where there is a display; `--screenshot FILE` and `--headless` do without.
 
@@ -11,12 +11,12 @@ use bevy_rapier3d::prelude::*;
 use stage::{Begin, Finding, Paint, PictureAt, Shape, Stage, Track, tracks};
 use std::f32::consts::TAU;
 
-/// Of the disc about its axis, kg m².
+/// Of the balance wheel about its axis, kg m².
 const INERTIA: f32 = 0.05;
 /// N m/rad, N m s/rad
-const WIRE: f32 = 0.8;
-const WIRE_DAMPING: f32 = 0.012;
-/// How far the disc is twisted at first, rad: nearly half a turn.
+const SPIRAL: f32 = 0.8;
+const SPIRAL_DAMPING: f32 = 0.012;
+/// How far the spiral is twisted at first, rad: nearly half a turn.
 const TWIST: f32 = 3.0;
 
 /// Of the arm, m, and what hangs on its end, kg.
@@ -34,7 +34,7 @@ fn main() -> AppExit {
         title: "torsion_bar",
         setup: |app| {
             app.insert_resource(PictureAt(0.62))
-                .add_systems(Begin, (wire, bar).chain());
+                .add_systems(Begin, (balance, bar).chain());
         },
         seconds: 12.0,
         again: 20.0,
@@ -44,57 +44,61 @@ fn main() -> AppExit {
     })
 }
 
-fn wire(mut commands: Commands) {
+fn balance(mut commands: Commands) {
     commands.spawn(stage::floor());
-    let x = -0.95;
-    let beam = commands
+    let middle = Vec3::new(-0.95, 0.85, 0.0);
+    let along_z = Quat::from_rotation_x(TAU / 4.0);
+    let stand = commands
         .spawn((
             RigidBody::Fixed,
-            Transform::from_xyz(x, 1.65, 0.0),
-            Shape::Cuboid(Vec3::new(0.7, 0.1, 0.3), Paint::Iron),
+            Transform::from_translation(middle),
+            Visibility::default(),
             children![
                 (
-                    Transform::from_xyz(0.0, -0.6, 0.0),
-                    Shape::Cylinder(0.012, 1.1, Paint::Ivory),
+                    Transform::from_xyz(0.0, -0.36, -0.16),
+                    Shape::Cuboid(Vec3::new(0.14, 0.98, 0.1), Paint::Iron),
                 ),
                 (
-                    Transform::from_xyz(-0.4, -0.775, 0.0),
-                    Shape::Cuboid(Vec3::new(0.1, 1.75, 0.3), Paint::Iron),
+                    Transform::from_xyz(0.0, 0.0, -0.03).with_rotation(along_z),
+                    Shape::Cylinder(0.03, 0.3, Paint::Iron),
                 ),
             ],
         ))
         .id();
-    let disc = commands
+    let wheel = commands
         .spawn((
             RigidBody::Dynamic,
             AdditionalMassProperties::MassProperties(MassProperties {
                 mass: 4.0,
-                principal_inertia: Vec3::new(0.03, INERTIA, 0.03),
+                principal_inertia: Vec3::new(0.03, 0.03, INERTIA),
                 ..default()
             }),
             LockedAxes::TRANSLATION_LOCKED
                 | LockedAxes::ROTATION_LOCKED_X
-                | LockedAxes::ROTATION_LOCKED_Z,
-            Transform::from_xyz(x, 0.5, 0.0),
-            Shape::Cylinder(0.28, 0.06, Paint::Blue),
+                | LockedAxes::ROTATION_LOCKED_Y,
+            Transform::from_translation(middle),
+            Visibility::default(),
             children![
+                (
+                    Transform::from_rotation(along_z),
+                    Shape::Cylinder(0.36, 0.06, Paint::Blue),
+                ),
                 // What shows how far it has turned.
                 (
-                    Transform::from_xyz(0.15, 0.04, 0.0),
-                    Shape::Cuboid(Vec3::new(0.24, 0.04, 0.05), Paint::Ivory),
-                ),
-                (
-                    Transform::from_xyz(0.0, 0.06, 0.0),
-                    Shape::Cylinder(0.035, 0.07, Paint::Iron),
+                    Transform::from_xyz(0.3, 0.0, 0.035),
+                    Shape::Cuboid(Vec3::new(0.1, 0.05, 0.03), Paint::Ivory),
                 ),
             ],
         ))
         .id();
     commands.spawn((
-        TorsionSpringDamper::new(beam, disc, Vec3::Y)
-            .with_stiffness(WIRE)
-            .with_damping(WIRE_DAMPING)
+        TorsionSpringDamper::new(stand, wheel, Vec3::Z)
+            .with_stiffness(SPIRAL)
+            .with_damping(SPIRAL_DAMPING)
             .with_rest_angle(TWIST),
+        TorsionCoil::new(0.24, 4.0)
+            .with_center(Vec3::Z * 0.08)
+            .with_color(Color::srgb(0.85, 0.62, 0.10)),
         Track::default(),
     ));
 }
@@ -179,8 +183,8 @@ fn level() -> f32 {
 
 fn check(world: &mut World) -> Vec<Finding> {
     let tracks = tracks(world);
-    let decay = WIRE_DAMPING / (2.0 * INERTIA);
-    let turn = (WIRE / INERTIA - decay * decay).sqrt();
+    let decay = SPIRAL_DAMPING / (2.0 * INERTIA);
+    let turn = (SPIRAL / INERTIA - decay * decay).sqrt();
     let error = tracks[0].error(|t| {
         TWIST - TWIST * (-decay * t).exp() * ((turn * t).cos() + decay / turn * (turn * t).sin())
     });
@@ -199,7 +203,7 @@ fn check(world: &mut World) -> Vec<Finding> {
     };
     let rest = tracks[1].last();
     vec![
-        Finding::close("period of the disc", period, TAU / turn, "s", 2e-4),
+        Finding::close("period of the balance wheel", period, TAU / turn, "s", 2e-4),
         Finding::close(
             "what a period leaves",
             fades,

@@ -34,7 +34,7 @@ pub use settings::CoiloverSettings;
 pub use visual::{
     Coil, Coilover, CoiloverVisualPlugin, CoiloverVisualSystems, Handedness, Helix, HelixEnds,
     HelixError, HelixMeshBuilder, RoundWire, RoundWireMaterial, ShowSpringGizmos, SpringGizmos,
-    SpringSkin, Telescope, WoundCoil, coilover,
+    SpringSkin, Telescope, TorsionCoil, WoundCoil, coilover,
 };
 
 use bevy::app::{PluginGroup, PluginGroupBuilder};
@@ -167,6 +167,6 @@ pub mod prelude {
     pub use crate::{
         Coil, Coilover, CoiloverVisualPlugin, CoiloverVisualSystems, Handedness, Helix, HelixEnds,
         RoundWire, RoundWireMaterial, ShowSpringGizmos, SpringGizmos, SpringSkin, Telescope,
-        WoundCoil, coilover,
+        TorsionCoil, WoundCoil, coilover,
     };
 }

@@ -226,5 +226,6 @@ fn notice_strays(app: &mut App) {
     {
         notice::<crate::Coil>(app, Role::Look, "Coil");
         notice::<crate::Telescope>(app, Role::Look, "Telescope");
+        notice::<crate::TorsionCoil>(app, Role::Spiral, "TorsionCoil");
     }
 }

@@ -5,26 +5,21 @@ use super::progress::Progress;
 use super::{DT, PictureAt, Stage, look, offscreen, physics, say};
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
-use gif::{Encoder, Frame, Repeat};
-use image::imageops::FilterType;
-use std::fs::File;
-use std::io::BufWriter;
 use std::path::{Path, PathBuf};
 
 const SIZE: (u32, u32) = (1280, 720);
 /// Frames of a film.
 const FRAMES: u32 = 48;
-/// Pictures a second of an animation, its length in seconds, and its size.
+/// Pictures a second of the last seconds, and how many seconds these are; `pictures` makes an animation of them.
 const RATE: u32 = 20;
 const LENGTH: u32 = 3;
-const SMALL: (u16, u16) = (640, 360);
 
 /// Writes the pictures; whether the check holds is for the exit code too.
 pub fn shoot(stage: &Stage, film: Film) -> AppExit {
     let ticks = (stage.seconds / DT).round() as u32;
     let (frames, folder) = match &film {
         Film::Frames(folder) => (FRAMES, Some(folder.clone())),
-        Film::Animation(file) => (RATE * LENGTH, file.parent().map(PathBuf::from)),
+        Film::Last(folder) => (RATE * LENGTH, Some(folder.clone())),
         Film::Still(file) => (1, file.parent().map(PathBuf::from)),
     };
     if let Some(folder) = folder.filter(|f| !f.as_os_str().is_empty())
@@ -34,20 +29,9 @@ pub fn shoot(stage: &Stage, film: Film) -> AppExit {
         return AppExit::error();
     }
     let path = |frame: u32| match &film {
-        Film::Frames(folder) => folder.join(format!("frame_{frame:03}.png")),
-        Film::Animation(file) | Film::Still(file) => file.clone(),
+        Film::Frames(folder) | Film::Last(folder) => folder.join(format!("frame_{frame:03}.png")),
+        Film::Still(file) => file.clone(),
     };
-    let mut animation = match &film {
-        Film::Animation(file) => match Animation::begin(file) {
-            Ok(animation) => Some(animation),
-            Err(wrong) => {
-                eprintln!("{}: {wrong}", file.display());
-                return AppExit::error();
-            }
-        },
-        _ => None,
-    };
-
     let (mut app, image) = offscreen::app(SIZE.0, SIZE.1);
     app.add_plugins(CoiloverPlugins);
     physics(&mut app, stage, 1);
@@ -66,9 +50,8 @@ pub fn shoot(stage: &Stage, film: Film) -> AppExit {
         (Film::Still(_), Some(at)) => (at.0 / DT).round() as u32,
         _ => ticks,
     };
-    // An animation shows the end, in its own time.
     let begun = match &film {
-        Film::Animation(_) => ticks.saturating_sub((LENGTH as f32 / DT) as u32),
+        Film::Last(_) => ticks.saturating_sub((LENGTH as f32 / DT) as u32),
         _ => 0,
     };
     if begun > 0 {
@@ -85,11 +68,7 @@ pub fn shoot(stage: &Stage, film: Film) -> AppExit {
         let Some(picture) = picture else {
             continue;
         };
-        let saved = match &mut animation {
-            Some(animation) => animation.add(picture),
-            None => save(picture, &path(frame)),
-        };
-        match saved {
+        match save(picture, &path(frame)) {
             Ok(()) => {
                 taken += 1;
                 progress.taken(&path(frame));
@@ -120,31 +99,6 @@ fn save(picture: Image, path: &Path) -> Result<(), String> {
     let saved = picture.to_rgb8().save(&unfinished);
     saved.map_err(|e| e.to_string())?;
     std::fs::rename(unfinished, path).map_err(|e| e.to_string())
-}
-
-/// An animated GIF, picture by picture.
-struct Animation(Encoder<BufWriter<File>>);
-
-impl Animation {
-    fn begin(path: &Path) -> Result<Self, String> {
-        let file = BufWriter::new(File::create(path).map_err(|e| e.to_string())?);
-        let (width, height) = SMALL;
-        let encoder = Encoder::new(file, width, height, &[]).and_then(|mut encoder| {
-            encoder.set_repeat(Repeat::Infinite)?;
-            Ok(encoder)
-        });
-        encoder.map(Self).map_err(|e| e.to_string())
-    }
-
-    fn add(&mut self, picture: Image) -> Result<(), String> {
-        let picture = picture.try_into_dynamic().map_err(|e| e.to_string())?;
-        let (width, height) = SMALL;
-        let small = picture.resize_exact(width.into(), height.into(), FilterType::Triangle);
-        let mut frame = Frame::from_rgb_speed(width, height, &small.to_rgb8(), 10);
-        // Hundredths of a second.
-        frame.delay = (100 / RATE) as u16;
-        self.0.write_frame(&frame).map_err(|e| e.to_string())
-    }
 }
 
 /// So many fixed ticks in one update.

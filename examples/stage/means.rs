@@ -8,8 +8,8 @@ use std::path::PathBuf;
 pub enum Film {
     /// Several through the whole time, numbered, in a folder.
     Frames(PathBuf),
-    /// The last seconds of it as one animated GIF.
-    Animation(PathBuf),
+    /// All of its last seconds, numbered, in a folder.
+    Last(PathBuf),
     /// The last one.
     Still(PathBuf),
 }
@@ -32,7 +32,7 @@ impl fmt::Display for Means {
             Means::Film { film, adapter, why } => {
                 let place = match film {
                     Film::Frames(folder) => format!("frames into {}", folder.display()),
-                    Film::Animation(file) => format!("an animation into {}", file.display()),
+                    Film::Last(folder) => format!("its last seconds into {}", folder.display()),
                     Film::Still(file) => format!("a picture into {}", file.display()),
                 };
                 write!(f, "rendering {place} with {adapter}, because {why}")

@@ -86,7 +86,7 @@ impl Arguments {
                 "--frames" => out.film = Some(Film::Frames(path()?)),
                 // Read by the scenes that have something to plot.
                 "--plot" => drop(path()?),
-                "--film" => out.film = Some(Film::Animation(path()?)),
+                "--film" => out.film = Some(Film::Last(path()?)),
                 _ => return Err(format!("unknown argument {word}")),
             }
         }
@@ -107,7 +107,7 @@ pub fn run(stage: &Stage) -> AppExit {
         Ok(arguments) => arguments,
         Err(wrong) => {
             eprintln!(
-                "{wrong}; use --headless, --minutes NUMBER, --screenshot FILE, --frames FOLDER or --film FILE"
+                "{wrong}; use --headless, --minutes NUMBER, --screenshot FILE, --frames FOLDER or --film FOLDER"
             );
             return AppExit::error();
         }

@@ -19,6 +19,9 @@ pub(crate) enum Role {
     /// It draws a linear element.
     #[cfg_attr(not(feature = "visual"), allow(dead_code))]
     Look,
+    /// It draws a torsion element.
+    #[cfg_attr(not(feature = "visual"), allow(dead_code))]
+    Spiral,
 }
 
 /// Entities that have a companion or a look, and had no element when that came.
@@ -35,6 +38,7 @@ pub(crate) struct Strays {
 struct Stray {
     names: Vec<&'static str>,
     looks: Vec<&'static str>,
+    spirals: Vec<&'static str>,
     left: u8,
 }
 
@@ -47,12 +51,13 @@ pub(crate) fn notice<C: Component>(app: &mut App, role: Role, name: &'static str
               mut strays: ResMut<Strays>| {
             let entity = added.entity;
             #[cfg(feature = "visual")]
-            if role == Role::Look {
+            if role != Role::Companion {
                 strays.undrawn.get_or_insert(false);
             }
             let at_home = match role {
                 Role::Companion => elements.contains(entity),
                 Role::Look => linear.contains(entity),
+                Role::Spiral => elements.contains(entity) && !linear.contains(entity),
             };
             if at_home || strays.told.contains(&entity) {
                 return;
@@ -60,11 +65,13 @@ pub(crate) fn notice<C: Component>(app: &mut App, role: Role, name: &'static str
             let stray = strays.waiting.entry(entity).or_insert(Stray {
                 names: Vec::new(),
                 looks: Vec::new(),
+                spirals: Vec::new(),
                 left: GRACE,
             });
             let list = match role {
                 Role::Companion => &mut stray.names,
                 Role::Look => &mut stray.looks,
+                Role::Spiral => &mut stray.spirals,
             };
             if !list.contains(&name) {
                 list.push(name);
@@ -96,7 +103,7 @@ pub(crate) fn tell_strays(
         strays.undrawn = Some(true);
         if drawn.is_none() {
             log::warn!(
-                "bevy_coilover: there is a Coil or a Telescope, but CoiloverVisualPlugin is missing, so nothing \
+                "bevy_coilover: there is a Coil, a Telescope or a TorsionCoil, but CoiloverVisualPlugin is missing, so nothing \
                  is drawn; add CoiloverPlugins instead of CoiloverPlugin"
             );
         }
@@ -107,7 +114,9 @@ pub(crate) fn tell_strays(
             return false;
         }
         let is_element = elements.contains(entity);
-        if is_element && (stray.looks.is_empty() || linear.contains(entity)) {
+        let is_linear = linear.contains(entity);
+        let misplaced = if is_linear { &stray.spirals } else { &stray.looks };
+        if is_element && misplaced.is_empty() {
             return false;
         }
         stray.left -= 1;
@@ -116,13 +125,17 @@ pub(crate) fn tell_strays(
         }
         told.insert(entity);
         if is_element {
-            let looks = stray.looks.join(", ");
+            let looks = misplaced.join(", ");
+            let (on, other) = if is_linear {
+                ("linear", "Coil or Telescope")
+            } else {
+                ("torsion", "TorsionCoil")
+            };
             log::warn!(
-                "{entity}: {looks}: stands on a torsion element, and these are not drawn; give a torsion bar a mesh \
-                 of its own"
+                "{entity}: {looks}: stands on a {on} element, which it does not draw; use a {other}"
             );
         } else {
-            let all = [&stray.names[..], &stray.looks[..]].concat().join(", ");
+            let all = [&stray.names[..], &stray.looks[..], &stray.spirals[..]].concat().join(", ");
             log::warn!(
                 "{entity}: {all}: stands on an entity without an element, so it does nothing; put it on the \
                  entity that has the Spring, Damper, SpringDamper or torsion element"

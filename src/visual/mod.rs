@@ -4,7 +4,7 @@
 //! ends are, which way [`heading`] turns what is between them and how finely [`views`] finds that worth
 //! drawing, and [`lay`] lays the parts there as [`layout`] says. [`helix`] is the
 //! coil's mesh, [`round_wire`] the material that keeps its wire round when it is stretched, and [`shapes`]
-//! keeps one of each for all equal springs.
+//! keeps one of each for all equal springs. [`twist`] does all of that for the [`spiral`] of a torsion element.
 
 mod coil;
 mod coilover;
@@ -19,7 +19,10 @@ mod place;
 mod round_wire;
 mod shapes;
 mod skin;
+mod spiral;
 mod telescope;
+mod torsion_coil;
+mod twist;
 mod views;
 
 pub use coil::{Coil, WoundCoil};
@@ -29,6 +32,7 @@ pub use helix::{Handedness, Helix, HelixEnds, HelixError, HelixMeshBuilder};
 pub use round_wire::{RoundWire, RoundWireMaterial};
 pub use skin::SpringSkin;
 pub use telescope::Telescope;
+pub use torsion_coil::TorsionCoil;
 
 use bevy::asset::{AssetServer, Assets};
 use bevy::camera::visibility::VisibilitySystems;
@@ -36,7 +40,8 @@ use bevy::mesh::Mesh;
 use bevy::pbr::StandardMaterial;
 use bevy::prelude::*;
 
-/// Draws [`Coil`] and [`Telescope`] between the ends of their element, and [`SpringGizmos`].
+/// Draws [`Coil`] and [`Telescope`] between the ends of their element, [`TorsionCoil`] on its axis, and
+/// [`SpringGizmos`].
 ///
 /// Add it after `DefaultPlugins`. It needs Bevy's assets, meshes and PBR materials; where they are missing
 /// it says so once and draws nothing.
@@ -58,11 +63,13 @@ impl Plugin for CoiloverVisualPlugin {
         app.register_type::<Coil>()
             .register_type::<Telescope>()
             .register_type::<SpringSkin>()
+            .register_type::<TorsionCoil>()
             .register_type::<ShowSpringGizmos>()
             .register_type::<SpringGizmos>()
             .register_type::<Helix>()
             .register_type::<RoundWire>()
             .init_resource::<shapes::Shapes>()
+            .init_resource::<twist::Spirals>()
             .insert_resource(IsDrawn)
             .add_systems(PreStartup, say_what_is_missing)
             .configure_sets(
@@ -84,6 +91,12 @@ impl Plugin for CoiloverVisualPlugin {
                     place::place,
                     lay::lay,
                 )
+                    .chain()
+                    .in_set(CoiloverVisualSystems),
+            )
+            .add_systems(
+                PostUpdate,
+                (twist::wind, twist::turn, twist::lay)
                     .chain()
                     .in_set(CoiloverVisualSystems),
             );

@@ -31,7 +31,7 @@ pub(super) struct Workshop<'w, 's> {
     commands: Commands<'w, 's>,
 }
 
-const STEEL: Color = Color::srgb(0.78, 0.79, 0.82);
+pub(super) const STEEL: Color = Color::srgb(0.78, 0.79, 0.82);
 const RUBBER: Color = Color::srgb(0.05, 0.05, 0.05);
 
 impl Workshop<'_, '_> {

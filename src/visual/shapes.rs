@@ -85,7 +85,7 @@ fn unit(coil: &Coil) -> Helix {
     coil.helix(1.0)
 }
 
-fn is_used<A: Asset>(handle: &Handle<A>) -> bool {
+pub(super) fn is_used<A: Asset>(handle: &Handle<A>) -> bool {
     match handle {
         Handle::Strong(strong) => Arc::strong_count(strong) > 1,
         Handle::Uuid(..) => true,

@@ -1,11 +1,11 @@
 //! Are elements plain data: reflected, mapped between worlds, written in scenes?
 
+use crate::compat::rig;
 use crate::harness::*;
 use bevy::ecs::entity::EntityHashMap;
 use bevy::ecs::reflect::AppTypeRegistry;
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
-use bevy_rapier3d::prelude::*;
 use std::collections::BTreeSet;
 
 /// Everything of ours in the type registry, by the path that a saved scene writes.
@@ -105,15 +105,6 @@ fn a_scene_macro_names_the_ends() {
         bevy::scene::ScenePlugin,
     ));
     lab.prime();
-    fn rig() -> impl Scene {
-        bsn! {
-            Children [
-                #Hook Transform { translation: Vec3 { x: 0.0, y: 2.0, z: 0.0 } },
-                #Weight Transform bevy::scene::template_value(RigidBody::Dynamic) bevy::scene::template_value(AdditionalMassProperties::Mass(1.0)),
-                SpringDamper { body_a: #Hook, body_b: #Weight, stiffness: 100.0, damping: 1.0 },
-            ]
-        }
-    }
     lab.app
         .world_mut()
         .spawn_scene(rig())

@@ -1,5 +1,6 @@
 //! A headless app with the real Rapier pipeline, stepped tick by tick.
 
+use crate::compat::begin;
 use bevy::ecs::schedule::SingleThreadedExecutor;
 use bevy::prelude::*;
 use bevy::time::TimeUpdateStrategy;
@@ -64,18 +65,11 @@ impl Lab {
     pub fn without_plugin(engine: Engine) -> Self {
         let mut app = App::new();
         let mut rapier = RapierPhysicsPlugin::<NoUserData>::default().in_fixed_schedule();
-        rapier = rapier.with_custom_initialization(
-            RapierContextInitialization::InitializeDefaultRapierContext {
-                integration_parameters: bevy_rapier3d::rapier::dynamics::IntegrationParameters {
-                    num_solver_iterations: engine.iterations,
-                    ..default()
-                },
-                rapier_configuration: RapierConfiguration {
-                    gravity: engine.gravity,
-                    ..RapierConfiguration::new(1.0)
-                },
-            },
-        );
+        let parameters = bevy_rapier3d::rapier::dynamics::IntegrationParameters {
+            num_solver_iterations: engine.iterations,
+            ..default()
+        };
+        rapier = rapier.with_custom_initialization(begin(parameters, engine.gravity));
         let tick = Duration::from_secs_f32(engine.dt);
         app.add_plugins((MinimalPlugins, TransformPlugin))
             .insert_resource(TimestepMode::Fixed {

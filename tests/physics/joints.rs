@@ -171,11 +171,11 @@ fn a_spring_between_two_links_of_a_multibody_keeps_its_frequency_and_its_energy(
         let slider = |at: f32| PrismaticJointBuilder::new(Vec3::X).local_anchor1(Vec3::X * at);
         let first = lab.spawn((
             body(masses[0], Vec3::ZERO),
-            MultibodyJoint::new(rail, slider(0.0).build().into()),
+            MultibodyJoint::new(rail, TypedJoint::PrismaticJoint(slider(0.0).build())),
         ));
         let second = lab.spawn((
             body(masses[1], Vec3::X * 1.1),
-            MultibodyJoint::new(first, slider(1.1).build().into()),
+            MultibodyJoint::new(first, TypedJoint::PrismaticJoint(slider(1.1).build())),
         ));
         lab.spawn(
             SpringDamper::new(first, second)

@@ -1,5 +1,12 @@
 //! Springs and dampers on the real Rapier pipeline, by physical question.
 
+/// What differs between versions of Bevy. The folder of each manifest has its own.
+mod compat {
+    include!(concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/tests/physics/compat.rs"
+    ));
+}
 mod fit;
 mod harness;
 
@@ -45,3 +52,5 @@ mod visual_data;
 mod visual_looks;
 #[cfg(feature = "visual")]
 mod visual_rest;
+#[cfg(feature = "visual")]
+mod visual_torsion;

@@ -87,7 +87,9 @@ fn looks_without_an_element_and_on_a_torsion_element_are_told() {
     assert!(
         of(lone).is_some_and(|t| t.contains("Coil, Telescope") && t.contains("without an element"))
     );
-    assert!(of(bar).is_some_and(|t| t.contains("Coil") && t.contains("torsion element")));
+    assert!(of(bar).is_some_and(|t| t.contains("Coil")
+        && t.contains("torsion element")
+        && t.contains("use a TorsionCoil")));
     assert!(of(linear).is_none());
 }
 

@@ -268,6 +268,7 @@ fn what_is_drawn_reflects() {
         "Coil",
         "Telescope",
         "SpringSkin",
+        "TorsionCoil",
         "ShowSpringGizmos",
         "SpringGizmos",
         "Helix",

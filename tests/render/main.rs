@@ -5,12 +5,11 @@
 
 mod batches;
 mod canvas;
-mod living;
 #[allow(dead_code, reason = "the examples use more of it")]
 #[path = "../../examples/stage/offscreen.rs"]
 mod offscreen;
-mod references;
 mod sight;
+mod spiral;
 mod wire;
 
 use bevy::prelude::*;

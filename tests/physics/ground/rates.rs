@@ -2,6 +2,7 @@
 
 use super::scenes::*;
 use super::stand::*;
+use crate::compat::begin;
 use crate::harness::*;
 use bevy::prelude::*;
 use bevy::time::TimeUpdateStrategy;
@@ -73,15 +74,8 @@ fn at_any_rate_a_box_at_a_wall_does_not_tremble() {
 /// A lab that steps once a frame, as its timestep mode says.
 fn frames(mode: TimestepMode) -> Stand {
     let mut app = App::new();
-    let rapier = RapierPhysicsPlugin::<NoUserData>::default().with_custom_initialization(
-        RapierContextInitialization::InitializeDefaultRapierContext {
-            integration_parameters: default(),
-            rapier_configuration: RapierConfiguration {
-                gravity: Engine::default().gravity,
-                ..RapierConfiguration::new(1.0)
-            },
-        },
-    );
+    let rapier = RapierPhysicsPlugin::<NoUserData>::default()
+        .with_custom_initialization(begin(default(), Engine::default().gravity));
     app.add_plugins((MinimalPlugins, TransformPlugin))
         .insert_resource(mode)
         .insert_resource(TimeUpdateStrategy::ManualDuration(Duration::ZERO))

@@ -1,9 +1,10 @@
 //! Do the examples still look as they should after ten minutes in their windows? Nothing is drawn for that: each
 //! example watches where its bodies are.
 
-use crate::references::command;
-use std::path::Path;
-use std::process::{Command, Stdio};
+#![allow(missing_docs, reason = "a test")]
+
+use pictures::command;
+use std::process::Stdio;
 
 /// Scenes, and the minutes that each is watched.
 const SCENES: [(&str, &str); 19] = [
@@ -30,12 +31,11 @@ const SCENES: [(&str, &str); 19] = [
 
 #[test]
 fn after_ten_minutes_nothing_has_left_the_picture_or_lies_askew() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     // Two at a time; each is one thread's work.
     for pair in SCENES.chunks(2) {
         let begin = |(scene, minutes): &(&'static str, &str)| {
-            let mut watched: Command = command(root, scene);
-            watched.current_dir(root).args(["--minutes", minutes]);
+            let mut watched = command(scene);
+            watched.args(["--minutes", minutes]);
             watched.stdout(Stdio::piped()).stderr(Stdio::piped());
             (*scene, watched.spawn().expect("the example starts"))
         };

@@ -1,0 +1,31 @@
+// What the tests write otherwise with another version of Bevy and Rapier; `tests/physics/compat.rs` is the twin.
+
+use bevy::prelude::*;
+use bevy_coilover::prelude::*;
+use bevy_rapier3d::prelude::*;
+use bevy_rapier3d::rapier::dynamics::IntegrationParameters;
+
+/// How a context begins.
+pub fn begin(parameters: IntegrationParameters, gravity: Vec3) -> RapierContextInitialization {
+    RapierContextInitialization::InitializeDefaultRapierContext {
+        broad_phase_optimization_strategy: default(),
+        integration_parameters: parameters,
+        rapier_configuration: RapierConfiguration {
+            gravity,
+            ..RapierConfiguration::new(1.0)
+        },
+    }
+}
+
+/// A weight of 1 kg on a spring of 100 N/m below a hook.
+pub fn rig() -> impl Scene {
+    bsn! {
+        Children [
+            #Hook Transform { translation: Vec3 { x: 0.0, y: 2.0, z: 0.0 } }
+            --
+            #Weight Transform ~{RigidBody::Dynamic} ~{AdditionalMassProperties::Mass(1.0)}
+            --
+            SpringDamper { body_a: #Hook, body_b: #Weight, stiffness: 100.0, damping: 1.0 }
+        ]
+    }
+}

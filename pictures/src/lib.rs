@@ -1,0 +1,56 @@
+//! What tests and films share: how to run an example.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::time::SystemTime;
+
+/// Where the examples are.
+pub fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+}
+
+/// An example, run in the root folder: as it was built along with this program, if that is newer than all sources; else
+/// by cargo, which for a whole workspace would first build Bevy again with one package's features alone.
+pub fn command(scene: &str) -> Command {
+    let root = root();
+    let mut command = match built(&root, scene) {
+        Some(built) => Command::new(built),
+        None => {
+            let mut cargo = Command::new("cargo");
+            cargo.args(["run", "--quiet", "--example", scene, "--"]);
+            cargo
+        }
+    };
+    command.current_dir(root);
+    command
+}
+
+fn built(root: &Path, scene: &str) -> Option<PathBuf> {
+    let program = std::env::current_exe().ok()?;
+    let name = format!("{scene}{}", std::env::consts::EXE_SUFFIX);
+    // Tests are in a folder `deps` of their profile's, programs beside it.
+    let built = program
+        .ancestors()
+        .skip(1)
+        .take(2)
+        .map(|folder| folder.join("examples").join(&name))
+        .find(|built| built.exists())?;
+    let age = built.metadata().ok()?.modified().ok()?;
+    let sources = newest(&root.join("src")).max(newest(&root.join("examples")));
+    (age >= sources?).then_some(built)
+}
+
+/// When anything in a folder was changed last.
+fn newest(folder: &Path) -> Option<SystemTime> {
+    let mut latest = None;
+    for entry in std::fs::read_dir(folder).ok()?.flatten() {
+        let path = entry.path();
+        let time = if path.is_dir() {
+            newest(&path)
+        } else {
+            entry.metadata().ok().and_then(|m| m.modified().ok())
+        };
+        latest = latest.max(time);
+    }
+    latest
+}

@@ -1,0 +1,216 @@
+//! The strip of a spiral spring as a mesh: about Y, its outer end on X.
+
+use super::helix::Handedness;
+use super::torsion_coil::TorsionCoil;
+use bevy::asset::RenderAssetUsages;
+use bevy::mesh::{Indices, Mesh, PrimitiveTopology};
+use bevy::prelude::*;
+use std::f32::consts::TAU;
+
+/// Segments of a turn.
+const SEGMENTS: f32 = 40.0;
+/// However far it is unwound, so much of a turn is left.
+const LEAST_TURNS: f32 = 0.25;
+
+/// Meshes are made for whole degrees: so many in a full turn.
+const STEPS: f32 = 360.0;
+
+/// Twist from rest in whole steps, positive where it winds up.
+pub(super) fn step(twist: f32) -> i32 {
+    (twist * (STEPS / TAU)).round() as i32
+}
+
+/// The angle of the strip from end to end, rad.
+fn angle(coil: &TorsionCoil, step: i32) -> f32 {
+    TAU * (coil.turns + step as f32 / STEPS).clamp(LEAST_TURNS, 2.0 * coil.turns + 1.0)
+}
+
+/// 1 where the strip goes outwards by the right hand about the axis, else -1.
+pub(super) fn hand(coil: &TorsionCoil) -> f32 {
+    match coil.handedness {
+        Handedness::Right => 1.0,
+        Handedness::Left => -1.0,
+    }
+}
+
+/// The strip at a twist.
+pub(super) fn mesh(coil: &TorsionCoil, step: i32) -> Mesh {
+    let hand = hand(coil);
+    let whole = angle(coil, step);
+    let count = (whole / TAU * SEGMENTS).ceil() as u32;
+    let mut strip = Strip::default();
+    for i in 0..=count {
+        // Share of the way from the inner end.
+        let share = i as f32 / count as f32;
+        let radius = coil.arbor_radius + (coil.radius - coil.arbor_radius) * share;
+        let turned = -hand * whole * (1.0 - share);
+        let (sine, cosine) = turned.sin_cos();
+        // Positive about Y is from X towards -Z.
+        let outward = Vec3::new(cosine, 0.0, -sine);
+        strip.ring(radius * outward, outward, coil);
+        if i > 0 {
+            strip.sides();
+        }
+    }
+    strip.caps(hand);
+    strip.mesh()
+}
+
+/// A rectangle's corners, and the faces that leave each: outer side, top, inner side, bottom.
+const SIDES: usize = 4;
+const VERTICES: u32 = 2 * SIDES as u32;
+
+#[derive(Default)]
+struct Strip {
+    positions: Vec<Vec3>,
+    normals: Vec<Vec3>,
+    uvs: Vec<Vec2>,
+    indices: Vec<u32>,
+}
+
+impl Strip {
+    /// The section at one place of the strip.
+    fn ring(&mut self, middle: Vec3, outward: Vec3, coil: &TorsionCoil) {
+        let (thick, wide) = (0.5 * coil.thickness * outward, 0.5 * coil.width * Vec3::Y);
+        let corners = [
+            middle + thick - wide,
+            middle + thick + wide,
+            middle - thick + wide,
+            middle - thick - wide,
+        ];
+        let normals = [outward, Vec3::Y, -outward, Vec3::NEG_Y];
+        for (side, normal) in normals.into_iter().enumerate() {
+            for corner in [corners[side], corners[(side + 1) % SIDES]] {
+                self.positions.push(corner);
+                self.normals.push(normal);
+                self.uvs.push(Vec2::ZERO);
+            }
+        }
+    }
+
+    /// Faces between the last two sections.
+    fn sides(&mut self) {
+        let here = self.positions.len() as u32 - VERTICES;
+        let before = here - VERTICES;
+        for side in (0..VERTICES).step_by(2) {
+            let corners = [
+                before + side,
+                before + side + 1,
+                here + side + 1,
+                here + side,
+            ];
+            self.face(corners);
+        }
+    }
+
+    /// What closes both ends.
+    fn caps(&mut self, hand: f32) {
+        let last = self.positions.len() as u32 - VERTICES;
+        for (ring, end) in [(0, -1.0), (last, 1.0)] {
+            let first = self.positions.len() as u32;
+            let outward = self.normals[ring as usize];
+            let normal = end * hand * Vec3::Y.cross(outward);
+            for side in (0..VERTICES).step_by(2) {
+                self.positions.push(self.positions[(ring + side) as usize]);
+                self.normals.push(normal);
+                self.uvs.push(Vec2::ZERO);
+            }
+            self.face([first, first + 1, first + 2, first + 3]);
+        }
+    }
+
+    /// Two triangles, turned so that they face the way of their normal.
+    fn face(&mut self, [a, b, c, d]: [u32; 4]) {
+        let at = |i: u32| self.positions[i as usize];
+        let faced = (at(b) - at(a)).cross(at(c) - at(a));
+        let corners = if faced.dot(self.normals[a as usize]) >= 0.0 {
+            [a, b, c, a, c, d]
+        } else {
+            [a, c, b, a, d, c]
+        };
+        self.indices.extend(corners);
+    }
+
+    fn mesh(self) -> Mesh {
+        Mesh::new(
+            PrimitiveTopology::TriangleList,
+            RenderAssetUsages::default(),
+        )
+        .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, self.positions)
+        .with_inserted_attribute(Mesh::ATTRIBUTE_NORMAL, self.normals)
+        .with_inserted_attribute(Mesh::ATTRIBUTE_UV_0, self.uvs)
+        .with_inserted_indices(Indices::U32(self.indices))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bevy::mesh::VertexAttributeValues;
+
+    fn positions(mesh: &Mesh) -> Vec<Vec3> {
+        match mesh.attribute(Mesh::ATTRIBUTE_POSITION) {
+            Some(VertexAttributeValues::Float32x3(all)) => {
+                all.iter().copied().map(Vec3::from).collect()
+            }
+            _ => Vec::new(),
+        }
+    }
+
+    /// The middle of the strip at its inner and at its outer end.
+    fn ends(mesh: &Mesh) -> [Vec3; 2] {
+        let all = positions(mesh);
+        let rings = all.len() - 2 * SIDES;
+        let middle = |ring: &[Vec3]| ring.iter().sum::<Vec3>() / ring.len() as f32;
+        let size = VERTICES as usize;
+        [middle(&all[..size]), middle(&all[rings - size..rings])]
+    }
+
+    #[test]
+    fn the_outer_end_stays_on_x_and_the_inner_one_goes_back_by_the_twist() {
+        for handedness in [Handedness::Right, Handedness::Left] {
+            let coil = TorsionCoil::new(0.2, 3.0).with_handedness(handedness);
+            let [rest, outer] = ends(&mesh(&coil, 0));
+            assert!(outer.distance(0.2 * Vec3::X) < 1e-6, "{outer}");
+            assert!((rest.length() - coil.arbor_radius).abs() < 1e-6);
+            let [wound, outer] = ends(&mesh(&coil, 90));
+            assert!(outer.distance(0.2 * Vec3::X) < 1e-6, "{outer}");
+            let back = Quat::from_rotation_y(-hand(&coil) * TAU / 4.0) * rest;
+            assert!(wound.distance(back) < 1e-6, "{wound} is not {back}");
+        }
+    }
+
+    #[test]
+    fn all_faces_look_outwards_whichever_way_it_is_wound() {
+        for handedness in [Handedness::Right, Handedness::Left] {
+            let coil = TorsionCoil::new(0.2, 3.0).with_handedness(handedness);
+            let mesh = mesh(&coil, 17);
+            let all = positions(&mesh);
+            let Some(Indices::U32(indices)) = mesh.indices() else {
+                panic!("indices");
+            };
+            // Of a closed surface that looks outwards, the volume is positive: here, that of the strip.
+            let volume: f32 = indices
+                .chunks(3)
+                .map(|t| {
+                    let [a, b, c] = [t[0], t[1], t[2]].map(|i| all[i as usize]);
+                    a.dot(b.cross(c)) / 6.0
+                })
+                .sum();
+            let mean = 0.5 * (coil.radius + coil.arbor_radius);
+            let length = TAU * (coil.turns + 17.0 / 360.0) * mean;
+            let wanted = length * coil.width * coil.thickness;
+            assert!((volume / wanted - 1.0).abs() < 0.01, "{volume} {wanted}");
+        }
+    }
+
+    #[test]
+    fn unwound_beyond_its_turns_a_piece_of_it_is_left() {
+        let coil = TorsionCoil::new(0.2, 1.0);
+        for step in [-300, -1_000_000, 1_000_000] {
+            let mesh = mesh(&coil, step);
+            assert!(positions(&mesh).iter().all(|p| p.is_finite()));
+            assert!(mesh.count_vertices() < 2_000);
+        }
+    }
+}

@@ -1,0 +1,330 @@
+//! Spirals of torsion elements: their parts are spawned, turned with the bodies, and wound up.
+
+use super::shapes::{Finish, Shapes};
+use super::spiral;
+use super::torsion_coil::TorsionCoil;
+use super::views::{Cameras, Views};
+use crate::element::{TorsionDamper, TorsionSpring, TorsionSpringDamper};
+use crate::readout::SpringReadout;
+use bevy::asset::{Assets, Handle};
+use bevy::ecs::query::QueryData;
+use bevy::ecs::system::SystemParam;
+use bevy::math::{Affine3A, Mat3A, Vec3A};
+use bevy::mesh::{Mesh, Mesh3d};
+use bevy::pbr::{MeshMaterial3d, StandardMaterial};
+use bevy::platform::collections::HashMap;
+use bevy::prelude::*;
+use bevy_rapier3d::prelude::Collider;
+use std::f32::consts::TAU;
+
+/// A spiral out of everyone's sight is turned every so many frames only: it may throw a shadow into the picture.
+const SELDOM: u32 = 8;
+/// Of what a spiral turns where nothing tells, m.
+const SIZE: f32 = 0.5;
+/// Meshes kept before the first search for those that nobody shows: a spring that swings shows the same few again.
+const KEPT: usize = 256;
+
+/// Where the spiral of an element is.
+#[derive(Component, Clone, Copy, Debug, Default)]
+pub struct Twist {
+    /// In metres; `None` while it is not drawn.
+    coil: Option<TorsionCoil>,
+    /// Size of what it turns when first drawn, m.
+    first: Option<f32>,
+    /// What its place follows from.
+    from: Option<Pose>,
+    /// In the world.
+    places: [GlobalTransform; 3],
+    step: i32,
+}
+
+/// What a place follows from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Pose {
+    rotation: Quat,
+    center: Vec3,
+    axis: Vec3,
+    /// Twist of body B against body A, and without moment, rad.
+    angle: f32,
+    rest: f32,
+}
+
+/// Parts of a spiral, in the order of [`Twist::places`].
+#[derive(Component, Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Winding {
+    Strip,
+    Arbor,
+    /// The pin at the outer end.
+    Pin,
+}
+
+/// The step of its twist that a strip shows.
+#[derive(Component, Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Wound(i32);
+
+/// A torsion element as it says itself what turns against what.
+#[derive(QueryData)]
+pub(super) struct Turn {
+    spring: Option<&'static TorsionSpring>,
+    damper: Option<&'static TorsionDamper>,
+    pair: Option<&'static TorsionSpringDamper>,
+    readout: Option<&'static SpringReadout>,
+}
+
+impl TurnItem<'_, '_> {
+    /// Both ends, the axis, and the rest angle if it has one.
+    fn element(&self) -> Option<(Entity, Entity, Vec3, Option<f32>)> {
+        if let Some(s) = self.spring {
+            Some((s.body_a, s.body_b, s.axis, s.rest_angle))
+        } else if let Some(p) = self.pair {
+            Some((p.body_a, p.body_b, p.axis, p.rest_angle))
+        } else {
+            let d = self.damper?;
+            Some((d.body_a, d.body_b, d.axis, None))
+        }
+    }
+}
+
+/// Where bodies are in this frame.
+#[derive(SystemParam)]
+pub(super) struct Turns<'w, 's> {
+    globals: Query<'w, 's, &'static GlobalTransform, Without<Winding>>,
+    colliders: Query<'w, 's, &'static Collider>,
+}
+
+impl Turns<'_, '_> {
+    fn pose(&self, turn: &TurnItem, center: Vec3) -> Option<Pose> {
+        let (a, b, axis, rest) = turn.element()?;
+        let axis = axis.try_normalize()?;
+        let (a, b) = (self.globals.get(a).ok()?, self.globals.get(b).ok()?);
+        let (rotation, other) = (a.rotation(), b.rotation());
+        let between = rotation.inverse() * other;
+        let twist = 2.0 * between.xyz().dot(axis).atan2(between.w);
+        // What is drawn may be between two steps, so the read-out tells full turns only.
+        let full = turn.readout.map_or(0.0, |r| r.length);
+        let angle = twist + TAU * ((full - twist) / TAU).round();
+        let center = a.transform_point(center);
+        let pose = Pose {
+            rotation,
+            center,
+            axis,
+            angle,
+            rest: rest.unwrap_or(0.0),
+        };
+        let is_finite = rotation.is_finite() && center.is_finite() && pose.angle.is_finite();
+        (is_finite && pose.rest.is_finite()).then_some(pose)
+    }
+
+    /// Size of what is turned, m.
+    fn size(&self, turn: &TurnItem, pose: &Pose) -> Option<f32> {
+        let (_, body, ..) = turn.element()?;
+        let at = self.globals.get(body).ok()?;
+        let mut size = at.translation().distance(pose.center);
+        if let Ok(collider) = self.colliders.get(body) {
+            let bounds = collider.raw.compute_local_bounding_sphere();
+            let farthest = at.transform_point(bounds.center).distance(pose.center) + bounds.radius;
+            size = size.max(farthest);
+        }
+        let is_known = size.is_finite() && size > 1e-3;
+        Some(if is_known { size } else { SIZE })
+    }
+}
+
+/// Strips at whole steps of their twist, so that equal springs share them.
+#[derive(Resource)]
+pub(super) struct Spirals {
+    meshes: HashMap<([u32; 5], bool, i32), Handle<Mesh>>,
+    room: usize,
+}
+
+impl Default for Spirals {
+    fn default() -> Self {
+        Self {
+            meshes: HashMap::default(),
+            room: KEPT,
+        }
+    }
+}
+
+impl Spirals {
+    fn strip(&mut self, coil: &TorsionCoil, step: i32, meshes: &mut Assets<Mesh>) -> Handle<Mesh> {
+        let sizes = [
+            coil.radius,
+            coil.arbor_radius,
+            coil.width,
+            coil.thickness,
+            coil.turns,
+        ];
+        let key = (sizes.map(f32::to_bits), spiral::hand(coil) > 0.0, step);
+        if !self.meshes.contains_key(&key) && self.meshes.len() >= self.room {
+            self.meshes.retain(|_, mesh| super::shapes::is_used(mesh));
+            self.room = KEPT.max(2 * self.meshes.len());
+        }
+        let make = || meshes.add(spiral::mesh(coil, step));
+        self.meshes.entry(key).or_insert_with(make).clone()
+    }
+}
+
+/// Spawns, renews and removes the parts of spirals.
+pub(super) fn wind(
+    changed: Query<Entity, Changed<TorsionCoil>>,
+    mut removed: RemovedComponents<TorsionCoil>,
+    mut elements: Query<(Turn, Option<&TorsionCoil>, &mut Twist, Option<&Children>)>,
+    windings: Query<(), With<Winding>>,
+    turns: Turns,
+    mut waiting: Local<Vec<Entity>>,
+    mut shapes: ResMut<Shapes>,
+    mut spirals: ResMut<Spirals>,
+    mut meshes: ResMut<Assets<Mesh>>,
+    mut materials: ResMut<Assets<StandardMaterial>>,
+    mut commands: Commands,
+) {
+    waiting.extend(&changed);
+    waiting.extend(removed.read());
+    waiting.sort_unstable();
+    waiting.dedup();
+    waiting.retain(|&element| {
+        let Ok((turn, coil, mut twist, children)) = elements.get_mut(element) else {
+            return false;
+        };
+        // Sizes may follow from where the bodies are, so they must be there.
+        let center = coil.map_or(Vec3::ZERO, |coil| coil.center);
+        let known = turns
+            .pose(&turn, center)
+            .filter(|pose| pose.center.is_finite());
+        let size = known.and_then(|pose| turns.size(&turn, &pose));
+        if coil.is_some_and(|coil| coil.center.is_finite()) && size.is_none() {
+            return true;
+        }
+        for child in children.into_iter().flatten() {
+            if windings.contains(*child) {
+                commands.entity(*child).despawn();
+            }
+        }
+        twist.from = None;
+        twist.coil = None;
+        let Some(coil) = coil else {
+            return false;
+        };
+        let first = *twist.first.get_or_insert(size.unwrap_or(SIZE));
+        let coil = coil.at(first);
+        if let Err(wrong) = coil.check() {
+            log::warn!("{element}: TorsionCoil: {wrong}; it is not drawn until that is mended");
+            return false;
+        }
+        twist.coil = Some(coil);
+        twist.step = 0;
+        let strip = spirals.strip(&coil, 0, &mut meshes);
+        let round = shapes.cylinder(&mut meshes);
+        let paint = shapes.paint(coil.color, Finish::Enamel, &mut materials);
+        let steel = shapes.paint(super::parts::STEEL, Finish::Steel, &mut materials);
+        let mut part = |part, mesh, paint| {
+            let looks = (part, Mesh3d(mesh), MeshMaterial3d(paint), ChildOf(element));
+            commands.spawn(looks).id()
+        };
+        part(Winding::Arbor, round.clone(), steel.clone());
+        part(Winding::Pin, round, steel);
+        let strip = part(Winding::Strip, strip, paint);
+        commands.entity(strip).insert(Wound(0));
+        false
+    });
+}
+
+impl Twist {
+    /// Follows the bodies; whether anything has moved.
+    fn follow(&mut self, coil: &TorsionCoil, pose: Pose) -> bool {
+        if self.from == Some(pose) {
+            return false;
+        }
+        self.from = Some(pose);
+        let hand = spiral::hand(coil);
+        let twist = pose.angle - pose.rest;
+        self.step = spiral::step(hand * twist);
+        // The inner end stays with body A, the outer one goes around with body B, exactly.
+        let side = pose.axis.any_orthonormal_vector();
+        let outer = Quat::from_axis_angle(pose.axis, hand * TAU * coil.turns + twist) * side;
+        let axis = Vec3A::from(pose.rotation * pose.axis).normalize();
+        let outer = Vec3A::from(pose.rotation * outer);
+        let outer = (outer - axis * outer.dot(axis)).normalize();
+        let turned = Mat3A::from_cols(outer, axis, outer.cross(axis));
+        let center = Vec3A::from(pose.center);
+        let place = |at: Vec3A, radius: f32, height: f32| {
+            let scale = Mat3A::from_diagonal(Vec3::new(radius, height, radius));
+            GlobalTransform::from(Affine3A {
+                matrix3: turned * scale,
+                translation: at,
+            })
+        };
+        let pin = (1.5 * coil.thickness).min(0.5 * coil.width);
+        self.places = [
+            place(center, 1.0, 1.0),
+            place(center, coil.arbor_radius, 1.5 * coil.width),
+            place(center + coil.radius * outer, pin, 1.3 * coil.width),
+        ];
+        true
+    }
+}
+
+/// Turns spirals with their bodies.
+pub(super) fn turn(
+    mut elements: Query<(Entity, Turn, &mut Twist)>,
+    turns: Turns,
+    cameras: Query<Cameras, Without<Winding>>,
+    mut views: Local<Views>,
+    mut frame: Local<u32>,
+) {
+    if elements.is_empty() {
+        return;
+    }
+    views.update(cameras.iter());
+    *frame = frame.wrapping_add(1);
+    for (element, turn, mut twist) in &mut elements {
+        let Some(coil) = twist.coil else {
+            continue;
+        };
+        let Some(pose) = turns.pose(&turn, coil.center) else {
+            continue;
+        };
+        let twist = twist.bypass_change_detection();
+        if twist.from == Some(pose) {
+            continue;
+        }
+        let has_turn = element
+            .index_u32()
+            .wrapping_add(*frame)
+            .is_multiple_of(SELDOM);
+        let reach = 1.1 * coil.radius + coil.width;
+        let is_seen = views.sight(pose.center.into(), reach).seen;
+        if is_seen || has_turn || twist.from.is_none() {
+            twist.follow(&coil, pose);
+        }
+    }
+}
+
+/// Lays the parts where their elements have them, and changes a strip where it is wound further.
+pub(super) fn lay(
+    elements: Query<&Twist>,
+    mut parts: Query<(&Winding, &ChildOf, &mut GlobalTransform)>,
+    mut strips: Query<(&ChildOf, &mut Mesh3d, &mut Wound)>,
+    mut spirals: ResMut<Spirals>,
+    mut meshes: ResMut<Assets<Mesh>>,
+) {
+    for (part, parent, mut global) in &mut parts {
+        if let Ok(twist) = elements.get(parent.parent())
+            && twist.from.is_some()
+        {
+            // Its `Transform` says nothing: propagation has run, and rendering reads this one. What has not moved must
+            // not look changed, or it would be sent to the graphics card again.
+            global.set_if_neq(twist.places[*part as usize]);
+        }
+    }
+    for (parent, mut mesh, mut wound) in &mut strips {
+        if let Ok(twist) = elements.get(parent.parent())
+            && let Some(coil) = twist.coil
+            && wound.0 != twist.step
+        {
+            wound.0 = twist.step;
+            mesh.0 = spirals.strip(&coil, twist.step, &mut meshes);
+        }
+    }
+}

@@ -1,0 +1,238 @@
+//! Is the spiral of a torsion element where the bodies have its ends, at any twist, and does it cost nothing at rest?
+
+use crate::harness::*;
+use crate::messages::Log;
+use crate::visual_data::{lab, parts};
+use bevy::mesh::VertexAttributeValues;
+use bevy::prelude::*;
+use bevy_coilover::prelude::*;
+use bevy_rapier3d::prelude::*;
+use std::f32::consts::TAU;
+
+/// Radius of the spiral and of its arbor, m.
+const RADIUS: f32 = 0.2;
+const ARBOR: f32 = 0.04;
+
+/// A door on the axis of its frame, which nothing but the test turns.
+struct Door {
+    lab: Lab,
+    door: Entity,
+    element: Entity,
+}
+
+impl Door {
+    fn new(coil: TorsionCoil) -> Self {
+        let mut lab = lab();
+        let frame = lab.point(Vec3::X);
+        let door = lab.point(Vec3::X);
+        let element = lab.spawn((
+            TorsionSpring::new(frame, door, Vec3::Z).with_rest_angle(0.0),
+            coil,
+        ));
+        lab.run(0.1);
+        Self { lab, door, element }
+    }
+
+    fn turn(&mut self, angle: f32) {
+        self.lab.get_mut::<Transform>(self.door).rotation = Quat::from_rotation_z(angle);
+        // As the physics plugin would tell, full turns counted.
+        self.lab.get_mut::<SpringReadout>(self.element).length = angle;
+        self.lab.tick();
+    }
+
+    /// The strip's inner and outer end in the world.
+    fn ends(&self) -> [Vec3; 2] {
+        let world = self.lab.app.world();
+        let children = world.get::<Children>(self.element).expect("parts");
+        let meshes = world.resource::<Assets<Mesh>>();
+        let strip = children.iter().max_by_key(|child| {
+            let mesh = world.get::<Mesh3d>(*child).expect("a mesh");
+            meshes.get(mesh).map(Mesh::count_vertices)
+        });
+        let strip = strip.expect("parts");
+        let mesh = world.get::<Mesh3d>(strip).expect("a mesh");
+        let mesh = meshes.get(mesh).expect("loaded");
+        let Some(VertexAttributeValues::Float32x3(all)) = mesh.attribute(Mesh::ATTRIBUTE_POSITION)
+        else {
+            panic!("positions");
+        };
+        let at = self.lab.get::<GlobalTransform>(strip);
+        // Sections of eight vertices each, and eight more that close the ends.
+        let middle = |from: usize| {
+            let ring = all[from..from + 8].iter().copied().map(Vec3::from);
+            at.transform_point(ring.sum::<Vec3>() / 8.0)
+        };
+        [middle(0), middle(all.len() - 16)]
+    }
+}
+
+#[test]
+fn a_spiral_has_a_strip_an_arbor_and_a_pin_and_loses_them_with_its_component() {
+    let mut door = Door::new(TorsionCoil::new(RADIUS, 4.0));
+    assert_eq!(parts(&door.lab, door.element).len(), 3);
+    *door.lab.get_mut::<TorsionCoil>(door.element) = TorsionCoil::new(RADIUS, 2.0);
+    door.lab.run(0.1);
+    assert_eq!(parts(&door.lab, door.element).len(), 3);
+    let world = door.lab.app.world_mut();
+    world.entity_mut(door.element).remove::<TorsionCoil>();
+    door.lab.run(0.1);
+    assert_eq!(parts(&door.lab, door.element).len(), 0);
+}
+
+#[test]
+fn its_outer_end_goes_around_with_body_b_and_its_inner_end_stays() {
+    for handedness in [Handedness::Right, Handedness::Left] {
+        let coil = TorsionCoil::new(RADIUS, 4.0).with_handedness(handedness);
+        let mut door = Door::new(coil);
+        let [inner, outer] = door.ends();
+        assert!((outer.distance(Vec3::X) - RADIUS).abs() < 1e-5);
+        assert!((inner.distance(Vec3::X) - ARBOR).abs() < 1e-5);
+        // There and back, and through more than a full turn either way.
+        for degrees in (0..=450).chain(-450..=450) {
+            let angle = (degrees as f32 + 0.4).to_radians();
+            door.turn(angle);
+            let [still, gone] = door.ends();
+            let wanted = Vec3::X + Quat::from_rotation_z(angle) * (outer - Vec3::X);
+            assert!(
+                gone.distance(wanted) < 1e-5,
+                "{degrees}: {gone}, not {wanted}"
+            );
+            // Strips are made for whole degrees.
+            let off = still.distance(inner) / ARBOR;
+            assert!(off < 0.51_f32.to_radians(), "{degrees}: off by {off} rad");
+        }
+    }
+}
+
+#[test]
+fn a_twist_by_the_hand_winds_it_up_and_one_against_it_unwinds_it() {
+    for (handedness, wound) in [(Handedness::Right, true), (Handedness::Left, false)] {
+        let mut door = Door::new(TorsionCoil::new(RADIUS, 3.0).with_handedness(handedness));
+        let size = |door: &Door| {
+            let world = door.lab.app.world();
+            let meshes = world.resource::<Assets<Mesh>>();
+            let children = world.get::<Children>(door.element).expect("parts");
+            let counts = children.iter().filter_map(|child| {
+                let mesh = meshes.get(world.get::<Mesh3d>(child)?)?;
+                Some(mesh.count_vertices())
+            });
+            counts.max().expect("parts")
+        };
+        let rest = size(&door);
+        door.turn(TAU);
+        assert_eq!(size(&door) > rest, wound, "{handedness:?}");
+    }
+}
+
+#[derive(Resource, Default)]
+struct Sent(usize);
+
+#[test]
+fn at_rest_nothing_of_it_is_sent_to_the_graphics_card_again() {
+    let mut door = Door::new(TorsionCoil::default());
+    type Renewed = Or<(Changed<GlobalTransform>, Changed<Mesh3d>)>;
+    let count = |sent: Query<(), (With<Mesh3d>, Renewed)>, mut count: ResMut<Sent>| {
+        count.0 += sent.iter().count();
+    };
+    door.lab
+        .app
+        .init_resource::<Sent>()
+        .add_systems(Last, count);
+    door.lab.tick();
+    let sent = |door: &Door| door.lab.app.world().resource::<Sent>().0;
+    let before = sent(&door);
+    door.lab.run(0.5);
+    assert_eq!(sent(&door), before);
+    door.turn(0.002);
+    // The strip and its pin; the arbor is as round as before, but turns with them.
+    assert_eq!(sent(&door), before + 3);
+}
+
+#[test]
+fn springs_that_swing_alike_share_their_meshes_and_keep_few() {
+    let mut lab = lab();
+    let doors: Vec<Entity> = (0..20)
+        .map(|i| {
+            let place = Vec3::X * i as f32;
+            let (frame, door) = (lab.point(place), lab.point(place));
+            lab.spawn((
+                TorsionSpring::new(frame, door, Vec3::Y).with_rest_angle(0.0),
+                TorsionCoil::new(RADIUS, 4.0),
+            ));
+            door
+        })
+        .collect();
+    for tick in 0..2_000 {
+        let angle = 3.0 * (0.01 * tick as f32).sin();
+        for door in &doors {
+            lab.get_mut::<Transform>(*door).rotation = Quat::from_rotation_y(angle);
+        }
+        lab.tick();
+    }
+    // One for each of the degrees that were passed at most, and the cylinder; old ones are dropped beyond a bound.
+    let meshes = lab.app.world().resource::<Assets<Mesh>>().len();
+    assert!((2..=270).contains(&meshes), "{meshes} meshes");
+}
+
+#[test]
+fn it_is_a_quarter_as_large_as_what_it_turns() {
+    for (place, collider, size) in [
+        // How far the door is from the hinge, its collider, or neither.
+        (Vec3::X * 0.8, None, 0.8),
+        (Vec3::ZERO, Some(Collider::ball(1.2)), 1.2),
+        (Vec3::ZERO, None, 0.5),
+    ] {
+        let mut lab = lab();
+        let frame = lab.point(Vec3::ZERO);
+        let door = lab.point(place);
+        if let Some(collider) = collider {
+            lab.app.world_mut().entity_mut(door).insert(collider);
+        }
+        let element = lab.spawn((
+            TorsionSpring::new(frame, door, Vec3::Y).with_rest_angle(0.0),
+            TorsionCoil::default(),
+        ));
+        lab.run(0.1);
+        let far = |at: &GlobalTransform| at.translation().length();
+        let radius = parts(&lab, element).iter().map(far).fold(0.0, f32::max);
+        // The pin is at the outer end. Sizes are rounded to a power of 1.1, so that meshes are shared.
+        assert!(
+            (radius / (0.25 * size) - 1.0).abs() < 0.05,
+            "{radius} for {size}"
+        );
+    }
+}
+
+#[test]
+fn spirals_that_cannot_be_drawn_or_stand_on_a_linear_element_are_told_once() {
+    let log = Log::capture();
+    let mut lab = lab();
+    let (a, b) = (lab.body(1.0, Vec3::ZERO), lab.body(1.0, Vec3::X));
+    let torsion = TorsionSpring::new(a, b, Vec3::Y);
+    let endless = lab.spawn((torsion, TorsionCoil::new(f32::NAN, 4.0)));
+    let tight = lab.spawn((torsion, TorsionCoil::new(0.2, 50.0)));
+    let nowhere = TorsionCoil::default().with_center(Vec3::splat(f32::INFINITY));
+    let nowhere = lab.spawn((torsion, nowhere));
+    let linear = lab.spawn((Spring::new(a, b), TorsionCoil::default()));
+    let lone = lab.spawn(TorsionCoil::default());
+    lab.run(0.5);
+    let told = log.take();
+    assert_eq!(told.len(), 5, "{told:?}");
+    for (entity, what) in [
+        (endless, "TorsionCoil: radius is NaN"),
+        (tight, "50 turns of thickness"),
+        (nowhere, "TorsionCoil: center is"),
+        (linear, "TorsionCoil: stands on a linear element"),
+        (lone, "TorsionCoil: stands on an entity without an element"),
+    ] {
+        let named = format!("{entity}: ");
+        assert!(
+            told.iter().any(|t| t.contains(&named) && t.contains(what)),
+            "{told:?} say nothing of {what}"
+        );
+    }
+    *lab.get_mut::<TorsionCoil>(tight) = TorsionCoil::default();
+    lab.run(0.1);
+    assert_eq!(parts(&lab, tight).len(), 3);
+    assert!(parts(&lab, endless).is_empty());
+}
