@@ -12,20 +12,21 @@ BODIES = "KHR_physics_rigid_bodies"
 MARK = "coilover_joint"
 #: Blender's axes x, y, z in the file, with Y up.
 AXIS = {"x": 0, "y": 2, "z": 1}
-#: The Y of Blender is the -Z of the file.
-TURNED = {"y"}
+
+
+def turned(constraint, part, name):
+    """Whether a range counts the other way in the file.
+
+    The Y of Blender is the -Z of the file. And the angles of these constraints are those of object 1 against object 2,
+    as Blender's engine has them; the file's are those of the second frame against the first.
+    """
+    backwards = part == "ang" and constraint in ("HINGE", "GENERIC", "GENERIC_SPRING")
+    return (name == "y") != backwards
 
 
 def held(names, kind, low=0.0, high=0.0):
-    """A limit of one axis or several; where one is turned, low and high change places."""
-    if len(names) == 1 and names[0] in TURNED:
-        low, high = (None if high is None else -high), (None if low is None else -low)
-    limit = {kind + "Axes": sorted(AXIS[n] for n in names)}
-    if low is not None:
-        limit["min"] = short(low)
-    if high is not None:
-        limit["max"] = short(high)
-    return limit
+    """A limit of one axis or several."""
+    return {kind + "Axes": sorted(AXIS[n] for n in names), "min": short(low), "max": short(high)}
 
 
 def single(rigid, part, name):
@@ -34,6 +35,8 @@ def single(rigid, part, name):
     if not getattr(rigid, f"use_limit_{part}_{name}"):
         return []
     low, high = getattr(rigid, f"limit_{part}_{name}_lower"), getattr(rigid, f"limit_{part}_{name}_upper")
+    if turned(rigid.type, part, name):
+        low, high = -high, -low
     # Blender leaves an axis free whose lower limit is above the upper one.
     return [held([name], kind, low, high)] if low <= high else []
 

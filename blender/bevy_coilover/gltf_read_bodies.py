@@ -8,7 +8,7 @@ frames that this add-on made.
 import bpy
 
 from .gltf_bodies import BODIES, SHAPES
-from .gltf_joints import AXIS, MARK
+from .gltf_joints import AXIS, MARK, turned
 
 KIND = {"box": "BOX", "sphere": "SPHERE", "capsule": "CAPSULE"}
 
@@ -70,10 +70,7 @@ def limited(said, kind):
         axes = limit.get(kind + "Axes", [])
         low, high = limit.get("min"), limit.get("max")
         if len(axes) == 1:
-            name = names[axes[0]]
-            if name == "y":
-                low, high = (None if high is None else -high), (None if low is None else -low)
-            free[name] = (low, high)
+            free[names[axes[0]]] = (low, high)
         if low == 0.0 and high == 0.0:
             locked |= {names[a] for a in axes}
     return free, locked
@@ -105,6 +102,8 @@ def read_joint(obj, said, first, second, collide):
         for name, (low, high) in free.items():
             if low is None or high is None:
                 continue
+            if turned(rigid.type, part, name):
+                low, high = -high, -low
             setattr(rigid, f"use_limit_{part}_{name}", True)
             setattr(rigid, f"limit_{part}_{name}_lower", low)
             setattr(rigid, f"limit_{part}_{name}_upper", high)

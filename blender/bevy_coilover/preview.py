@@ -148,7 +148,8 @@ def material(name, color):
     found = bpy.data.materials.get(name)
     if found is None:
         found = bpy.data.materials.new(name)
-        found.use_nodes = True
+        if bpy.app.version < (5, 0, 0):
+            found.use_nodes = True
         found.diffuse_color = color
         for node in found.node_tree.nodes:
             if node.type == "BSDF_PRINCIPLED":

@@ -54,7 +54,7 @@ def climb(turn, turns, length, wire, radius, ends):
     past = np.clip(x - dead - blend, 0.0, None)
     curve = more * into * into / (2.0 * blend) if blend > 0.0 else 0.0
     above = end_pitch * x + curve + more * past
-    slope = end_pitch + (more * into / blend if blend > 0.0 else more)
+    slope = end_pitch + (more * into / blend if blend > 0.0 else more + 0.0 * x)
     lower = from_foot <= from_top
     height = np.where(lower, start + above, start + rise - above)
     return height, slope
@@ -71,7 +71,7 @@ def coil(radius, wire, turns, length, ends="ClosedGround", handedness="Right", a
     outward = np.stack([cos, hand * sin, none], axis=1)
     steep = slope / (TAU * radius)
     cosine = 1.0 / np.sqrt(1.0 + steep**2)
-    upward = np.stack([hand * sin * steep, -cos * steep, none + 1.0], axis=1) * cosine[:, None]
+    upward = np.stack([sin * steep, -hand * cos * steep, none + 1.0], axis=1) * cosine[:, None]
     middle = radius * outward
     middle[:, 2] = height
 
@@ -92,8 +92,8 @@ def coil(radius, wire, turns, length, ends="ClosedGround", handedness="Right", a
         fan = np.array([[first, first + k, first + k + 1] for k in range(1, around - 1)])
         caps.append(fan[:, ::-1] if turned else fan)
     faces = np.concatenate([faces, *caps])
-    # The faces above turn outward for a left-handed frame; a mirrored coil turns them over.
-    if hand > 0.0:
+    # A mirrored coil turns its faces over.
+    if hand < 0.0:
         faces = faces[:, ::-1]
     return Mesh(points.reshape(-1, 3), normals.reshape(-1, 3), faces)
 

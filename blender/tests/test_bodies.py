@@ -144,7 +144,7 @@ def test_a_hinge_turns_about_the_axis_that_it_has_in_blender(scene):
     assert described(glb) == [{"limits": [
         {"linearAxes": [0, 1, 2], "min": 0, "max": 0},
         {"angularAxes": [0, 2], "min": 0, "max": 0},
-        {"angularAxes": [1], "min": -0.5, "max": 1},
+        {"angularAxes": [1], "min": -1, "max": 0.5},
     ]}]
     said = glb.said("Hinge Joint A", BODIES)["joint"]
     assert glb.name(said["connectedNode"]) == "Hinge Joint B"
@@ -215,21 +215,36 @@ def test_bodies_and_joints_come_back_and_go_out_the_same(scene):
         assert one["joint"] == other["joint"] and one.get("enableCollision") == other.get("enableCollision")
 
 
-def test_blenders_own_simulation_turns_a_hinge_to_the_same_side_as_the_limits_say(scene):
-    """A bar falls about a hinge along Y until its limit: positive angles of object 2 are by the right hand."""
+@pytest.mark.parametrize("kind, part, name", [
+    ("HINGE", "ang", "z"), ("SLIDER", "lin", "x"), ("PISTON", "lin", "x"), ("PISTON", "ang", "x"),
+    *(("GENERIC", part, name) for part in ("lin", "ang") for name in "xyz"),
+    *(("GENERIC_SPRING", part, name) for part in ("lin", "ang") for name in "xyz"),
+])
+def test_limits_in_the_file_are_where_blenders_own_simulation_stops(scene, kind, part, name):
+    """A body falls along an axis, or about it by the right hand, until its limit; the file's limit is the same number."""
     frame = scene.body("Frame", (0, 0, 0), active=False, size=(0.05, 0.05, 0.05))
-    bar = scene.body("Bar", (0.5, 0, 0), size=(0.8, 0.05, 0.05))
-    rigid = joint(scene, "Hinge", "HINGE", frame, bar, (0, 0, 0), (-math.pi / 2, 0, 0))
-    # Now the hinge's Z is the world's +Y; gravity turns the bar by the right hand about it.
-    rigid.use_limit_ang_z, rigid.limit_ang_z_lower, rigid.limit_ang_z_upper = True, -0.1, 0.6
-    world = bpy.context.scene.rigidbody_world
-    world.point_cache.frame_end = 120
-    bpy.context.scene.frame_end = 120
+    axis = Vector([float(n == name) for n in "xyz"])
+    turn = axis.rotation_difference(Vector((0, 0, -1) if part == "lin" else (0, 1, 0)))
+    size, place = ((0.2, 0.2, 0.2), (0, 0, 0)) if part == "lin" else ((0.8, 0.05, 0.05), (0.5, 0, 0))
+    bar = scene.body("Bar", place, size=size)
+    rigid = joint(scene, "Joint", kind, frame, bar, (0, 0, 0), turn.to_euler())
+    if kind.startswith("GENERIC"):
+        for every in (p + "_" + n for p in ("lin", "ang") for n in "xyz"):
+            setattr(rigid, "use_limit_" + every, True)
+            setattr(rigid, f"limit_{every}_lower", 0.0)
+            setattr(rigid, f"limit_{every}_upper", 0.0)
+    setattr(rigid, f"use_limit_{part}_{name}", True)
+    setattr(rigid, f"limit_{part}_{name}_lower", -0.1)
+    setattr(rigid, f"limit_{part}_{name}_upper", 0.3)
+    (said,) = described(scene.export())
     for frame_number in range(1, 100):
         bpy.context.scene.frame_set(frame_number)
-    evaluated = bar.evaluated_get(bpy.context.evaluated_depsgraph_get())
-    along = evaluated.matrix_world.to_3x3() @ Vector((1, 0, 0))
-    turned = math.atan2(-along.z, along.x)
-    print("turned", turned)
-    assert min(abs(turned - 0.6), abs(turned - 0.1)) < 0.05
-    assert abs(turned - 0.6) < 0.05, "the limits of Blender's hinge count the other way round"
+    matrix = bar.evaluated_get(bpy.context.evaluated_depsgraph_get()).matrix_world
+    along = matrix.to_3x3() @ Vector((1, 0, 0))
+    found = -matrix.translation.z if part == "lin" else math.atan2(-along.z, along.x)
+
+    # The direction of the fall in the axes of the file.
+    number, sign = {"x": (0, 1.0), "y": (2, -1.0), "z": (1, 1.0)}[name]
+    key = {"lin": "linearAxes", "ang": "angularAxes"}[part]
+    (limit,) = [x for x in said["limits"] if x.get(key) == [number] and x["max"] != x["min"]]
+    assert found == pytest.approx(limit["max"] if sign > 0 else -limit["min"], abs=0.02)

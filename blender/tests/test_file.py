@@ -2,12 +2,11 @@
 """What is in the file, against the schema and against what was set; and what comes back from it."""
 
 import json
-import math
 
 import bpy
 import jsonschema
 import pytest
-from conftest import REPOSITORY, Glb
+from conftest import REPOSITORY
 from mathutils import Matrix, Quaternion, Vector
 
 from bevy_coilover import fields
@@ -118,7 +117,7 @@ def test_numbers_are_short_and_exact_in_single_precision(scene):
         element = scene.spring(a, b, stiffness=stiffness).coilover
         written = scene.export().said(bpy.context.object.name)["springDamper"]["stiffness"]
         assert struct.pack("f", written) == struct.pack("f", element.stiffness)
-        assert len(f"{written:.17g}") <= 9 or written != pytest.approx(0.1)
+        assert len(repr(written)) <= 11
 
 
 def global_matrix(glb, index):
@@ -151,10 +150,7 @@ def test_anchors_are_the_same_points_of_the_world_on_nested_turned_scaled_and_mi
         assert tuple(found) == pytest.approx(point, abs=1e-5)
 
 
-@pytest.mark.parametrize("what, options", [
-    ("camera", {"export_cameras": True}), ("camera", {"export_cameras": False}),
-    ("light", {"export_lights": True}), ("light", {"export_lights": False}),
-])
+@pytest.mark.parametrize("what, options", [("camera", {"export_cameras": True}), ("light", {"export_lights": True})])
 def test_a_camera_or_a_lamp_as_an_end_is_held_where_it_was(scene, what, options):
     {"camera": bpy.ops.object.camera_add, "light": bpy.ops.object.light_add}[what](
         location=(0, 0, 3), rotation=(0.3, 0.4, 0.5))
@@ -226,7 +222,7 @@ def test_meshes_made_for_a_picture_are_not_in_the_file(scene):
 def test_a_file_with_nonsense_is_read_with_a_warning_for_each(scene, capfd):
     a, b = scene.body("A", (0, 0, 0)), scene.body("B", (0, 0, 1))
     scene.spring(a, b).name = "S"
-    glb = scene.export("good.gltf", export_yup=True) if False else scene.export("good.glb")
+    glb = scene.export("good.glb")
     content = glb.said("S")
     content["springDamper"].update(a=99, stiffness="much")
     content["springAction"] = "Sideways"
@@ -262,4 +258,3 @@ def test_ten_bodies_in_a_chain_keep_every_number_there_and_back(scene):
         assert one.get("extensions") == other.get("extensions"), one["name"]
         assert one.get("translation", [0, 0, 0]) == pytest.approx(other.get("translation", [0, 0, 0]), abs=1e-6)
     assert first.json["extensions"] == second.json["extensions"]
-    assert isinstance(Glb(second.path), Glb) and math.isfinite(second.json["nodes"][0].get("scale", [1])[0])
