@@ -67,16 +67,27 @@ def material_of(rigid):
     }
 
 
-def filter_of(rigid):
-    systems = [f"layer {i + 1}" for i, member in enumerate(rigid.collision_collections) if member]
-    return {"collisionSystems": systems, "collideWithSystems": systems}
+def layers(rigid):
+    """The numbers of the layers that a body is in."""
+    return tuple(i + 1 for i, member in enumerate(rigid.collision_collections) if member)
 
 
-def is_default(rigid):
-    return list(rigid.collision_collections) == [True] + [False] * 19
+def system(numbers):
+    """Name of all bodies that are in just these layers."""
+    return "layers " + " ".join(map(str, numbers))
 
 
-def collider_of(obj, node, gathered, document, filtered, settings):
+def filter_of(rigid, everyone):
+    """In Blender two bodies touch that share a layer. In the file a body has to be named by the other as a whole, so
+    each set of layers has a name of its own.
+    """
+    own = layers(rigid)
+    touched = sorted(system(other) for other in everyone if set(own) & set(other))
+    # An empty list would be left out of the file, and then it would touch everything.
+    return {"collisionSystems": [system(own)], "collideWithSystems": touched or ["nothing"]}
+
+
+def collider_of(obj, node, gathered, document, everyone, settings):
     rigid = obj.rigid_body
     if rigid.collision_shape == "COMPOUND":
         return None
@@ -91,8 +102,8 @@ def collider_of(obj, node, gathered, document, filtered, settings):
         "geometry": geometry,
         "physicsMaterial": document.shared(BODIES, "physicsMaterials", material_of(rigid)),
     }
-    if filtered:
-        collider["collisionFilter"] = document.shared(BODIES, "collisionFilters", filter_of(rigid))
+    if everyone != {(1,)}:
+        collider["collisionFilter"] = document.shared(BODIES, "collisionFilters", filter_of(rigid, everyone))
     return collider
 
 
@@ -105,13 +116,13 @@ def write(gathered, document, settings):
     if any(BODIES in (node.extensions or {}) for node in gathered.nodes):
         return
     bodies = [(n, o) for n, o in gathered.pairs if o.rigid_body is not None]
-    filtered = any(not is_default(o.rigid_body) for _, o in bodies)
+    everyone = {layers(o.rigid_body) for _, o in bodies}
     for node, obj in bodies:
         said = {}
         motion = motion_of(obj, bpy.context.scene)
         if motion is not None:
             said["motion"] = motion
-        collider = collider_of(obj, node, gathered, document, filtered, settings)
+        collider = collider_of(obj, node, gathered, document, everyone, settings)
         if collider is not None:
             said["collider"] = collider
         elif obj.rigid_body.collision_shape != "COMPOUND":

@@ -59,7 +59,9 @@ def read_body(obj, said, root, shapes):
         rigid.restitution = material.get("restitution", rigid.restitution)
     if "collisionFilter" in collider:
         systems = root["collisionFilters"][collider["collisionFilter"]].get("collisionSystems", [])
-        rigid.collision_collections = [f"layer {i + 1}" in systems for i in range(20)]
+        numbers = {int(n) for s in systems if s.startswith("layers") for n in s.split()[1:] if n.isdigit()}
+        if systems and systems[0].startswith("layers"):
+            rigid.collision_collections = [i + 1 in numbers for i in range(20)]
 
 
 def limited(said, kind):

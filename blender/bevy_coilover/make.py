@@ -5,6 +5,7 @@ import bpy
 from mathutils import Vector
 
 from . import ends
+from .fields import is_torsion
 from .properties import dress
 
 
@@ -23,7 +24,7 @@ def new_element(scene, a, b, kind="springDamper", name=None, collection=None, fo
     fit(element, span)
     if follow:
         # It stays between its ends, where it can be found and clicked.
-        for influence, end in ((1.0, a), (0.5, b)):
+        for influence, end in ((1.0, a), (1.0 if is_torsion(kind) else 0.5, b)):
             copy = obj.constraints.new("COPY_LOCATION")
             copy.target, copy.influence = end, influence
     return obj

@@ -111,7 +111,7 @@ def found(layout, context, element):
         box.label(text="Frequency: no active rigid body at an end")
         return
     unit = "kg m²" if is_torsion(element.kind) else "kg"
-    box.label(text=f"It moves {mass:.4g} {unit}, as if joints and contacts were not there")
+    box.label(text=f"Moves {mass:.4g} {unit} (joints not counted)")
     if has_spring(element.kind) and element.stiffness > 0.0:
         box.label(text=f"Natural frequency: {physics.frequency(element.stiffness, mass):.3f} Hz")
         if has_damper(element.kind):
@@ -120,7 +120,7 @@ def found(layout, context, element):
             box.label(text=f"Damping ratio: {ratio:.3f} ({word})")
         given = physics.sag(element, context.scene)
         if given is not None:
-            box.label(text=f"Sag under the whole load: {given:.4g} m")
+            box.label(text=f"Sag under all of it: {given:.4g} m")
     if has_spring(element.kind):
         layout.operator("coilover.tune")
 

@@ -43,7 +43,8 @@ def place(element):
         if element.a is None or element.b is None:
             return None
         axis = ends.frame(element.a) @ Vector(element.axis)
-        return Matrix.Translation(element.a.matrix_world.translation) @ physics.upright(axis), 0.0
+        # It has no place of its own, so it is drawn where its object is.
+        return Matrix.Translation(element.id_data.matrix_world.translation) @ physics.upright(axis), 0.0
     points = ends.line(element)
     if points is None:
         return None
@@ -66,7 +67,7 @@ def parts(obj, scene, detail):
         return None
     matrix, length = placed
     if is_torsion(element.kind):
-        size = max(0.15, 0.6 * max(element.a.dimensions, default=0.25))
+        size = 0.3 * min(max(element.a.dimensions), max(element.b.dimensions)) or 0.2
         mesh = shape.arc(size, 1.5 * np.pi, 0.04 * size)
         axle = shape.cylinder(0.03 * size, -size, size, 12)
         solids = [look.Part("Coil", mesh, (0.604, 0.0087, 0.006, 1.0)), look.Part("Rod", axle)]

@@ -79,14 +79,24 @@ def test_equal_shapes_and_materials_are_written_once(scene):
 
 
 def test_collision_layers_become_filters(scene):
-    one, two = scene.body("One", (0, 0, 0)), scene.body("Two", (1, 0, 0))
-    two.rigid_body.collision_collections = [i in (1, 2) for i in range(20)]
-    glb = scene.export()
+    members = {"One": {0}, "Two": {1, 2}, "Both": {0, 1}, "None": set(), "Three": {2}}
+    for x, (name, layers) in enumerate(members.items()):
+        body = scene.body(name, (x, 0, 0))
+        body.rigid_body.collision_collections = [i in layers for i in range(20)]
+    glb = scene.export("first.glb")
     filters = glb.json["extensions"][BODIES]["collisionFilters"]
     of = lambda name: filters[glb.said(name, BODIES)["collider"]["collisionFilter"]]
-    assert of("One")["collideWithSystems"] == ["layer 1"]
-    assert of("Two") == {"collisionSystems": ["layer 2", "layer 3"], "collideWithSystems": ["layer 2", "layer 3"]}
-    assert one is not None
+
+    def touches(a, b):
+        """As the specification has it: all of a's systems are among those that b collides with."""
+        return set(of(a)["collisionSystems"]) <= set(of(b)["collideWithSystems"])
+
+    for a in members:
+        for b in members:
+            assert (touches(a, b) and touches(b, a)) == bool(members[a] & members[b]), (a, b)
+    again(scene, "first.glb")
+    for name, layers in members.items():
+        assert {i for i in range(20) if bpy.data.objects[name].rigid_body.collision_collections[i]} == layers
 
 
 def test_bodies_can_be_left_to_another_exporter(scene):
