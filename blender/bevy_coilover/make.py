@@ -97,7 +97,7 @@ def ball_mesh(radius):
 
 
 def lattice(context, source, kind, total_mass, radius, pinned, diagonals, stiffness, damping):
-    """A ball for each corner of a mesh and an element for each edge; the balls and the elements."""
+    """A ball for each corner of a mesh and an element for each edge that can move; the balls and the elements."""
     mesh = source.data
     collection = bpy.data.collections.new(source.name + " Springs")
     context.scene.collection.children.link(collection)
@@ -123,8 +123,11 @@ def lattice(context, source, kind, total_mass, radius, pinned, diagonals, stiffn
     context.view_layer.update()
     fixed = [balls[i] for i in pinned]
     make_bodies(context, balls, fixed, total_mass / max(len(balls), 1))
-    made = []
+    made, still = [], set(pinned)
     for i, j in edges:
+        if i in still and j in still:
+            # Between two corners that are held nothing can move.
+            continue
         obj = new_element(context.scene, balls[i], balls[j], kind, f"{source.name} {i:03}-{j:03}", collection, False)
         obj.coilover.stiffness, obj.coilover.damping = stiffness, damping
         made.append(obj)

@@ -84,7 +84,7 @@ def shaded(part, matrix):
     bright = 0.35 + 0.65 * np.clip(normals @ light, 0.0, 1.0)
     color = np.array(part.color)
     # Paint that is nearly black would hide its shape.
-    lit = np.clip((0.06 + color[:3]) * bright[:, None], 0.0, 1.0) ** (1.0 / 2.2)
+    lit = np.clip((0.12 + 0.88 * color[:3]) * bright[:, None], 0.0, 1.0) ** (1.0 / 2.2)
     return np.concatenate([lit, np.ones((len(lit), 1))], axis=1)
 
 
