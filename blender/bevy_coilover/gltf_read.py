@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
 """Elements out of a file, through hooks of Blender's own glTF importer."""
 
+import logging
 import math
 
 from .axes import to_blender
@@ -147,9 +148,11 @@ def fill(element, content, axes=to_blender, scale=1.0, anchor_axes=None):
 
 
 def warn(gltf, text):
-    try:
+    """A line for the user; Blender 4.2's importer keeps all of its own to itself."""
+    logger = getattr(gltf.log, "logger", None)
+    if logger is not None and logger.isEnabledFor(logging.WARNING):
         gltf.log.warning(text)
-    except AttributeError:
+    else:
         print("WARNING:", text)
 
 
