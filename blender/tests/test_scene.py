@@ -26,7 +26,7 @@ def close(one, other, where=""):
         assert len(one) == len(other), where
         for i, (a, b) in enumerate(zip(one, other)):
             close(a, b, f"{where}[{i}]")
-    elif isinstance(one, float):
+    elif float in (type(one), type(other)):
         assert one == pytest.approx(other, rel=1e-5, abs=1e-5), where
     else:
         assert one == other, where
