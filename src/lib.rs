@@ -89,6 +89,10 @@ pub mod guide {
     pub mod stiffness_and_damping {}
 
     #[doc = include_str!("../docs/guide/on_docs_rs.md")]
+    #[doc = include_str!("../docs/guide/blender.md")]
+    pub mod blender {}
+
+    #[doc = include_str!("../docs/guide/on_docs_rs.md")]
     #[doc = include_str!("../docs/guide/car.md")]
     pub mod car {}
 
