@@ -142,7 +142,9 @@ def pins(source, group):
             raise ValueError(f"{source.name} has no vertex group {group}")
         return [v.index for v in source.data.vertices
                 if any(g.group == found.index and g.weight > 0.0 for g in v.groups)]
-    return [v.index for v in source.data.vertices if v.select]
+    chosen = [v.index for v in source.data.vertices if v.select]
+    # A mesh that was just made has all of them selected; nobody means that.
+    return chosen if len(chosen) < len(source.data.vertices) else []
 
 
 def anchor_at(element, end, point):

@@ -79,7 +79,7 @@ class COILOVER_OT_chain(Numbers, bpy.types.Operator):
 
 
 class COILOVER_OT_lattice(Numbers, bpy.types.Operator):
-    """Makes a ball of each corner of the active mesh and an element of each edge. Selected corners are held"""
+    """Makes a ball of each corner of the active mesh and an element of each edge. Selected corners are held, unless all are"""
 
     bl_idname, bl_label, bl_options = "coilover.lattice", "Lattice From Mesh Edges", UNDO
     mass: FloatProperty(name="Mass of All", default=1.0, min=1e-6, unit="MASS")

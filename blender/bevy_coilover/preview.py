@@ -88,15 +88,20 @@ def shaded(part, matrix):
     return np.concatenate([lit, np.ones((len(lit), 1))], axis=1)
 
 
-def key(obj, scene, matrix, solids_of):
+def detail_of(scene, count):
+    """Segments of a turn: fewer where there are many coils, so that a large lattice can still be moved."""
+    return max(6, min(scene.coilover.detail, 4000 // max(count, 1)))
+
+
+def key(obj, matrix, lengths, detail):
     """What a drawing follows from."""
     element = obj.coilover
     return (
         tuple(round(x, 6) for row in matrix for x in row),
-        solids_of,
+        lengths,
         coil_of(element).__repr__(),
         telescope_of(element).__repr__(),
-        scene.coilover.detail,
+        detail,
         obj.select_get(),
         element.kind,
     )
@@ -115,8 +120,9 @@ def draw():
     gpu.state.depth_test_set("LESS_EQUAL")
     gpu.state.depth_mask_set(True)
     gpu.state.face_culling_set("NONE")
-    seen = set()
-    for obj in elements(scene):
+    seen, all_elements = set(), elements(scene)
+    detail = detail_of(scene, len(all_elements))
+    for obj in all_elements:
         if not obj.visible_get():
             continue
         placed = place(obj.coilover)
@@ -124,10 +130,10 @@ def draw():
             continue
         seen.add(obj.name)
         matrix, length = placed
-        now = key(obj, scene, matrix, (round(length, 6), first_length(obj, scene, length)))
+        now = key(obj, matrix, (round(length, 6), first_length(obj, scene, length)), detail)
         if obj.name not in _drawn or _drawn[obj.name][0] != now:
             batches = []
-            for part in parts(obj, scene, scene.coilover.detail)[1]:
+            for part in parts(obj, scene, detail)[1]:
                 world = part.mesh.points @ np.array(matrix.to_3x3()).T + np.array(matrix.translation)
                 colors = shaded(part, matrix)
                 if obj.select_get():

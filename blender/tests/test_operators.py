@@ -66,6 +66,15 @@ def test_a_lattice_has_a_body_per_corner_and_a_spring_per_edge_and_holds_what_is
     assert len({o.data for o in bodies}) == 1, "all balls share one mesh"
 
 
+def test_a_mesh_that_was_just_made_is_held_nowhere(scene):
+    bpy.ops.mesh.primitive_cube_add()
+    cube = bpy.context.object
+    assert all(v.select for v in cube.data.vertices)
+    bpy.ops.coilover.lattice()
+    assert {o.rigid_body.type for o in bpy.data.objects if o.rigid_body} == {"ACTIVE"}
+    assert sum(o.coilover.kind != "NONE" for o in bpy.data.objects) == 12
+
+
 def test_a_lattice_can_be_held_by_a_vertex_group_and_says_when_there_is_none(scene):
     bpy.ops.mesh.primitive_grid_add(x_subdivisions=2, y_subdivisions=2)
     grid = bpy.context.object
