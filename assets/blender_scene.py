@@ -13,7 +13,7 @@ from pathlib import Path
 
 import bpy
 import addon_utils  # (the line above brings it)
-from mathutils import Euler, Vector
+from mathutils import Vector
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent / "blender"))
@@ -176,8 +176,8 @@ def gallery(place):
         made = element(beam, load, kind, ends, stiffness=400.0, damping=8.0 if kind == "springDamper" else 200.0)
         made.use_rest, made.rest_length = True, 0.9
     for x, kind in ((1.0, "torsionSpring"), (2.0, "torsionDamper")):
-        lever = body(f"Lever {kind}", at + Vector((x, 0.3, 1.9)), (0.7, 0.08, 0.08), 2.0, color="Blue", layers=(4,))
-        hub = at + Vector((x - 0.35, 0.3, 1.9))
+        lever = body(f"Lever {kind}", at + Vector((x, -0.2, 2.4)), (0.7, 0.08, 0.08), 2.0, color="Blue", layers=(4,))
+        hub = at + Vector((x - 0.35, -0.2, 2.4))
         joint("HINGE", beam, lever, hub, ALONG_Y)
         made = element(beam, lever, kind, stiffness=25.0, damping=4.0)
         made.axis = (0.0, 1.0, 0.0)
@@ -193,10 +193,9 @@ def build():
     car((0, 0, 0))
     bridge((0, 4.0, 0))
     gallery((0, -4.0, 0))
-    for light, turn in (("Sun", Euler((0.7, 0.2, 0.5))),):
-        lamp = bpy.data.objects.new(light, bpy.data.lights.new(light, "SUN"))
-        lamp.rotation_euler, lamp.data.energy = turn, 3.0
-        bpy.context.collection.objects.link(lamp)
+    lamp = bpy.data.objects.new("Sun", bpy.data.lights.new("Sun", "SUN"))
+    lamp.rotation_euler, lamp.data.energy = (0.7, 0.2, 0.5), 3.0
+    bpy.context.collection.objects.link(lamp)
     bpy.context.view_layer.update()
 
 
