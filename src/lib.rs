@@ -16,7 +16,7 @@ mod visual;
 
 pub use diagnostics::CoiloverDiagnosticsPlugin;
 pub use element::{
-    Anchors, Breakable, CustomDampingLaw, CustomSpringLaw, Damper, DampingLaw, ForceLaw,
+    Anchors, Breakable, CustomDampingLaw, CustomSpringLaw, Damper, DampingLaw, EndNames, ForceLaw,
     ForceTable, HeldEnd, HoldPose, MaxForce, Polynomial, Preload, Spring, SpringAction, SpringAxis,
     SpringBroke, SpringDamper, SpringFault, SpringLaw, SpringTravel, SpringTuning, TorsionDamper,
     TorsionSpring, TorsionSpringDamper, WhenBroken, WorldAnchors, wire_stiffness,
@@ -154,7 +154,7 @@ pub mod prelude {
     pub use crate::{
         Anchors, Breakable, CoiloverDiagnosticsPlugin, CoiloverPlugin, CoiloverPlugins,
         CoiloverSettings, CoiloverSystems, CustomDampingLaw, CustomSpringLaw, Damper, DampingLaw,
-        ForceLaw, ForceTable, HeldEnd, HoldPose, MaxForce, Polynomial, Preload, Spring,
+        EndNames, ForceLaw, ForceTable, HeldEnd, HoldPose, MaxForce, Polynomial, Preload, Spring,
         SpringAction, SpringAxis, SpringBroke, SpringDamper, SpringFault, SpringLaw, SpringLoad,
         SpringMethod, SpringReadout, SpringTravel, SpringTuning, TorsionDamper, TorsionSpring,
         TorsionSpringDamper, WhenBroken, WorldAnchors, recommend,
