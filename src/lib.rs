@@ -7,6 +7,8 @@ mod diagnostics;
 mod dynamics;
 mod element;
 mod engine;
+#[cfg(feature = "gltf")]
+mod gltf;
 mod plugin;
 mod readout;
 mod recommend;
@@ -22,6 +24,8 @@ pub use element::{
     TorsionSpring, TorsionSpringDamper, WhenBroken, WorldAnchors, wire_stiffness,
 };
 pub use engine::SpringLoad;
+#[cfg(feature = "gltf")]
+pub use gltf::{CoiloverGltfPlugin, ExportedGltf, export_gltf};
 pub use plugin::{CoiloverPlugin, CoiloverSystems};
 pub use readout::{SpringMethod, SpringReadout};
 pub use recommend::recommend;
@@ -69,6 +73,8 @@ impl PluginGroup for CoiloverPlugins {
         let group = PluginGroupBuilder::start::<Self>().add(CoiloverPlugin::default());
         #[cfg(feature = "visual")]
         let group = group.add(CoiloverVisualPlugin);
+        #[cfg(feature = "gltf")]
+        let group = group.add(CoiloverGltfPlugin);
         group
     }
 }
@@ -121,6 +127,14 @@ pub mod guide {
     pub mod looks {}
 
     #[doc = include_str!("../docs/guide/on_docs_rs.md")]
+    #[doc = include_str!("../docs/guide/scenes.md")]
+    pub mod scenes {}
+
+    #[doc = include_str!("../docs/guide/on_docs_rs.md")]
+    #[doc = include_str!("../docs/gltf.md")]
+    pub mod gltf {}
+
+    #[doc = include_str!("../docs/guide/on_docs_rs.md")]
     #[doc = include_str!("../docs/guide/accuracy.md")]
     pub mod accuracy {}
 
@@ -151,6 +165,8 @@ pub mod guide {
 
 /// Everything that a game needs.
 pub mod prelude {
+    #[cfg(feature = "gltf")]
+    pub use crate::CoiloverGltfPlugin;
     pub use crate::{
         Anchors, Breakable, CoiloverDiagnosticsPlugin, CoiloverPlugin, CoiloverPlugins,
         CoiloverSettings, CoiloverSystems, CustomDampingLaw, CustomSpringLaw, Damper, DampingLaw,
