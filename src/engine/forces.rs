@@ -18,6 +18,7 @@ use bevy_rapier3d::rapier::dynamics::RigidBody as RapierBody;
 /// at the start of the step it makes the engine's few substeps end where the springs take the body.
 #[derive(Component, Reflect, Clone, Debug)]
 #[reflect(Component, Debug, Clone)]
+#[type_path = "bevy_coilover"]
 pub struct SpringLoad {
     /// Force (N) and torque (N m) delivered by elements over the last step, world frame.
     pub elements: ExternalForce,

@@ -39,6 +39,7 @@ pub type RoundWireMaterial = ExtendedMaterial<StandardMaterial, RoundWire>;
 #[derive(Asset, AsBindGroup, Reflect, Clone, Copy, Debug, Default, PartialEq)]
 #[reflect(Default, Debug, PartialEq, Clone)]
 #[uniform(100, RoundWireUniform)]
+#[type_path = "bevy_coilover"]
 pub struct RoundWire {
     /// The coil at the length where its model is not scaled.
     pub helix: Helix,

@@ -17,6 +17,7 @@ use wire::Wire;
 #[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[reflect(Default, Debug, PartialEq, Clone)]
+#[type_path = "bevy_coilover"]
 pub enum HelixEnds {
     /// Steady pitch up to the cut.
     Open,
@@ -41,6 +42,7 @@ impl HelixEnds {
 #[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[reflect(Default, Debug, PartialEq, Clone)]
+#[type_path = "bevy_coilover"]
 pub enum Handedness {
     /// Like a common screw.
     #[default]
@@ -55,6 +57,7 @@ pub enum Handedness {
 #[derive(Reflect, Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[reflect(Default, Debug, PartialEq, Clone)]
+#[type_path = "bevy_coilover"]
 pub struct Helix {
     /// From the axis to the middle of the wire, m.
     pub radius: f32,
