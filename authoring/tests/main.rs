@@ -2,6 +2,7 @@
 
 mod harness;
 
+mod blender;
 mod data;
 mod gltf_elements;
 mod gltf_export;
