@@ -154,6 +154,8 @@ def take_joints(gltf):
 
 def read(gltf, of, joints):
     """All bodies and joints of a file; `of` gives the object of a node."""
+    from .gltf_read import warn
+
     top = gltf.data.extensions or {}
     root, shapes = top.get(BODIES, {}), top.get(SHAPES, {}).get("shapes", [])
     active = bpy.context.view_layer.objects.active
@@ -161,8 +163,12 @@ def read(gltf, of, joints):
         said, obj = (node.extensions or {}).get(BODIES), of.get(index)
         if said is None or obj is None or obj.rigid_body is not None:
             continue
-        if obj.type == "MESH" and ("motion" in said or "collider" in said):
+        if "motion" not in said and "collider" not in said:
+            continue
+        if obj.type == "MESH":
             read_body(obj, said, root, shapes)
+        else:
+            warn(gltf, f"{obj.name}: this body has no mesh, and Blender has rigid bodies of meshes alone")
     # By the names that the file has: Blender may have others, where it knew such an object already.
     by_name = {node.name: of[i] for i, node in enumerate(gltf.data.nodes or []) if of.get(i) is not None}
     for joint in joints:

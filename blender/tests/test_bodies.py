@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
 """Blender's rigid bodies and constraints, as KHR_physics_rigid_bodies."""
 
+import json
 import math
 
 import bpy
@@ -258,3 +259,23 @@ def test_limits_in_the_file_are_where_blenders_own_simulation_stops(scene, kind,
     key = {"lin": "linearAxes", "ang": "angularAxes"}[part]
     (limit,) = [x for x in said["limits"] if x.get(key) == [number] and x["max"] != x["min"]]
     assert found == pytest.approx(limit["max"] if sign > 0 else -limit["min"], abs=0.02)
+
+
+def test_a_body_without_a_mesh_is_told_of_and_its_spring_is_read_all_the_same(scene, capfd):
+    """As Bevy's export writes them."""
+    document = {
+        "asset": {"version": "2.0"},
+        "extensionsUsed": ["BEVY_coilover", BODIES],
+        "scene": 0,
+        "scenes": [{"nodes": [0, 1, 2]}],
+        "nodes": [
+            {"name": "Hook", "translation": [0, 2, 0]},
+            {"name": "Lamp", "extensions": {BODIES: {"motion": {"mass": 2}}}},
+            {"name": "Spring", "extensions": {"BEVY_coilover": {"springDamper": {"a": 0, "b": 1, "stiffness": 120}}}},
+        ],
+    }
+    (scene.folder / "lamp.gltf").write_text(json.dumps(document))
+    again(scene, "lamp.gltf")
+    element = bpy.data.objects["Spring"].coilover
+    assert (element.a.name, element.b.name, element.stiffness, element.damping) == ("Hook", "Lamp", 120.0, 1.0)
+    assert "Lamp: this body has no mesh" in "".join(capfd.readouterr())
