@@ -163,6 +163,8 @@ def read(gltf, of, joints):
         said, obj = (node.extensions or {}).get(BODIES), of.get(index)
         if said is None or obj is None or obj.rigid_body is not None:
             continue
+        if "joint" in said and MARK not in (node.extras or {}):
+            warn(gltf, f"{obj.name}: this joint was not written by this add-on, and is not read")
         if "motion" not in said and "collider" not in said:
             continue
         if obj.type == "MESH":

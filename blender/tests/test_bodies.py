@@ -267,15 +267,19 @@ def test_a_body_without_a_mesh_is_told_of_and_its_spring_is_read_all_the_same(sc
         "asset": {"version": "2.0"},
         "extensionsUsed": ["BEVY_coilover", BODIES],
         "scene": 0,
-        "scenes": [{"nodes": [0, 1, 2]}],
+        "scenes": [{"nodes": [0, 1, 2, 3]}],
         "nodes": [
             {"name": "Hook", "translation": [0, 2, 0]},
             {"name": "Lamp", "extensions": {BODIES: {"motion": {"mass": 2}}}},
             {"name": "Spring", "extensions": {"BEVY_coilover": {"springDamper": {"a": 0, "b": 1, "stiffness": 120}}}},
+            {"name": "Hinge", "extensions": {BODIES: {"joint": {"connectedNode": 1, "joint": 0}}}},
         ],
+        "extensions": {BODIES: {"physicsJoints": [{}]}},
     }
     (scene.folder / "lamp.gltf").write_text(json.dumps(document))
     again(scene, "lamp.gltf")
     element = bpy.data.objects["Spring"].coilover
     assert (element.a.name, element.b.name, element.stiffness, element.damping) == ("Hook", "Lamp", 120.0, 1.0)
-    assert "Lamp: this body has no mesh" in "".join(capfd.readouterr())
+    told = "".join(capfd.readouterr())
+    assert "Lamp: this body has no mesh" in told
+    assert "Hinge: this joint was not written by this add-on" in told
