@@ -11,6 +11,8 @@ mod diagnostics;
 mod dynamics;
 mod element;
 mod engine;
+#[cfg(feature = "gltf")]
+mod gltf;
 mod plugin;
 mod readout;
 mod recommend;
@@ -20,12 +22,14 @@ mod visual;
 
 pub use diagnostics::CoiloverDiagnosticsPlugin;
 pub use element::{
-    Anchors, Breakable, CustomDampingLaw, CustomSpringLaw, Damper, DampingLaw, ForceLaw,
+    Anchors, Breakable, CustomDampingLaw, CustomSpringLaw, Damper, DampingLaw, EndNames, ForceLaw,
     ForceTable, HeldEnd, HoldPose, MaxForce, Polynomial, Preload, Spring, SpringAction, SpringAxis,
     SpringBroke, SpringDamper, SpringFault, SpringLaw, SpringTravel, SpringTuning, TorsionDamper,
     TorsionSpring, TorsionSpringDamper, WhenBroken, WorldAnchors, wire_stiffness,
 };
 pub use engine::SpringLoad;
+#[cfg(feature = "gltf")]
+pub use gltf::{CoiloverGltfPlugin, ExportedGltf, export_gltf};
 pub use plugin::{CoiloverPlugin, CoiloverSystems};
 pub use readout::{SpringMethod, SpringReadout};
 pub use recommend::recommend;
@@ -73,6 +77,8 @@ impl PluginGroup for CoiloverPlugins {
         let group = PluginGroupBuilder::start::<Self>().add(CoiloverPlugin::default());
         #[cfg(feature = "visual")]
         let group = group.add(CoiloverVisualPlugin);
+        #[cfg(feature = "gltf")]
+        let group = group.add(CoiloverGltfPlugin);
         group
     }
 }
@@ -91,6 +97,10 @@ pub mod guide {
     #[doc = include_str!("../docs/guide/on_docs_rs.md")]
     #[doc = include_str!("../docs/guide/stiffness_and_damping.md")]
     pub mod stiffness_and_damping {}
+
+    #[doc = include_str!("../docs/guide/on_docs_rs.md")]
+    #[doc = include_str!("../docs/guide/blender.md")]
+    pub mod blender {}
 
     #[doc = include_str!("../docs/guide/on_docs_rs.md")]
     #[doc = include_str!("../docs/guide/car.md")]
@@ -125,6 +135,14 @@ pub mod guide {
     pub mod looks {}
 
     #[doc = include_str!("../docs/guide/on_docs_rs.md")]
+    #[doc = include_str!("../docs/guide/scenes.md")]
+    pub mod scenes {}
+
+    #[doc = include_str!("../docs/guide/on_docs_rs.md")]
+    #[doc = include_str!("../docs/gltf.md")]
+    pub mod gltf {}
+
+    #[doc = include_str!("../docs/guide/on_docs_rs.md")]
     #[doc = include_str!("../docs/guide/accuracy.md")]
     pub mod accuracy {}
 
@@ -155,10 +173,12 @@ pub mod guide {
 
 /// Everything that a game needs.
 pub mod prelude {
+    #[cfg(feature = "gltf")]
+    pub use crate::CoiloverGltfPlugin;
     pub use crate::{
         Anchors, Breakable, CoiloverDiagnosticsPlugin, CoiloverPlugin, CoiloverPlugins,
         CoiloverSettings, CoiloverSystems, CustomDampingLaw, CustomSpringLaw, Damper, DampingLaw,
-        ForceLaw, ForceTable, HeldEnd, HoldPose, MaxForce, Polynomial, Preload, Spring,
+        EndNames, ForceLaw, ForceTable, HeldEnd, HoldPose, MaxForce, Polynomial, Preload, Spring,
         SpringAction, SpringAxis, SpringBroke, SpringDamper, SpringFault, SpringLaw, SpringLoad,
         SpringMethod, SpringReadout, SpringTravel, SpringTuning, TorsionDamper, TorsionSpring,
         TorsionSpringDamper, WhenBroken, WorldAnchors, recommend,

@@ -139,6 +139,7 @@ impl Plugin for CoiloverPlugin {
             .register_type::<SpringTuning>()
             .register_type::<HoldPose>()
             .register_type::<WorldAnchors>()
+            .register_type::<EndNames>()
             .register_type::<SpringReadout>()
             .register_type::<SpringLoad>()
             .register_type::<SpringFault>()
@@ -169,6 +170,7 @@ impl Plugin for CoiloverPlugin {
             (
                 (
                     engine::check_timestep,
+                    engine::find_named_ends.run_if(any_with_component::<AwaitsEnds>),
                     engine::anchor.run_if(any_with_component::<WorldAnchors>),
                     engine::prepare,
                 )
@@ -210,6 +212,7 @@ fn notice_strays(app: &mut App) {
     use engine::notice;
     notice::<Anchors>(app, Role::Companion, "Anchors");
     notice::<WorldAnchors>(app, Role::Companion, "WorldAnchors");
+    notice::<EndNames>(app, Role::Companion, "EndNames");
     notice::<SpringLaw>(app, Role::Companion, "SpringLaw");
     notice::<CustomSpringLaw>(app, Role::Companion, "CustomSpringLaw");
     notice::<DampingLaw>(app, Role::Companion, "DampingLaw");

@@ -2,12 +2,13 @@ use crate::readout::SpringReadout;
 use bevy::prelude::*;
 
 /// A viscous damper between two ends: tension = damping · rate of the length.
-#[derive(Component, FromTemplate, Reflect, Clone, Copy, Debug, PartialEq)]
-#[type_path = "bevy_coilover"]
+#[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", serde(default))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
-#[reflect(Component, Debug, PartialEq, Clone)]
+#[reflect(Component, Default, Debug, PartialEq, Clone)]
 #[require(SpringReadout)]
+#[type_path = "bevy_coilover"]
 pub struct Damper {
     /// The end that the damper starts from.
     #[entities]

@@ -36,6 +36,7 @@ use bevy::prelude::*;
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
+#[type_path = "bevy_coilover"]
 pub struct HoldPose {
     /// Which end is the load.
     pub load: HeldEnd,
@@ -51,6 +52,7 @@ pub struct HoldPose {
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Default, Debug, PartialEq, Clone, Hash)]
+#[type_path = "bevy_coilover"]
 pub enum HeldEnd {
     /// The one that moves; a fault where both do.
     #[default]

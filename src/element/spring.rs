@@ -5,12 +5,13 @@ use bevy::prelude::*;
 ///
 /// Each end is a body, something below a body in the hierarchy, or any entity with a `Transform`.
 /// It pulls when longer than its rest length and pushes when shorter.
-#[derive(Component, FromTemplate, Reflect, Clone, Copy, Debug, PartialEq)]
-#[type_path = "bevy_coilover"]
+#[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", serde(default))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
-#[reflect(Component, Debug, PartialEq, Clone)]
+#[reflect(Component, Default, Debug, PartialEq, Clone)]
 #[require(SpringReadout)]
+#[type_path = "bevy_coilover"]
 pub struct Spring {
     /// The end that the spring starts from.
     #[entities]

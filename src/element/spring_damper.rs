@@ -3,12 +3,13 @@ use bevy::prelude::*;
 
 /// A spring and a damper side by side (Kelvin–Voigt): tension = stiffness · (length − rest length)
 /// + damping · rate of the length.
-#[derive(Component, FromTemplate, Reflect, Clone, Copy, Debug, PartialEq)]
-#[type_path = "bevy_coilover"]
+#[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", serde(default))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
-#[reflect(Component, Debug, PartialEq, Clone)]
+#[reflect(Component, Default, Debug, PartialEq, Clone)]
 #[require(SpringReadout)]
+#[type_path = "bevy_coilover"]
 pub struct SpringDamper {
     /// The end that the pair starts from.
     #[entities]

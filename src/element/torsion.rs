@@ -6,12 +6,13 @@ use crate::readout::SpringReadout;
 use bevy::prelude::*;
 
 /// A torsion spring: moment = stiffness · (angle − rest angle).
-#[derive(Component, FromTemplate, Reflect, Clone, Copy, Debug, PartialEq)]
-#[type_path = "bevy_coilover"]
+#[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", serde(default))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
-#[reflect(Component, Debug, PartialEq, Clone)]
+#[reflect(Component, Default, Debug, PartialEq, Clone)]
 #[require(SpringReadout)]
+#[type_path = "bevy_coilover"]
 pub struct TorsionSpring {
     /// The rigid body whose axis it is; a fixed one will do.
     #[entities]
@@ -54,12 +55,13 @@ impl TorsionSpring {
 }
 
 /// A torsion damper: moment = damping · rate of the angle.
-#[derive(Component, FromTemplate, Reflect, Clone, Copy, Debug, PartialEq)]
-#[type_path = "bevy_coilover"]
+#[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", serde(default))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
-#[reflect(Component, Debug, PartialEq, Clone)]
+#[reflect(Component, Default, Debug, PartialEq, Clone)]
 #[require(SpringReadout)]
+#[type_path = "bevy_coilover"]
 pub struct TorsionDamper {
     /// The rigid body whose axis it is; a fixed one will do.
     #[entities]
@@ -92,12 +94,13 @@ impl TorsionDamper {
 }
 
 /// A torsion spring and damper side by side.
-#[derive(Component, FromTemplate, Reflect, Clone, Copy, Debug, PartialEq)]
-#[type_path = "bevy_coilover"]
+#[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", serde(default))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
-#[reflect(Component, Debug, PartialEq, Clone)]
+#[reflect(Component, Default, Debug, PartialEq, Clone)]
 #[require(SpringReadout)]
+#[type_path = "bevy_coilover"]
 pub struct TorsionSpringDamper {
     /// The rigid body whose axis it is; a fixed one will do.
     #[entities]

@@ -177,6 +177,14 @@ impl Parameters {
                 return Err(Fault::new(field, "is not finite"));
             }
         }
+        for (end, field) in self.ends.iter().zip(self.names.ends) {
+            if *end == Entity::PLACEHOLDER {
+                return Err(Fault::new(
+                    field,
+                    "does not exist yet: give the element its end, or put EndNames beside it",
+                ));
+            }
+        }
         if self.ends[0] == self.ends[1] {
             return Err(Fault::new(
                 self.names.ends[1],

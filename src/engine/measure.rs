@@ -1,7 +1,7 @@
 //! After the engine's step: what each element shows.
 
 use super::body::{center_of, is_movable, point_of, rotation_of};
-use super::parts::IsElement;
+use super::parts::{Acts, IsElement};
 use super::report::report;
 use super::rows::{BodyRow, ElementRow, Held, turning_mark};
 use super::scene::Scene;
@@ -29,7 +29,7 @@ type Springs<'a> = (
 pub(crate) fn measure(
     mut scene: ResMut<Scene>,
     sets: Query<&'static RapierRigidBodySet>,
-    mut readouts: Query<(Entity, &mut SpringReadout), IsElement>,
+    mut readouts: Query<(Entity, &mut SpringReadout), Acts>,
     mut springs: Query<Springs, IsElement>,
     mut commands: Commands,
 ) {

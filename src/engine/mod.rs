@@ -5,7 +5,8 @@
 //! - [`rows`] are plain data about elements and bodies, kept from step to step; [`scene`] holds them. Nothing in `rows` knows
 //!   what is done with them.
 //! - [`prepare`] finds out whether the scene is still the same, by [`watch`], [`parts`], [`companions`], [`find`] and
-//!   [`ends`]; [`renew`] fills it anew where it is not. [`check`] and [`report`] say what is wrong.
+//!   [`ends`]; [`renew`] fills it anew where it is not. [`check`] and [`report`] say what is wrong; [`named_ends`] puts entities in the place of
+//!   names before all that.
 //! - [`solve`] takes each component its way: what contacts or joints hold through [`inside`] (and [`held`], which is what it
 //!   leaves in the engine); of the rest, in [`free`], lone elements through [`lone`], everything else through [`assembly`], where
 //!   [`warm_start`] takes networks of points past most of the work. [`sleep`] and [`still`] leave out what rests.
@@ -28,6 +29,7 @@ mod held;
 mod inside;
 mod lone;
 mod measure;
+mod named_ends;
 mod parts;
 mod point;
 mod pose;
@@ -53,6 +55,7 @@ pub(crate) use breaking::break_overloaded;
 pub use forces::SpringLoad;
 pub(crate) use forces::read_users;
 pub(crate) use measure::measure;
+pub(crate) use named_ends::find_named_ends;
 pub(crate) use prepare::prepare;
 pub(crate) use scene::{Scene, mark};
 pub(crate) use setup::{Watched, check_schedule, check_timestep, in_place};

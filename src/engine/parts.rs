@@ -2,7 +2,8 @@
 
 use super::check::{Fault, Names, Parameters};
 use crate::element::{
-    Anchors, Damper, Spring, SpringDamper, TorsionDamper, TorsionSpring, TorsionSpringDamper,
+    Anchors, AwaitsEnds, Damper, Spring, SpringDamper, TorsionDamper, TorsionSpring,
+    TorsionSpringDamper,
 };
 use bevy::ecs::query::QueryData;
 use bevy::prelude::*;
@@ -29,6 +30,9 @@ pub(crate) type IsElement = Or<(
     With<TorsionDamper>,
     With<TorsionSpringDamper>,
 )>;
+
+/// An element that takes part: one that waits for an end does not.
+pub(super) type Acts = (IsElement, Without<AwaitsEnds>);
 
 /// An element some part of which changed.
 pub(crate) type ChangedParts = Or<(

@@ -5,7 +5,7 @@ use super::companions::Companions;
 use super::ends::{Ends, Place};
 use super::find::Finder;
 use super::forces::SpringLoad;
-use super::parts::{ChangedParts, IsElement, Parts};
+use super::parts::{Acts, ChangedParts, Parts};
 use super::report::report;
 use super::rows::{BodyRow, ElementRow, Held};
 use super::scene::Scene;
@@ -17,7 +17,7 @@ use bevy_rapier3d::prelude::*;
 /// Finds elements, their ends and the bodies they load.
 pub(crate) fn prepare(
     mut scene: ResMut<Scene>,
-    elements: Query<Parts, IsElement>,
+    elements: Query<Parts, Acts>,
     changed: Query<Entity, ChangedParts>,
     mut finder: Finder,
     mut loads: Query<
@@ -86,7 +86,7 @@ pub(crate) fn prepare(
 /// Takes in changed numbers and moved ends; says whether the rows still fit the elements.
 fn refresh(
     scene: &mut Scene,
-    elements: &Query<Parts, IsElement>,
+    elements: &Query<Parts, Acts>,
     changed: &Query<Entity, ChangedParts>,
     companions: &Companions,
     ends: &Ends,

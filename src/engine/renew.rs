@@ -4,7 +4,7 @@ use super::check::Parameters;
 use super::companions::Companions;
 use super::ends::Place;
 use super::find::{Finder, Wanted};
-use super::parts::{IsElement, Parts};
+use super::parts::{Acts, Parts};
 use super::report::report;
 use super::rows::{BodyRow, ElementRow, mix};
 use super::scene::{Scene, Scratch};
@@ -18,7 +18,7 @@ impl Scene {
     /// in an order of their own, so that the order in which elements were spawned changes nothing.
     pub(super) fn renew(
         &mut self,
-        elements: &Query<Parts, IsElement>,
+        elements: &Query<Parts, Acts>,
         companions: &Companions,
         finder: &mut Finder,
         modified: &EntityHashSet,

@@ -1,7 +1,7 @@
 //! What is wrong with an element is said once.
 
 use super::rows::ElementRow;
-use crate::element::SpringFault;
+use crate::element::{AwaitsEnds, EndNames, SpringFault};
 use crate::readout::SpringReadout;
 use bevy::prelude::*;
 
@@ -21,8 +21,14 @@ pub(super) fn report(row: &mut ElementRow, commands: &mut Commands) {
             let mut element = commands.entity(row.entity);
             element.try_insert(fault);
             if row.trouble.lasting().is_some() {
-                // What it shows would be taken for a force that still acts.
-                element.queue_silenced(|mut element: EntityWorldMut| {
+                let ends = row.parameters.ends;
+                element.queue_silenced(move |mut element: EntityWorldMut| {
+                    // An end that went is looked for by its name again.
+                    let is_gone = |end| element.world().get_entity(end).is_err();
+                    if element.contains::<EndNames>() && ends.into_iter().any(is_gone) {
+                        element.insert(AwaitsEnds);
+                    }
+                    // What it shows would be taken for a force that still acts.
                     if let Some(mut readout) = element.get_mut::<SpringReadout>() {
                         *readout = SpringReadout::default();
                     }

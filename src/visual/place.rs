@@ -17,6 +17,8 @@ const SELDOM: u32 = 8;
 
 /// Where an element is drawn.
 #[derive(Component, Clone, Copy, Debug, Default)]
+// Worked out anew wherever a copy stands; a scene does not know it.
+#[component(clone_behavior = Ignore)]
 pub struct Placement {
     pub(super) due: Due,
     /// Level of detail.

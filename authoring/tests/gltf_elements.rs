@@ -1,0 +1,531 @@
+//! Do springs from glTF files have every number, stand where their nodes stand, and go without a trace?
+
+use crate::harness::*;
+use bevy::prelude::*;
+use bevy_coilover::prelude::*;
+use bevy_rapier3d::prelude::*;
+use serde_json::{Value, json};
+
+const SCHEMA: &str = include_str!("../../docs/gltf.schema.json");
+const PAGE: &str = include_str!("../../docs/gltf.md");
+
+fn schema() -> jsonschema::Validator {
+    let schema = serde_json::from_str(SCHEMA).expect("JSON");
+    jsonschema::validator_for(&schema).expect("a schema")
+}
+
+fn hook() -> Value {
+    json!({ "name": "Hook", "translation": [0, 2, 0] })
+}
+
+fn weight() -> Value {
+    json!({ "name": "Weight", "extensions": { "KHR_physics_rigid_bodies": { "motion": {
+        "mass": 2, "inertiaDiagonal": [0.1, 0.1, 0.1] } } } })
+}
+
+fn element(extension: Value) -> Value {
+    json!({ "name": "Element", "extensions": { "BEVY_coilover": extension } })
+}
+
+/// A hook, a weight of 2 kg two metres below, and an element.
+fn rig(extension: &Value) -> String {
+    gltf(
+        json!([hook(), weight(), element(extension.clone())]),
+        json!({}),
+    )
+}
+
+/// Everything that the extension can say, with what it is in Rust.
+fn everything() -> Vec<(Value, Box<dyn Fn(EntityRef) -> bool>)> {
+    fn has<C: Component + PartialEq>(wanted: C) -> Box<dyn Fn(EntityRef) -> bool> {
+        Box::new(move |entity| entity.get::<C>() == Some(&wanted))
+    }
+    let beside = |companion: Value| {
+        let mut all = json!({ "springDamper": { "a": 0, "b": 1, "stiffness": 100, "damping": 2, "restLength": 1 } });
+        if let (Some(all), Some(companion)) = (all.as_object_mut(), companion.as_object()) {
+            all.extend(companion.clone());
+        }
+        all
+    };
+    let polynomial = SpringLaw::sided(
+        Polynomial::new(1.0, 2.0, 3.0),
+        Polynomial::new(0.0, 0.5, 0.0),
+    );
+    let table = || ForceTable::new([(-1.0, -20.0), (0.0, 0.0), (0.5, 3.25)]);
+    let points = json!({ "points": [[-1, -20], [0, 0], [0.5, 3.25]] });
+    vec![
+        (
+            beside(json!({ "anchors": { "a": [0, 0.1, 0], "b": [0.25, 0, -1] } })),
+            has(Anchors::new(Vec3::Y * 0.1, Vec3::new(0.25, 0.0, -1.0))),
+        ),
+        (
+            beside(json!({ "springLaw": "Cubic" })),
+            has(SpringLaw::Cubic),
+        ),
+        (
+            beside(json!({ "springLaw": { "Polynomial": {
+            "pull": { "linear": 1, "quadratic": 2, "cubic": 3 }, "push": { "quadratic": 0.5 } } } })),
+            has(polynomial),
+        ),
+        (
+            beside(json!({ "springLaw": { "Table": points } })),
+            has(SpringLaw::Table(table())),
+        ),
+        (
+            beside(json!({ "dampingLaw": { "Sided": { "bump": 1.5, "rebound": 3 } } })),
+            has(DampingLaw::sided(1.5, 3.0)),
+        ),
+        (
+            beside(json!({ "dampingLaw": { "Quadratic": { "linear": 1, "quadratic": 2 } } })),
+            has(DampingLaw::Quadratic {
+                linear: 1.0,
+                quadratic: 2.0,
+            }),
+        ),
+        (
+            beside(
+                json!({ "dampingLaw": { "BlowOff": { "damping": 5, "knee": 0.25, "beyond": 1 } } }),
+            ),
+            has(DampingLaw::BlowOff {
+                damping: 5.0,
+                knee: 0.25,
+                beyond: 1.0,
+            }),
+        ),
+        (
+            beside(json!({ "dampingLaw": { "Table": points } })),
+            has(DampingLaw::Table(table())),
+        ),
+        (
+            beside(json!({ "springAction": "Pull" })),
+            has(SpringAction::Pull),
+        ),
+        (
+            beside(
+                json!({ "springTravel": { "minLength": 0.5, "maxLength": 3, "stopStiffness": 900,
+            "progression": 2, "stopDamping": 7 } }),
+            ),
+            has(SpringTravel::new(0.5, 3.0, 900.0)
+                .with_progression(2.0)
+                .with_stop_damping(7.0)),
+        ),
+        (
+            beside(json!({ "springTravel": { "stopStiffness": 900 } })),
+            has(SpringTravel::new(0.0, f32::INFINITY, 900.0)),
+        ),
+        (
+            beside(json!({ "springAxis": { "World": [0, 1, 0] } })),
+            has(SpringAxis::World(Vec3::Y)),
+        ),
+        (beside(json!({ "preload": -3.5 })), has(Preload(-3.5))),
+        (beside(json!({ "maxForce": 250 })), has(MaxForce(250.0))),
+        (
+            beside(json!({ "breakable": { "force": 5000, "then": "Disable" } })),
+            has(Breakable::at_force(5000.0).disabling()),
+        ),
+        (
+            beside(json!({ "breakable": { "length": 9 } })),
+            has(Breakable::at_length(9.0)),
+        ),
+        (
+            beside(
+                json!({ "coil": { "radius": 0.1, "wireRadius": 0.01, "turns": 9, "ends": "Open",
+            "handedness": "Left", "color": [0.5, 0.25, 0] } }),
+            ),
+            has(Coil {
+                ends: HelixEnds::Open,
+                handedness: Handedness::Left,
+                color: Color::linear_rgb(0.5, 0.25, 0.0),
+                ..Coil::new(0.1, 0.01, 9.0)
+            }),
+        ),
+        (
+            beside(json!({ "coil": { "fitted": true } })),
+            has(Coil::fitted()),
+        ),
+        (
+            beside(
+                json!({ "telescope": { "tubeRadius": 0.05, "rodRadius": 0.02, "tubeLength": 0.5, "rodLength": 0.25,
+            "stroke": 0.125, "eyes": true, "bumpRubber": true, "color": [0, 0, 0, 0.5] } }),
+            ),
+            has(Telescope {
+                tube_length: Some(0.5),
+                rod_length: Some(0.25),
+                stroke: Some(0.125),
+                eyes: true,
+                bump_rubber: true,
+                color: Color::linear_rgba(0.0, 0.0, 0.0, 0.5),
+                ..Telescope::new(0.05, 0.02)
+            }),
+        ),
+        (
+            beside(json!({ "showSpringGizmos": true })),
+            has(ShowSpringGizmos(true)),
+        ),
+    ]
+}
+
+#[test]
+fn every_element_arrives_with_its_numbers() {
+    let folder = Folder::new("kinds");
+    let kinds = [
+        (
+            "spring",
+            json!({ "a": 0, "b": 1, "stiffness": 12.5, "restLength": 0.5 }),
+        ),
+        ("damper", json!({ "a": 0, "b": 1, "damping": 0.25 })),
+        (
+            "springDamper",
+            json!({ "a": 0, "b": 1, "stiffness": 12.5, "damping": 0.25, "restLength": 0.5 }),
+        ),
+        (
+            "torsionSpring",
+            json!({ "a": 0, "b": 1, "axis": [0, 0, 2], "stiffness": 12.5, "restAngle": 7 }),
+        ),
+        (
+            "torsionDamper",
+            json!({ "a": 0, "b": 1, "axis": [0, 0, 2], "damping": 0.25 }),
+        ),
+        (
+            "torsionSpringDamper",
+            json!({ "a": 0, "b": 1, "axis": [0, 0, 2], "stiffness": 12.5, "damping": 0.25, "restAngle": 7 }),
+        ),
+    ];
+    let mut stage = Stage::new(&folder.0);
+    for (kind, fields) in kinds {
+        let extension = json!({ kind: fields });
+        assert!(schema().is_valid(&extension), "{extension}");
+        folder.write(&format!("{kind}.gltf"), rig(&extension));
+        let root = stage.load(&format!("{kind}.gltf"));
+        let [a, b, e] = ["Hook", "Weight", "Element"].map(|name| stage.node(root, name));
+        let (k, c, length) = (12.5, 0.25, 0.5);
+        let axis = Vec3::Z * 2.0;
+        let entity = stage.app.world().entity(e);
+        let right = match kind {
+            "spring" => {
+                entity.get() == Some(&Spring::new(a, b).with_stiffness(k).with_rest_length(length))
+            }
+            "damper" => entity.get() == Some(&Damper::new(a, b).with_damping(c)),
+            "springDamper" => {
+                entity.get()
+                    == Some(
+                        &SpringDamper::new(a, b)
+                            .with_stiffness(k)
+                            .with_damping(c)
+                            .with_rest_length(length),
+                    )
+            }
+            "torsionSpring" => {
+                entity.get()
+                    == Some(
+                        &TorsionSpring::new(a, b, axis)
+                            .with_stiffness(k)
+                            .with_rest_angle(7.0),
+                    )
+            }
+            "torsionDamper" => {
+                entity.get() == Some(&TorsionDamper::new(a, b, axis).with_damping(c))
+            }
+            _ => {
+                entity.get()
+                    == Some(
+                        &TorsionSpringDamper::new(a, b, axis)
+                            .with_stiffness(k)
+                            .with_damping(c)
+                            .with_rest_angle(7.0),
+                    )
+            }
+        };
+        assert!(right, "{kind}");
+    }
+}
+
+#[test]
+fn every_companion_arrives_with_its_numbers() {
+    let folder = Folder::new("companions");
+    let mut stage = Stage::new(&folder.0);
+    for (i, (extension, is_right)) in everything().into_iter().enumerate() {
+        let wrong: Vec<_> = schema()
+            .iter_errors(&extension)
+            .map(|e| e.to_string())
+            .collect();
+        assert!(wrong.is_empty(), "{extension}: {wrong:?}");
+        let file = format!("{i}.gltf");
+        folder.write(&file, rig(&extension));
+        let root = stage.load(&file);
+        let element = stage.node(root, "Element");
+        assert!(is_right(stage.app.world().entity(element)), "{extension}");
+    }
+}
+
+#[test]
+fn what_is_worked_out_once_is_worked_out() {
+    let folder = Folder::new("tuned");
+    folder.write(
+        "a.gltf",
+        rig(&json!({
+            "springDamper": { "a": 0, "b": 1 },
+            "springTuning": { "Frequency": { "frequency": 2, "dampingRatio": 0.25 } },
+            "holdPose": { "load": "B" },
+        })),
+    );
+    let mut stage = Stage::new(&folder.0);
+    let root = stage.load("a.gltf");
+    let element = stage.node(root, "Element");
+    run(&mut stage.app, 1.0);
+    let pair = *stage.get::<SpringDamper>(element);
+    let wanted = SpringTuning::frequency(2.0, 0.25).coefficients(2.0, 9.81);
+    assert!((pair.stiffness / wanted.0 - 1.0).abs() < 1e-3, "{pair:?}");
+    assert!((pair.damping / wanted.1 - 1.0).abs() < 1e-3, "{pair:?}");
+    let weight = stage.node(root, "Weight");
+    assert!(
+        stage.place(weight).translation.y.abs() < 1e-3,
+        "it rests where it was"
+    );
+}
+
+#[test]
+fn the_page_and_the_schema_agree_and_the_example_swings() {
+    let text = PAGE
+        .split("```json")
+        .nth(1)
+        .and_then(|rest| rest.split("```").next());
+    let file: Value = serde_json::from_str(text.expect("an example")).expect("JSON");
+    let extension = &file["nodes"][2]["extensions"]["BEVY_coilover"];
+    let wrong: Vec<_> = schema()
+        .iter_errors(extension)
+        .map(|e| e.to_string())
+        .collect();
+    assert!(wrong.is_empty(), "{wrong:?}");
+    let folder = Folder::new("page");
+    folder.write("page.gltf", file.to_string());
+    let mut stage = Stage::new(&folder.0);
+    let root = stage.load("page.gltf");
+    run(&mut stage.app, 5.0);
+    assert!(stage.faults().is_empty(), "{:?}", stage.faults());
+    // Hook at 2 m, anchor 0.1 above it; 1200 N/m, 0.5 m, 10 N of preload, 2 kg.
+    let sag = (2.0 * 9.81 - 10.0) / 1200.0;
+    let lamp = stage.node(root, "Lamp");
+    let y = stage.place(lamp).translation.y;
+    assert!((y - (2.1 - 0.5 - sag)).abs() < 1e-3, "{y}");
+}
+
+#[test]
+fn the_schema_refuses_what_makes_no_sense() {
+    let schema = schema();
+    for wrong in [
+        json!({}),
+        json!({ "spring": { "a": 0 } }),
+        json!({ "spring": { "a": 0, "b": 1 }, "damper": { "a": 0, "b": 1 } }),
+        json!({ "spring": { "a": 0, "b": 1, "stiffness": -1 } }),
+        json!({ "spring": { "a": 0, "b": 1, "damping": 1 } }),
+        json!({ "spring": { "a": 0, "b": 1 }, "preloads": 3 }),
+        json!({ "spring": { "a": 0, "b": 1 }, "springAction": "Sometimes" }),
+        json!({ "torsionSpring": { "a": 0, "b": 1 } }),
+        json!({ "torsionSpring": { "a": 0, "b": 1, "axis": [0, 0, 0] } }),
+        json!({ "spring": { "a": 0, "b": 1 }, "springAxis": { "World": [0, 1, 0], "BodyA": [0, 1, 0] } }),
+    ] {
+        assert!(!schema.is_valid(&wrong), "{wrong}");
+    }
+}
+
+#[test]
+fn nested_scaled_and_mirrored_nodes_are_held_where_the_file_says() {
+    let folder = Folder::new("nested");
+    let spring = |a: usize, b: usize| {
+        element(json!({
+            "spring": { "a": a, "b": b, "stiffness": 1 },
+            "anchors": { "a": [0, 0.5, 0], "b": [0.25, 0, 0] },
+        }))
+    };
+    // The hook hangs below a frame that is turned, scaled and mirrored; the weight's node is scaled.
+    let mut body = weight();
+    body["scale"] = json!([2, 2, 2]);
+    body["translation"] = json!([1, 0, 0]);
+    let frame = json!({ "name": "Frame", "children": [1], "translation": [0, 1, 0],
+        "rotation": [0, 0, 0.70710677, 0.70710677], "scale": [2, -1, 3] });
+    let mut hook = hook();
+    hook["translation"] = json!([0.5, 2, 0]);
+    folder.write(
+        "nested.gltf",
+        gltf(json!([frame, hook, body, spring(1, 2)]), json!({})),
+    );
+    let mut stage = Stage::new(&folder.0);
+    // As one would do it by hand: frame · hook · anchor.
+    let frame = Transform::from_xyz(0.0, 1.0, 0.0)
+        .with_rotation(Quat::from_rotation_z(std::f32::consts::FRAC_PI_2))
+        .with_scale(Vec3::new(2.0, -1.0, 3.0));
+    let a = frame.transform_point(Vec3::new(0.5, 2.5, 0.0));
+    let b = Vec3::new(1.5, 0.0, 0.0);
+    for place in [
+        Transform::default(),
+        Transform::from_xyz(5.0, 0.0, 0.0).with_rotation(Quat::from_rotation_y(1.0)),
+    ] {
+        let root = stage.load_at("nested.gltf", place);
+        run(&mut stage.app, 2.0 * DT);
+        let element = stage.node(root, "Element");
+        let length = stage.get::<SpringReadout>(element).length;
+        assert!(
+            (length - a.distance(b)).abs() < 0.01,
+            "{length} against {}",
+            a.distance(b)
+        );
+        stage.app.world_mut().despawn(root);
+    }
+}
+
+#[test]
+fn a_scene_loaded_twice_is_two_scenes_and_nothing_stays_behind() {
+    let folder = Folder::new("twice");
+    folder.write(
+        "a.gltf",
+        rig(&json!({ "springDamper": { "a": 0, "b": 1, "stiffness": 100, "damping": 2 } })),
+    );
+    let mut stage = Stage::new(&folder.0);
+    run(&mut stage.app, 0.1);
+    let before = stage.app.world().entities().count_spawned();
+    for _ in 0..3 {
+        let one = stage.spawn("a.gltf", Transform::default());
+        let two = stage.spawn("a.gltf", Transform::from_xyz(3.0, 0.0, 0.0));
+        for root in [one, two] {
+            until(&mut stage.app, "both", |app| {
+                app.world().get::<Children>(root).map(|_| ())
+            });
+        }
+        run(&mut stage.app, 0.5);
+        for root in [one, two] {
+            let pair = *stage.get::<SpringDamper>(stage.node(root, "Element"));
+            assert_eq!(
+                [pair.body_a, pair.body_b],
+                ["Hook", "Weight"].map(|n| stage.node(root, n))
+            );
+        }
+        let [y, other] =
+            [one, two].map(|root| stage.place(stage.node(root, "Weight")).translation.y);
+        assert!(y < -0.05 && (y - other).abs() < 1e-4, "{y} and {other}");
+        stage.app.world_mut().despawn(one);
+        stage.app.world_mut().despawn(two);
+        run(&mut stage.app, 0.1);
+        assert_eq!(stage.app.world().entities().count_spawned(), before);
+        assert_eq!(stage.count::<RigidBody>(), 0);
+        let mut sets = stage.app.world_mut().query::<&RapierRigidBodySet>();
+        let bodies: usize = sets
+            .iter(stage.app.world())
+            .map(|set| set.bodies.len())
+            .sum();
+        assert_eq!(bodies, 0, "in Rapier");
+    }
+}
+
+#[test]
+fn hot_reload_puts_the_new_spring_in_the_place_of_the_old() {
+    let folder = Folder::new("reload");
+    let file =
+        |k: f32| rig(&json!({ "springDamper": { "a": 0, "b": 1, "stiffness": k, "damping": 2 } }));
+    folder.write("a.gltf", file(100.0));
+    let mut stage = Stage::new(&folder.0);
+    // Held, so that the server knows what to load again.
+    let server = stage.app.world().resource::<AssetServer>().clone();
+    let _held: Handle<Gltf> = server.load("a.gltf");
+    stage.load("a.gltf");
+    run(&mut stage.app, 0.2);
+    let entities = stage.app.world().entities().count_spawned();
+    folder.write("a.gltf", file(250.0));
+    stage.app.world().resource::<AssetServer>().reload("a.gltf");
+    until(&mut stage.app, "the new stiffness", |app| {
+        let mut pairs = app.world_mut().query::<&SpringDamper>();
+        let pair = pairs.single(app.world()).ok()?;
+        (pair.stiffness == 250.0).then_some(())
+    });
+    run(&mut stage.app, 0.2);
+    assert_eq!(stage.app.world().entities().count_spawned(), entities);
+    assert_eq!(stage.count::<RigidBody>(), 1);
+    assert!(stage.faults().is_empty());
+    let mut seen = stage.app.world_mut().query::<&SpringReadout>();
+    assert!(seen.single(stage.app.world()).expect("one").force() > 0.0);
+}
+
+#[test]
+fn broken_springs_have_faults_and_their_neighbour_swings_on() {
+    let folder = Folder::new("broken");
+    let mut nodes = vec![hook(), weight()];
+    nodes.push(element(
+        json!({ "springDamper": { "a": 0, "b": 1, "stiffness": 100, "damping": 2 } }),
+    ));
+    let broken = [
+        json!({ "spring": { "a": 0, "b": 1, "stiffness": -5 } }),
+        json!({ "spring": { "a": 0, "b": 99 } }),
+        json!({ "spring": { "a": 1, "b": 1 } }),
+        json!({ "spring": { "a": 0, "b": 1, "stiffness": 1e300 } }),
+        json!({ "springDamper": { "b": 1 } }),
+        json!({ "torsionSpring": { "a": 0, "b": 1, "axis": [0, 0, 0] } }),
+    ];
+    nodes.extend(broken.iter().cloned().map(element));
+    // These are no elements at all.
+    for nonsense in [json!([]), json!(null), json!({ "spring": 3 }), json!({})] {
+        nodes.push(element(nonsense));
+    }
+    folder.write("a.gltf", gltf(nodes.into(), json!({})));
+    let mut stage = Stage::new(&folder.0);
+    stage.load("a.gltf");
+    run(&mut stage.app, 0.5);
+    let faults = stage.faults();
+    assert_eq!(faults.len(), broken.len(), "{faults:#?}");
+    let all = faults.join("\n");
+    for part in [
+        "stiffness is negative",
+        "stiffness is infinite",
+        "same entity",
+        "body_b is an entity that does not exist",
+        "axis is zero",
+    ] {
+        assert!(all.contains(part), "{part} in {all}");
+    }
+    let weight = named(&mut stage.app, "Weight");
+    assert!(stage.place(weight).translation.y < -0.05);
+}
+
+#[test]
+fn broken_files_do_not_load_and_do_not_stop_the_game() {
+    let folder = Folder::new("files");
+    let right = rig(&json!({ "spring": { "a": 0, "b": 1 } }));
+    folder.write("right.gltf", &right);
+    folder.write("cut.gltf", &right[..right.len() / 2]);
+    folder.write("huge.gltf", right.replace("\"a\":0", "\"a\":1e999"));
+    folder.write("nan.gltf", right.replace("\"a\":0", "\"a\":NaN"));
+    folder.write(
+        "circle.gltf",
+        gltf(
+            json!([{ "children": [1] }, { "children": [0] }, hook()]),
+            json!({}),
+        ),
+    );
+    let mut stage = Stage::new(&folder.0);
+    for file in ["cut.gltf", "huge.gltf", "nan.gltf", "circle.gltf"] {
+        stage.spawn(file, Transform::default());
+    }
+    run(&mut stage.app, 0.5);
+    let root = stage.load("right.gltf");
+    run(&mut stage.app, 0.1);
+    stage.node(root, "Element");
+    assert_eq!(stage.count::<Spring>(), 1);
+}
+
+#[test]
+fn a_hundred_thousand_springs_load_in_seconds() {
+    let folder = Folder::new("many");
+    let mut nodes = vec![hook(), weight()];
+    for _ in 0..100_000 {
+        nodes.push(json!({ "extensions": { "BEVY_coilover": { "spring": { "a": 0, "b": 1, "stiffness": -1 } } } }));
+    }
+    let children: Vec<usize> = (2..nodes.len()).collect();
+    nodes.push(json!({ "children": children }));
+    folder.write("many.gltf", gltf(nodes.into(), json!({})));
+    let mut stage = Stage::new(&folder.0);
+    let started = std::time::Instant::now();
+    stage.load("many.gltf");
+    let took = started.elapsed();
+    println!("100 000 springs: {took:?}");
+    assert!(took.as_secs() < 60, "{took:?}");
+    assert_eq!(stage.count::<Spring>(), 100_000);
+}

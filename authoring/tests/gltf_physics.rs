@@ -1,0 +1,504 @@
+//! Does what `KHR_physics_rigid_bodies` says hold in Rapier, and what is soft in our elements?
+
+use crate::harness::*;
+use bevy::prelude::*;
+use bevy_coilover::prelude::*;
+use bevy_rapier3d::prelude::*;
+use serde_json::{Value, json};
+use std::f32::consts::{FRAC_PI_2, TAU};
+
+const G: f32 = 9.81;
+
+fn physics(name: &str, at: [f32; 3], physics: Value) -> Value {
+    json!({ "name": name, "translation": at, "extensions": { "KHR_physics_rigid_bodies": physics } })
+}
+
+fn shapes(list: Value) -> Value {
+    json!({ "KHR_implicit_shapes": { "shapes": list } })
+}
+
+fn play(name: &str, nodes: Value, extensions: Value) -> (Folder, Stage, Entity) {
+    let folder = Folder::new(name);
+    folder.write("a.gltf", gltf(nodes, extensions));
+    let mut stage = Stage::new(&folder.0);
+    let root = stage.load("a.gltf");
+    (folder, stage, root)
+}
+
+fn mass(stage: &Stage, entity: Entity) -> MassProperties {
+    match *stage.get::<AdditionalMassProperties>(entity) {
+        AdditionalMassProperties::MassProperties(properties) => properties,
+        AdditionalMassProperties::Mass(_) => panic!("mass alone"),
+    }
+}
+
+#[test]
+fn a_motion_arrives_with_its_numbers() {
+    let motion = json!({
+        "mass": 2.5, "centerOfMass": [0.1, 0.2, 0.3], "inertiaDiagonal": [0.5, 0.25, 0.125],
+        "inertiaOrientation": [0.0, 0.70710677, 0.0, 0.70710677],
+        "linearVelocity": [0.0, 0.0, 1.0], "angularVelocity": [2.0, 0.0, 0.0], "gravityFactor": 0.0,
+    });
+    // Velocities are in the node's space, which stands turned.
+    let mut node = physics("Body", [0.0, 0.0, 0.0], json!({ "motion": motion }));
+    node["rotation"] = json!([0.0, 0.70710677, 0.0, 0.70710677]);
+    let (_folder, mut stage, root) = play("motion", json!([node]), json!({}));
+    let body = stage.node(root, "Body");
+    assert_eq!(*stage.get::<RigidBody>(body), RigidBody::Dynamic);
+    let wanted = MassProperties {
+        mass: 2.5,
+        local_center_of_mass: Vec3::new(0.1, 0.2, 0.3),
+        principal_inertia: Vec3::new(0.5, 0.25, 0.125),
+        principal_inertia_local_frame: Quat::from_rotation_y(FRAC_PI_2),
+    };
+    let found = mass(&stage, body);
+    assert!(
+        found
+            .principal_inertia_local_frame
+            .angle_between(wanted.principal_inertia_local_frame)
+            < 1e-3
+    );
+    assert_eq!(
+        MassProperties {
+            principal_inertia_local_frame: wanted.principal_inertia_local_frame,
+            ..found
+        },
+        wanted
+    );
+    run(&mut stage.app, 1.0);
+    let at = stage.place(body).translation;
+    // The centre of mass goes straight; the node turns about it.
+    let centre = stage
+        .get::<GlobalTransform>(body)
+        .transform_point(wanted.local_center_of_mass);
+    let started = Quat::from_rotation_y(FRAC_PI_2) * wanted.local_center_of_mass;
+    assert!((centre - started).length() > 0.9, "{at}");
+    assert!((centre.y - started.y).abs() < 0.3, "no gravity");
+}
+
+#[test]
+fn mass_comes_from_the_shapes_where_the_file_leaves_it_open() {
+    let brick = json!({ "geometry": { "shape": 0 } });
+    let nodes = json!([
+        physics("Water", [0.0; 3], json!({ "motion": {}, "collider": brick })),
+        physics("Light", [9.0, 0.0, 0.0], json!({ "motion": { "mass": 3 }, "collider": brick })),
+        // Two bricks side by side, on nodes below, one of them scaled and mirrored.
+        { "name": "Pair", "translation": [0, 9, 0], "children": [3, 4],
+            "extensions": { "KHR_physics_rigid_bodies": { "motion": {} } } },
+        physics("Left", [-2.0, 0.0, 0.0], json!({ "collider": brick })),
+        { "name": "Right", "translation": [2, 0, 0], "scale": [-1, 2, 1],
+            "extensions": { "KHR_physics_rigid_bodies": { "collider": brick } } },
+        physics("Nothing", [0.0, 0.0, 9.0], json!({ "motion": { "mass": 6 } })),
+        physics("Infinite", [0.0, 0.0, 5.0], json!({ "motion": { "mass": 0, "inertiaDiagonal": [0, 0, 0] } })),
+    ]);
+    let (_folder, mut stage, root) = play(
+        "mass",
+        nodes,
+        shapes(json!([{ "type": "box", "box": { "size": [1, 2, 3] } }])),
+    );
+    let of = |stage: &Stage, name: &str| mass(stage, stage.node(root, name));
+    let close = |a: f32, b: f32| (a - b).abs() < 1e-3 * b.abs();
+    let water = of(&stage, "Water");
+    assert!(close(water.mass, 6000.0), "{water:?}");
+    let light = of(&stage, "Light");
+    let frame = light.principal_inertia_local_frame;
+    // Whatever order the principal axes have.
+    let about = |axis: Vec3| {
+        let local = frame.inverse() * axis;
+        (light.principal_inertia * local * local).element_sum()
+    };
+    for (axis, wanted) in [
+        (Vec3::X, 4.0 + 9.0),
+        (Vec3::Y, 1.0 + 9.0),
+        (Vec3::Z, 1.0 + 4.0),
+    ] {
+        assert!(close(about(axis), 3.0 / 12.0 * wanted), "{light:?}");
+    }
+    let pair = of(&stage, "Pair");
+    assert!(close(pair.mass, 18_000.0), "{pair:?}");
+    assert!(
+        close(pair.local_center_of_mass.x, (12.0 * 2.0 - 6.0 * 2.0) / 18.0),
+        "{pair:?}"
+    );
+    assert_eq!(of(&stage, "Nothing").principal_inertia, Vec3::ONE);
+    run(&mut stage.app, 1.0);
+    let infinite = stage.node(root, "Infinite");
+    assert!(stage.place(infinite).translation.y.abs() < 1e-6);
+    // Rapier adds the colliders' own mass to none of them.
+    let water = stage.node(root, "Water");
+    let mut sets = stage.app.world_mut().query::<&RapierRigidBodySet>();
+    let handle = stage.get::<RapierRigidBodyHandle>(water).0;
+    let set = sets.single(stage.app.world()).expect("one");
+    assert!(close(set.bodies[handle].mass(), 6000.0));
+}
+
+#[test]
+fn every_shape_is_as_large_as_it_says() {
+    let all = [
+        (
+            json!({ "type": "sphere", "sphere": { "radius": 0.5 } }),
+            TAU * 2.0 / 3.0 * 0.125,
+        ),
+        (json!({ "type": "box", "box": { "size": [1, 2, 3] } }), 6.0),
+        (json!({ "type": "box" }), 1.0),
+        (
+            json!({ "type": "cylinder", "cylinder": { "height": 2, "radiusTop": 0.5, "radiusBottom": 0.5 } }),
+            TAU * 0.25,
+        ),
+        (
+            json!({ "type": "cylinder", "cylinder": { "height": 3, "radiusTop": 0, "radiusBottom": 1 } }),
+            TAU / 2.0,
+        ),
+        (
+            json!({ "type": "cylinder", "cylinder": { "height": 3, "radiusTop": 1, "radiusBottom": 0 } }),
+            TAU / 2.0,
+        ),
+        (
+            json!({ "type": "cylinder", "cylinder": { "height": 1, "radiusTop": 1, "radiusBottom": 2 } }),
+            TAU / 6.0 * (1.0 + 2.0 + 4.0),
+        ),
+        (
+            json!({ "type": "capsule", "capsule": { "height": 2, "radiusTop": 0.5, "radiusBottom": 0.5 } }),
+            TAU * 0.25 + TAU * 2.0 / 3.0 * 0.125,
+        ),
+        (
+            json!({ "type": "capsule", "capsule": { "height": 1, "radiusTop": 0.5, "radiusBottom": 0.501 } }),
+            TAU * 0.125 + TAU * 2.0 / 3.0 * 0.125,
+        ),
+    ];
+    let mut nodes = Vec::new();
+    for (i, _) in all.iter().enumerate() {
+        // Mirrored and scaled nodes have the size of the scale without its sign.
+        let mut node = physics(
+            &format!("S{i}"),
+            [10.0 * i as f32, 0.0, 0.0],
+            json!({ "motion": {}, "collider": { "geometry": { "shape": i } } }),
+        );
+        node["scale"] = json!([-2, -2, -2]);
+        nodes.push(node);
+    }
+    let list: Vec<_> = all.iter().map(|(shape, _)| shape.clone()).collect();
+    let (_folder, mut stage, root) = play("shapes", nodes.into(), shapes(list.into()));
+    run(&mut stage.app, 2.0 * DT);
+    for (i, (shape, volume)) in all.iter().enumerate() {
+        let found = mass(&stage, stage.node(root, &format!("S{i}"))).mass / 1000.0 / 8.0;
+        // Round rims that stand for a taper have 32 corners.
+        assert!(
+            (found / volume - 1.0).abs() < 0.02,
+            "{shape}: {found} is not {volume}"
+        );
+        let collider = stage.get::<Collider>(stage.node(root, &format!("S{i}")));
+        let real = collider.raw.mass_properties(1.0).mass() / 8.0;
+        assert!(
+            (real / volume - 1.0).abs() < 0.02,
+            "in Rapier, {shape}: {real} is not {volume}"
+        );
+    }
+}
+
+/// A hook that stands, a body of 2 kg a metre below, and a joint between them.
+fn joint(name: &str, kind: Value) -> (Folder, Stage, Entity) {
+    let nodes = json!([
+        physics(
+            "Hook",
+            [0.0, 2.0, 0.0],
+            json!({ "joint": { "connectedNode": 1, "joint": 0 } })
+        ),
+        physics(
+            "Body",
+            [0.0, 1.0, 0.0],
+            json!({ "motion": { "mass": 2, "inertiaDiagonal": [0.1, 0.1, 0.1] } })
+        ),
+    ]);
+    play(
+        name,
+        nodes,
+        json!({ "KHR_physics_rigid_bodies": { "physicsJoints": [kind] } }),
+    )
+}
+
+#[test]
+fn a_limit_of_equal_min_and_max_with_a_stiffness_is_a_spring_damper() {
+    let (_folder, mut stage, root) = joint(
+        "spring",
+        json!({ "limits": [
+        { "linearAxes": [0, 1, 2], "min": 1, "max": 1, "stiffness": 80, "damping": 0 }] }),
+    );
+    let mut pairs = stage.app.world_mut().query::<&SpringDamper>();
+    let pair = *pairs.single(stage.app.world()).expect("one element");
+    assert_eq!(
+        (pair.stiffness, pair.damping, pair.rest_length),
+        (80.0, 0.0, Some(1.0))
+    );
+    assert_eq!(pair.body_a, stage.node(root, "Hook"));
+    // Let go at rest length, it swings about its sag with the frequency of theory.
+    let body = stage.node(root, "Body");
+    let mut lowest = (0.0_f32, 0.0);
+    let period = TAU / (80.0_f32 / 2.0).sqrt();
+    for i in 0..(1.2 * period / DT) as usize {
+        stage.app.update();
+        let y = stage.place(body).translation.y;
+        if y < lowest.0 || i == 0 {
+            lowest = (y, i as f32 * DT);
+        }
+    }
+    let sag = 2.0 * G / 80.0;
+    assert!(
+        (lowest.0 - (1.0 - 2.0 * sag)).abs() < 0.01 * sag,
+        "{lowest:?}"
+    );
+    assert!(
+        (lowest.1 - period / 2.0).abs() < 3.0 * DT,
+        "{lowest:?} {period}"
+    );
+    assert!(stage.faults().is_empty(), "{:?}", stage.faults());
+}
+
+#[test]
+fn a_soft_max_alone_is_a_rope_and_a_rigid_one_too() {
+    for (name, stiffness) in [("rope", Some(4000.0)), ("rod", None)] {
+        let mut limit = json!({ "linearAxes": [0, 1, 2], "max": 1.5 });
+        if let Some(stiffness) = stiffness {
+            limit["stiffness"] = json!(stiffness);
+            limit["damping"] = json!(200);
+        }
+        let (_folder, mut stage, root) = joint(name, json!({ "limits": [limit] }));
+        let body = stage.node(root, "Body");
+        run(&mut stage.app, 0.2);
+        let free = 1.0 - 0.5 * G * 0.04;
+        assert!(
+            (stage.place(body).translation.y - free).abs() < 0.05,
+            "slack is slack"
+        );
+        run(&mut stage.app, 3.0);
+        let y = stage.place(body).translation.y;
+        let sag = stiffness.map_or(0.0, |k| 2.0 * G / k);
+        assert!((y - (0.5 - sag)).abs() < 5e-3, "{name} {y}");
+    }
+}
+
+#[test]
+fn one_axis_is_a_spring_axis_and_stops_are_travel() {
+    // A slide along Y: the rest rigid.
+    let (_folder, mut stage, root) = joint(
+        "slide",
+        json!({ "limits": [
+        { "linearAxes": [0, 2], "max": 0 },
+        { "angularAxes": [0, 1, 2], "max": 0 },
+        { "linearAxes": [1], "min": -1.25, "max": 0.5, "stiffness": 2000, "damping": 50 }] }),
+    );
+    run(&mut stage.app, 4.0);
+    let body = stage.node(root, "Body");
+    let place = stage.place(body);
+    let sag = 2.0 * G / 2000.0;
+    assert!(
+        (place.translation - Vec3::Y * (0.75 - sag)).length() < 2e-3,
+        "{place:?}"
+    );
+    assert_eq!(stage.count::<SpringAxis>(), 1);
+    assert_eq!(stage.count::<SpringTravel>(), 1);
+    assert!(stage.faults().is_empty(), "{:?}", stage.faults());
+}
+
+#[test]
+fn a_linear_drive_holds_its_target_against_the_weight_up_to_its_force() {
+    for (name, max, wanted) in [
+        ("drive", Value::Null, 0.5 - 2.0 * G / 500.0),
+        ("weak", json!(10), f32::NAN),
+    ] {
+        let mut drive = json!({ "type": "linear", "mode": "force", "axis": 1, "positionTarget": -1.5,
+            "stiffness": 500, "damping": 60 });
+        if !max.is_null() {
+            drive["maxForce"] = max;
+        }
+        let (_folder, mut stage, root) = joint(
+            name,
+            json!({
+                "limits": [{ "linearAxes": [0, 2], "max": 0 }, { "angularAxes": [0, 1, 2], "max": 0 }],
+                "drives": [drive],
+            }),
+        );
+        let body = stage.node(root, "Body");
+        run(&mut stage.app, 3.0);
+        let y = stage.place(body).translation.y;
+        if wanted.is_nan() {
+            assert!(y < -5.0, "10 N do not hold 2 kg: {y}");
+            assert_eq!(stage.count::<MaxForce>(), 1);
+        } else {
+            assert!((y - wanted).abs() < 2e-3, "{y} is not {wanted}");
+        }
+    }
+}
+
+#[test]
+fn drives_reach_their_speed() {
+    let slide = json!([{ "linearAxes": [0, 1], "max": 0 }, { "angularAxes": [0, 1, 2], "max": 0 }]);
+    let hinge = json!([{ "linearAxes": [0, 1, 2], "min": 0, "max": 0 }, { "angularAxes": [0, 1], "max": 0 }]);
+    for mode in ["force", "acceleration"] {
+        for (kind, limits) in [("linear", &slide), ("angular", &hinge)] {
+            let drive = json!({ "type": kind, "mode": mode, "axis": 2, "velocityTarget": 1.5, "damping": 20 });
+            let nodes = json!([
+                physics(
+                    "Hook",
+                    [0.0; 3],
+                    json!({ "joint": { "connectedNode": 1, "joint": 0 } })
+                ),
+                physics(
+                    "Body",
+                    [0.0; 3],
+                    json!({ "motion": {
+                    "mass": 2, "inertiaDiagonal": [0.1, 0.1, 0.1], "gravityFactor": 0 } })
+                ),
+            ]);
+            let kinds = json!({ "KHR_physics_rigid_bodies": { "physicsJoints": [{ "limits": limits, "drives": [drive] }] } });
+            let (_folder, mut stage, root) = play(&format!("speed_{mode}_{kind}"), nodes, kinds);
+            run(&mut stage.app, 2.0);
+            let velocity = *stage.get::<Velocity>(stage.node(root, "Body"));
+            let found = if kind == "linear" {
+                velocity.linear.z
+            } else {
+                velocity.angular.z
+            };
+            assert!((found - 1.5).abs() < 0.01, "{mode} {kind}: {velocity:?}");
+            assert!(stage.faults().is_empty(), "{:?}", stage.faults());
+        }
+    }
+}
+
+#[test]
+fn an_angular_spring_pulls_the_frames_together_not_the_bodies() {
+    // The connected node stands turned by 0.4 on its body, so the body rests at −0.4.
+    let nodes = json!([
+        physics("Hook", [0.0; 3], json!({ "joint": { "connectedNode": 2, "joint": 0 } })),
+        { "name": "Body", "children": [2], "extensions": { "KHR_physics_rigid_bodies": { "motion": {
+            "mass": 2, "inertiaDiagonal": [0.1, 0.1, 0.1], "gravityFactor": 0 } } } },
+        { "name": "Frame", "rotation": [0, 0, 0.19866933, 0.9800666] },
+    ]);
+    let kinds = json!({ "KHR_physics_rigid_bodies": { "physicsJoints": [{ "limits": [
+        { "linearAxes": [0, 1, 2], "max": 0 },
+        { "angularAxes": [0, 1], "max": 0 },
+        { "angularAxes": [2], "min": 0, "max": 0, "stiffness": 5, "damping": 1 }] }] } });
+    let (_folder, mut stage, root) = play("twist", nodes, kinds);
+    run(&mut stage.app, 3.0);
+    let turned = stage.place(stage.node(root, "Body")).rotation;
+    assert!(
+        turned.angle_between(Quat::from_rotation_z(-0.4)) < 1e-3,
+        "{turned:?}"
+    );
+    assert_eq!(stage.count::<TorsionSpringDamper>(), 1);
+    assert!(stage.faults().is_empty(), "{:?}", stage.faults());
+}
+
+#[test]
+fn triggers_tell_and_do_not_push() {
+    let nodes = json!([
+        physics(
+            "Gate",
+            [0.0, -2.0, 0.0],
+            json!({ "trigger": { "geometry": { "shape": 0 } } })
+        ),
+        physics(
+            "Ball",
+            [0.0; 3],
+            json!({ "motion": { "mass": 1 }, "collider": { "geometry": { "shape": 0 } } })
+        ),
+    ]);
+    let (_folder, mut stage, root) = play("trigger", nodes, shapes(json!([{ "type": "sphere" }])));
+    let mut met = 0;
+    for _ in 0..90 {
+        stage.app.update();
+        let messages = stage.app.world().resource::<Messages<CollisionEvent>>();
+        met += messages.iter_current_update_messages().count();
+    }
+    assert!(met >= 1, "nobody was told");
+    let y = stage.place(stage.node(root, "Ball")).translation.y;
+    assert!((y + 0.5 * G * 1.5 * 1.5).abs() < 0.4, "it fell freely: {y}");
+}
+
+#[test]
+fn filters_and_materials_arrive() {
+    let kinds = json!({
+        "KHR_implicit_shapes": { "shapes": [{ "type": "sphere" }, { "type": "plane" }] },
+        "KHR_physics_rigid_bodies": {
+            "physicsMaterials": [{ "staticFriction": 0.25, "dynamicFriction": 0.25, "restitution": 0.75,
+                "frictionCombine": "minimum", "restitutionCombine": "maximum" }],
+            "collisionFilters": [{ "collisionSystems": ["ghost"], "notCollideWithSystems": ["floor"] },
+                { "collisionSystems": ["floor"] }],
+        },
+    });
+    let ball = |filter: Value| {
+        let mut collider = json!({ "geometry": { "shape": 0 }, "physicsMaterial": 0 });
+        if !filter.is_null() {
+            collider["collisionFilter"] = filter;
+        }
+        json!({ "motion": { "mass": 1 }, "collider": collider })
+    };
+    let nodes = json!([
+        physics(
+            "Floor",
+            [0.0; 3],
+            json!({ "collider": { "geometry": { "shape": 1 }, "collisionFilter": 1 } })
+        ),
+        physics("Ball", [0.0, 1.0, 0.0], ball(Value::Null)),
+        physics("Ghost", [5.0, 1.0, 0.0], ball(json!(0))),
+    ]);
+    let (_folder, mut stage, root) = play("filters", nodes, kinds);
+    let [ball, ghost] = ["Ball", "Ghost"].map(|name| stage.node(root, name));
+    let friction = stage.get::<Friction>(ball);
+    assert_eq!(
+        (friction.coefficient, friction.combine_rule),
+        (0.25, CoefficientCombineRule::Min)
+    );
+    let bounce = stage.get::<Restitution>(ball);
+    assert_eq!(
+        (bounce.coefficient, bounce.combine_rule),
+        (0.75, CoefficientCombineRule::Max)
+    );
+    run(&mut stage.app, 3.0);
+    assert!(stage.place(ball).translation.y > 0.4);
+    assert!(stage.place(ghost).translation.y < -5.0);
+}
+
+#[test]
+fn what_cannot_be_honoured_does_not_stop_the_rest() {
+    let nodes = json!([
+        physics(
+            "Hook",
+            [0.0; 3],
+            json!({ "joint": { "connectedNode": 9, "joint": 0 } })
+        ),
+        physics(
+            "Lost",
+            [0.0; 3],
+            json!({ "joint": { "connectedNode": 2, "joint": 7 } })
+        ),
+        physics(
+            "Body",
+            [0.0; 3],
+            json!({ "motion": { "mass": -1, "shoe": 3 }, "collider": { "geometry": { "shape": 5 } } })
+        ),
+        physics(
+            "Alone",
+            [0.0; 3],
+            json!({ "joint": { "connectedNode": 0, "joint": 0 } })
+        ),
+        physics(
+            "Odd",
+            [0.0; 3],
+            json!({ "joint": { "connectedNode": 2, "joint": 0 } })
+        ),
+        physics("Wrong", [0.0; 3], json!([1, 2])),
+        physics(
+            "Flat",
+            [9.0, 0.0, 0.0],
+            json!({ "collider": { "geometry": { "node": 0 } } })
+        ),
+    ]);
+    let kinds = json!({ "KHR_physics_rigid_bodies": { "physicsJoints": [{ "limits": [
+        { "angularAxes": [0, 1, 2], "max": 1 }, { "linearAxes": [0, 5], "max": -3 }, 7] }] } });
+    let (_folder, mut stage, root) = play("odd", nodes, kinds);
+    run(&mut stage.app, 1.0);
+    let body = stage.node(root, "Body");
+    assert!(stage.place(body).translation.is_finite());
+    assert!(mass(&stage, body).mass > 0.0);
+}

@@ -1,0 +1,12 @@
+//! Springs that designers place: in scene files, over Bevy's remote protocol, with Skein, in glTF.
+
+mod harness;
+
+mod blender;
+mod data;
+mod gltf_elements;
+mod gltf_export;
+mod gltf_physics;
+mod gltf_samples;
+mod remote;
+//mod skein;

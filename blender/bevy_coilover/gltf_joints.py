@@ -1,0 +1,130 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+"""Blender's rigid body constraints as joints of KHR_physics_rigid_bodies.
+
+A constraint of Blender is an object between two others. In the file each of the two gets a child node with the pose of
+that object, and the joint ties the children together.
+"""
+
+from .axes import short, to_gltf
+
+BODIES = "KHR_physics_rigid_bodies"
+#: Marks the nodes made here, so that an import knows the constraint's object again.
+MARK = "coilover_joint"
+#: Blender's axes x, y, z in the file, with Y up.
+AXIS = {"x": 0, "y": 2, "z": 1}
+
+
+def turned(constraint, part, name):
+    """Whether a range counts the other way in the file.
+
+    The Y of Blender is the -Z of the file. And the angles of these constraints are those of object 1 against object 2,
+    as Blender's engine has them; the file's are those of the second frame against the first.
+    """
+    backwards = part == "ang" and constraint in ("HINGE", "GENERIC", "GENERIC_SPRING")
+    return (name == "y") != backwards
+
+
+def held(names, kind, low=0.0, high=0.0):
+    """A limit of one axis or several."""
+    return {kind + "Axes": sorted(AXIS[n] for n in names), "min": short(low), "max": short(high)}
+
+
+def single(rigid, part, name):
+    """The limits of one axis of a generic constraint: 'lin' or 'ang'."""
+    kind = {"lin": "linear", "ang": "angular"}[part]
+    if not getattr(rigid, f"use_limit_{part}_{name}"):
+        return []
+    low, high = getattr(rigid, f"limit_{part}_{name}_lower"), getattr(rigid, f"limit_{part}_{name}_upper")
+    if turned(rigid.type, part, name):
+        low, high = -high, -low
+    # Blender leaves an axis free whose lower limit is above the upper one.
+    return [held([name], kind, low, high)] if low <= high else []
+
+
+def springs(rigid):
+    """The springs of a generic constraint, towards the pose that it has now."""
+    out = []
+    for part, kind in (("", "linear"), ("ang_", "angular")):
+        for name in "xyz":
+            if getattr(rigid, f"use_spring_{part}{name}"):
+                out.append({
+                    "type": kind, "mode": "force", "axis": AXIS[name], "positionTarget": 0.0, "velocityTarget": 0.0,
+                    "stiffness": short(getattr(rigid, f"spring_stiffness_{part}{name}")),
+                    "damping": short(getattr(rigid, f"spring_damping_{part}{name}")),
+                })
+    return out
+
+
+def describe(rigid):
+    """Limits and drives of a constraint; None where the file has no words for it."""
+    kind = rigid.type
+    place = held("xyz", "linear")
+    if kind == "FIXED":
+        return {"limits": [place, held("xyz", "angular")]}
+    if kind == "POINT":
+        return {"limits": [place]}
+    if kind == "HINGE":
+        return {"limits": [place, held("xy", "angular"), *single(rigid, "ang", "z")]}
+    if kind == "SLIDER":
+        return {"limits": [held("yz", "linear"), held("xyz", "angular"), *single(rigid, "lin", "x")]}
+    if kind == "PISTON":
+        turn = single(rigid, "ang", "x")
+        return {"limits": [held("yz", "linear"), held("yz", "angular"), *single(rigid, "lin", "x"), *turn]}
+    if kind in ("GENERIC", "GENERIC_SPRING"):
+        limits = [limit for part in ("lin", "ang") for name in "xyz" for limit in single(rigid, part, name)]
+        said = {"limits": limits} if limits else {}
+        if kind == "GENERIC_SPRING" and springs(rigid):
+            said["drives"] = springs(rigid)
+        return said or None
+    return None
+
+
+def new_node(name, pose, settings):
+    """A node with a pose in its parent's frame as Blender has it."""
+    from io_scene_gltf2.io.com import gltf2_io
+
+    place, turn, _ = pose.decompose()
+    vector = to_gltf((turn.x, turn.y, turn.z))
+    return gltf2_io.Node(
+        camera=None, children=[], extensions=None, extras={MARK: name[0]}, matrix=None, mesh=None, name=" ".join(name),
+        rotation=[*(short(x) for x in vector), short(turn.w)], scale=None, skin=None,
+        translation=[short(x) for x in to_gltf(place)], weights=None,
+    )
+
+
+def frames(obj, gathered, node, settings):
+    """The numbers of the two nodes of a joint, or None where an object is not in the file."""
+    rigid = obj.rigid_body_constraint
+    targets = [rigid.object1, rigid.object2]
+    below = [None if t is None else gathered.near(t, node) for t in targets]
+    if None in below:
+        return None
+    poses = [t.matrix_world.inverted_safe() @ obj.matrix_world for t in targets]
+    return [
+        gathered.add(new_node((obj.name, "Joint", end), pose, settings), number)
+        for end, pose, number in zip("AB", poses, below)
+    ]
+
+
+def write(gathered, document, settings):
+    """All constraints of a file."""
+    from .gltf_write import warn
+
+    for node, obj in list(gathered.pairs):
+        rigid = obj.rigid_body_constraint
+        if rigid is None or not rigid.enabled:
+            continue
+        said = describe(rigid) if settings.get("gltf_yup", True) else None
+        if said is None:
+            warn(settings, f"{obj.name}: a constraint of type {rigid.type} cannot be written; it is left out")
+            continue
+        made = frames(obj, gathered, node, settings)
+        if made is None:
+            warn(settings, f"{obj.name}: an object of this constraint is not in the file; it is left out")
+            continue
+        if rigid.use_breaking:
+            warn(settings, f"{obj.name}: joints of the file do not break")
+        joint = {"connectedNode": made[1], "joint": document.shared(BODIES, "physicsJoints", said)}
+        if not rigid.disable_collisions:
+            joint["enableCollision"] = True
+        document.put(gathered.nodes[made[0]], BODIES, {"joint": joint})

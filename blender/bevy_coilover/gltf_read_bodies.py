@@ -1,0 +1,182 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+"""Bodies and joints that this add-on wrote, back into Blender's rigid bodies.
+
+Of other writers' files it reads what Blender has words for: motion, one collider per mesh, friction, and joints between
+frames that this add-on made.
+"""
+
+import bpy
+
+from .gltf_bodies import BODIES, SHAPES
+from .gltf_joints import AXIS, MARK, turned
+
+KIND = {"box": "BOX", "sphere": "SPHERE", "capsule": "CAPSULE"}
+
+
+def shape_kind(collider, shapes):
+    """Blender's shape of a collider."""
+    geometry = collider.get("geometry", {})
+    if "shape" in geometry:
+        shape = shapes[geometry["shape"]]
+        if shape["type"] == "cylinder":
+            return "CONE" if shape["cylinder"].get("radiusTop") == 0.0 else "CYLINDER"
+        return KIND.get(shape["type"], "CONVEX_HULL")
+    return "CONVEX_HULL" if geometry.get("convexHull") else "MESH"
+
+
+def activate(obj):
+    """Operators act on the active object. (An overridden context crashes Blender 5.0's `constraint_add`.)"""
+    bpy.context.view_layer.update()
+    bpy.context.view_layer.objects.active = obj
+
+
+def new_body(obj):
+    scene = bpy.context.scene
+    if scene.rigidbody_world is None:
+        bpy.ops.rigidbody.world_add()
+    activate(obj)
+    bpy.ops.rigidbody.object_add()
+    return obj.rigid_body
+
+
+def read_body(obj, said, root, shapes):
+    rigid = new_body(obj)
+    motion, collider = said.get("motion"), said.get("collider")
+    if motion is None:
+        rigid.type = "PASSIVE"
+    elif motion.get("isKinematic"):
+        rigid.type, rigid.kinematic = "PASSIVE", True
+    else:
+        rigid.type = "ACTIVE"
+        rigid.mass = motion.get("mass", rigid.mass)
+    if collider is None:
+        rigid.collision_shape = "COMPOUND"
+        return
+    rigid.collision_shape = shape_kind(collider, shapes)
+    if "physicsMaterial" in collider:
+        material = root["physicsMaterials"][collider["physicsMaterial"]]
+        rigid.friction = material.get("dynamicFriction", rigid.friction)
+        rigid.restitution = material.get("restitution", rigid.restitution)
+    if "collisionFilter" in collider:
+        systems = root["collisionFilters"][collider["collisionFilter"]].get("collisionSystems", [])
+        numbers = {int(n) for s in systems if s.startswith("layers") for n in s.split()[1:] if n.isdigit()}
+        if systems and systems[0].startswith("layers"):
+            rigid.collision_collections = [i + 1 in numbers for i in range(20)]
+
+
+def limited(said, kind):
+    """Axis -> (low, high) of the limits of one kind that have one axis, and the axes that are held."""
+    names = {number: name for name, number in AXIS.items()}
+    free, locked = {}, set()
+    for limit in said.get("limits", []):
+        axes = limit.get(kind + "Axes", [])
+        low, high = limit.get("min"), limit.get("max")
+        if len(axes) == 1:
+            free[names[axes[0]]] = (low, high)
+        if low == 0.0 and high == 0.0:
+            locked |= {names[a] for a in axes}
+    return free, locked
+
+
+def constraint_type(said):
+    """Which of Blender's constraints has these limits."""
+    lin, ang = limited(said, "linear")[1], limited(said, "angular")[1]
+    if said.get("drives"):
+        return "GENERIC_SPRING"
+    if lin == set("xyz"):
+        return {"xyz": "FIXED", "": "POINT", "xy": "HINGE"}.get("".join(sorted(ang)), "GENERIC")
+    if lin == set("yz"):
+        return {"xyz": "SLIDER", "yz": "PISTON"}.get("".join(sorted(ang)), "GENERIC")
+    return "GENERIC"
+
+
+def read_joint(obj, said, first, second, collide):
+    activate(obj)
+    bpy.ops.rigidbody.constraint_add()
+    rigid = obj.rigid_body_constraint
+    rigid.type = constraint_type(said)
+    rigid.object1, rigid.object2 = first, second
+    rigid.disable_collisions = not collide
+    for part, kind in (("lin", "linear"), ("ang", "angular")):
+        free, locked = limited(said, kind)
+        if rigid.type in ("GENERIC", "GENERIC_SPRING"):
+            free.update({name: (0.0, 0.0) for name in locked})
+        for name, (low, high) in free.items():
+            if low is None or high is None:
+                continue
+            if turned(rigid.type, part, name):
+                low, high = -high, -low
+            setattr(rigid, f"use_limit_{part}_{name}", True)
+            setattr(rigid, f"limit_{part}_{name}_lower", low)
+            setattr(rigid, f"limit_{part}_{name}_upper", high)
+    names = {number: name for name, number in AXIS.items()}
+    for drive in said.get("drives", []):
+        part = ("ang_" if drive["type"] == "angular" else "") + names[drive["axis"]]
+        setattr(rigid, f"use_spring_{part}", True)
+        setattr(rigid, f"spring_stiffness_{part}", drive.get("stiffness", 0.0))
+        setattr(rigid, f"spring_damping_{part}", drive.get("damping", 0.0))
+
+
+def owner(obj):
+    """The object with a rigid body that a joint's frame is below."""
+    while obj is not None and obj.rigid_body is None:
+        obj = obj.parent
+    return obj
+
+
+class Joint:
+    """A joint of this add-on's: the name of the constraint's object, and the nodes above its two frames."""
+
+    def __init__(self, name, said, above):
+        self.name, self.said, self.above = name, said, above
+
+
+def take_joints(gltf):
+    """The joints that this add-on wrote. Their frames, the last nodes of its files, are taken out of the document:
+    the constraint's own object has their pose.
+    """
+    nodes = gltf.data.nodes or []
+    marked = [i for i, node in enumerate(nodes) if isinstance(node.extras, dict) and MARK in node.extras]
+    parent = {child: i for i, node in enumerate(nodes) for child in node.children or []}
+    joints = []
+    for i in marked:
+        said = (nodes[i].extensions or {}).get(BODIES, {}).get("joint")
+        if said is not None:
+            above = (parent.get(i), parent.get(said.get("connectedNode")))
+            joints.append(Joint(nodes[i].extras[MARK], said, above))
+    if marked == list(range(len(nodes) - len(marked), len(nodes))):
+        for i in marked:
+            if parent.get(i) is not None:
+                nodes[parent[i]].children.remove(i)
+        del nodes[len(nodes) - len(marked):]
+    return joints
+
+
+def read(gltf, of, joints):
+    """All bodies and joints of a file; `of` gives the object of a node."""
+    from .gltf_read import warn
+
+    top = gltf.data.extensions or {}
+    root, shapes = top.get(BODIES, {}), top.get(SHAPES, {}).get("shapes", [])
+    active = bpy.context.view_layer.objects.active
+    for index, node in enumerate(gltf.data.nodes or []):
+        said, obj = (node.extensions or {}).get(BODIES), of.get(index)
+        if said is None or obj is None or obj.rigid_body is not None:
+            continue
+        if "joint" in said and MARK not in (node.extras or {}):
+            warn(gltf, f"{obj.name}: this joint was not written by this add-on, and is not read")
+        if "motion" not in said and "collider" not in said:
+            continue
+        if obj.type == "MESH":
+            read_body(obj, said, root, shapes)
+        else:
+            warn(gltf, f"{obj.name}: this body has no mesh, and Blender has rigid bodies of meshes alone")
+    # By the names that the file has: Blender may have others, where it knew such an object already.
+    by_name = {node.name: of[i] for i, node in enumerate(gltf.data.nodes or []) if of.get(i) is not None}
+    for joint in joints:
+        holder = by_name.get(joint.name)
+        if holder is not None:
+            first, second = (owner(of.get(number)) for number in joint.above)
+            said = root["physicsJoints"][joint.said["joint"]]
+            read_joint(holder, said, first, second, joint.said.get("enableCollision", False))
+    bpy.context.view_layer.objects.active = active

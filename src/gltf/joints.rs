@@ -1,0 +1,174 @@
+//! Joints: what is rigid becomes a joint of Rapier's, what is soft or driven becomes elements of ours.
+
+use super::carry::LoadedJoint;
+use super::expand::{owner, place};
+use super::physics_joint::{Drive, Limit};
+use super::soft::{self, Frames};
+use bevy::prelude::*;
+use bevy_rapier3d::prelude::*;
+use bevy_rapier3d::rapier::dynamics::{JointAxis, MotorModel};
+
+const LINEAR: [JointAxis; 3] = [JointAxis::LinX, JointAxis::LinY, JointAxis::LinZ];
+const ANGULAR: [JointAxis; 3] = [JointAxis::AngX, JointAxis::AngY, JointAxis::AngZ];
+
+/// An axis of the joint as Rapier names it.
+fn axis(linear: bool, index: usize) -> JointAxis {
+    if linear {
+        LINEAR[index]
+    } else {
+        ANGULAR[index]
+    }
+}
+
+/// Makes a joint between a node and the one it is connected to.
+pub(super) fn add(world: &mut World, node: Entity, joint: &LoadedJoint) {
+    let told = |what: &str| log::warn!("{}: joint: {what}", joint.place);
+    let other = joint.connected;
+    let (Some(a), Some(b)) = (place(world, node), place(world, other)) else {
+        return told("one of its nodes is nowhere; left out");
+    };
+    let bodies = [node, other].map(|end| owner(world, end));
+    if bodies == [None, None] {
+        return told("neither of its nodes has a motion; left out");
+    }
+    if bodies[0] == bodies[1] {
+        return told("both of its nodes belong to the same body; left out");
+    }
+    let [body_a, body_b] = [(bodies[0], node), (bodies[1], other)]
+        .map(|(body, end)| body.unwrap_or_else(|| anchor(world, end)));
+    let (Some(on_a), Some(on_b)) = (place(world, body_a), place(world, body_b)) else {
+        return told("one of its bodies is nowhere; left out");
+    };
+    let frames = Frames {
+        nodes: [node, other],
+        places: [a, b],
+        bodies: [on_a, on_b],
+    };
+    let mut rigid = GenericJoint::new(JointAxesMask::empty());
+    let local = |on: &Transform, at: &Transform| {
+        let turned = on.rotation.inverse();
+        (
+            turned * (at.translation - on.translation),
+            turned * at.rotation,
+        )
+    };
+    let ((at_a, turned_a), (at_b, turned_b)) = (local(&on_a, &a), local(&on_b, &b));
+    rigid
+        .set_local_anchor1(at_a)
+        .set_local_basis1(turned_a)
+        .set_local_anchor2(at_b)
+        .set_local_basis2(turned_b)
+        .set_contacts_enabled(joint.collide);
+    let mut acts = !joint.collide;
+    for limit in &joint.kind.limits {
+        if let Some(stiffness) = limit.stiffness {
+            if let Err(reason) = soft::add_limit(world, &frames, limit, stiffness) {
+                told(reason);
+            }
+        } else if let Err(reason) = hold(&mut rigid, limit) {
+            told(reason);
+        } else {
+            acts = true;
+        }
+    }
+    for drive in &joint.kind.drives {
+        if soft::is_ours(drive) {
+            soft::add_drive(world, &frames, drive);
+        } else {
+            acts = true;
+            motor(&mut rigid, drive);
+        }
+    }
+    if acts {
+        // On an entity of its own, since a body can have but one.
+        world.spawn((
+            ImpulseJoint::new(body_a, TypedJoint::GenericJoint(rigid)),
+            ChildOf(body_b),
+        ));
+    }
+}
+
+/// What a joint holds on to where no body is: the nearest collider above, or the node itself, made a fixed body.
+fn anchor(world: &mut World, node: Entity) -> Entity {
+    let mut current = Some(node);
+    let mut found = node;
+    while let Some(here) = current {
+        if world.get::<Collider>(here).is_some() {
+            found = here;
+            break;
+        }
+        current = world.get::<ChildOf>(here).map(ChildOf::parent);
+    }
+    world.entity_mut(found).insert(RigidBody::Fixed);
+    found
+}
+
+/// A limit that does not give.
+fn hold(joint: &mut GenericJoint, limit: &Limit) -> Result<(), &'static str> {
+    let axes: Vec<_> = (0..3).filter(|i| limit.axes[*i]).collect();
+    let mask = |joint: &mut GenericJoint| {
+        for i in &axes {
+            joint.lock_axes(JointAxesMask::from_bits_truncate(
+                1 << axis(limit.linear, *i) as u8,
+            ));
+        }
+    };
+    if limit.min.is_none() && limit.max.is_none() {
+        return Ok(());
+    }
+    if let [only] = axes[..] {
+        if (limit.min, limit.max) == (Some(0.0), Some(0.0)) {
+            mask(joint);
+            return Ok(());
+        }
+        let ends = [
+            limit.min.unwrap_or(-f32::MAX),
+            limit.max.unwrap_or(f32::MAX),
+        ];
+        joint.set_limits(axis(limit.linear, only), ends);
+        return Ok(());
+    }
+    // A distance, or the angle of a cone: never negative.
+    let min = limit.min.unwrap_or(0.0).max(0.0);
+    let Some(max) = limit.max else {
+        return Err("a rigid limit with only a min on two or three axes is not honoured");
+    };
+    if max <= 0.0 {
+        mask(joint);
+        return Ok(());
+    }
+    if !limit.linear && axes.len() == 3 {
+        return Err("a rigid limit of the whole rotation is not honoured, but for max = 0");
+    }
+    let mut coupled = joint.raw.coupled_axes;
+    for i in &axes {
+        coupled |= JointAxesMask::from_bits_truncate(1 << axis(limit.linear, *i) as u8);
+    }
+    joint.set_coupled_axes(coupled);
+    joint.set_limits(axis(limit.linear, axes[0]), [0.0, max]);
+    if min > 0.0 {
+        return Err("the min of a rigid limit on two or three axes is not honoured; its max is");
+    }
+    Ok(())
+}
+
+/// A drive as a motor of Rapier's.
+fn motor(joint: &mut GenericJoint, drive: &Drive) {
+    let axis = axis(drive.linear, drive.axis);
+    let model = if drive.acceleration {
+        MotorModel::AccelerationBased
+    } else {
+        MotorModel::ForceBased
+    };
+    joint.set_motor_model(axis, model);
+    joint.set_motor(
+        axis,
+        drive.position,
+        drive.velocity,
+        drive.stiffness,
+        drive.damping,
+    );
+    if let Some(most) = drive.max_force {
+        joint.set_motor_max_force(axis, most);
+    }
+}
