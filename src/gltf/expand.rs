@@ -34,6 +34,7 @@ pub(super) fn expand(world: &mut World) {
         let Some(place) = place(world, entity) else {
             continue;
         };
+        level_parent(world, entity, place);
         let weight = weights.get(&entity).copied().unwrap_or_default();
         let (properties, locked) = mass::mass(&motion, weight, place.scale);
         let mut body = world.entity_mut(entity);
@@ -94,6 +95,25 @@ pub(super) fn place(world: &mut World, entity: Entity) -> Option<Transform> {
         .ok()?;
     let place = global.compute_transform();
     place.is_finite().then_some(place)
+}
+
+/// Puts an entity that undoes all turning above between a body and its parent, if there is any: bevy_rapier3d 0.36 writes
+/// wrong places into bodies below what is turned.
+fn level_parent(world: &mut World, body: Entity, at: Transform) {
+    let Some(parent) = world.get::<ChildOf>(body).map(ChildOf::parent) else {
+        return;
+    };
+    let Some(above) = place(world, parent) else {
+        return;
+    };
+    if above.rotation.angle_between(Quat::IDENTITY) < 1e-6 || above.scale.cmpeq(Vec3::ZERO).any() {
+        return;
+    }
+    let undone = Transform::from_matrix(above.to_matrix().inverse());
+    let level = world
+        .spawn((undone, Visibility::default(), ChildOf(parent)))
+        .id();
+    world.entity_mut(body).insert((at, ChildOf(level)));
 }
 
 /// The collider of an entity, and what it weighs in its body's frame.
