@@ -48,6 +48,17 @@ impl Sample {
     fn find(&mut self, parent: Entity, nodes: &Value) {
         let children = self.stage.app.world().get::<Children>(parent);
         let mut children: Vec<_> = children.into_iter().flatten().copied().collect();
+        // What undoes a turning has no name, and a body of the file below it.
+        let world = self.stage.app.world();
+        let nameless = |child: &Entity| world.get::<Name>(*child).is_none();
+        let deeper: Vec<_> = children
+            .iter()
+            .filter(|child| nameless(child))
+            .filter_map(|child| world.get::<Children>(*child))
+            .flatten()
+            .copied()
+            .collect();
+        children.extend(deeper);
         for node in nodes.as_array().into_iter().flatten() {
             let node = node.as_u64().expect("an index") as usize;
             let name = self.name(node);

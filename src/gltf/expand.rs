@@ -18,6 +18,10 @@ pub(super) fn any_loaded(
 /// Subdivisions of round shapes that are scaled unevenly, as Rapier has by default.
 const SUBDIVISIONS: u32 = 10;
 
+/// Sizes of colliders (m) and their distances from the origin, beyond which Rapier's collision detection panics.
+const LARGEST: f32 = 1e6;
+const SMALLEST: f32 = 1e-5;
+
 /// Gives all that scenes have brought to Rapier.
 pub(super) fn expand(world: &mut World) {
     let mut weights = EntityHashMap::<RapierMass>::default();
@@ -148,6 +152,14 @@ fn add_collider(
         here.scale
     };
     scaled.set_scale(scale, SUBDIVISIONS);
+    let extents = scaled.raw.compute_local_aabb().extents();
+    let endless = matches!(scaled.as_typed_shape(), ColliderView::HalfSpace(_));
+    let sound =
+        extents.is_finite() && extents.max_element() < LARGEST && extents.max_element() > SMALLEST;
+    if !(endless || sound) || !(here.translation.abs().max_element() < LARGEST) {
+        log::warn!("{place_of}: its collider is too large, too small or too far away; left out");
+        return None;
+    }
     let mut node = world.entity_mut(entity);
     node.insert(Collider::from(shape));
     if mirrored {
