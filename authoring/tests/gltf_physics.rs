@@ -502,3 +502,41 @@ fn what_cannot_be_honoured_does_not_stop_the_rest() {
     assert!(stage.place(body).translation.is_finite());
     assert!(mass(&stage, body).mass > 0.0);
 }
+
+#[test]
+fn bodies_below_turned_nodes_and_turned_scenes_fall_down() {
+    let folder = Folder::new("turned");
+    let ball = json!({ "motion": { "mass": 1, "linearVelocity": [0, 0, 1] } });
+    let mut frame = json!({ "name": "Frame", "children": [1], "translation": [1, 0, 0] });
+    frame["rotation"] = json!([0.5, 0.5, 0.5, 0.5]);
+    let nodes = json!([frame, physics("Ball", [0.0, 0.0, 2.0], ball)]);
+    folder.write("a.gltf", gltf(nodes, json!({})));
+    let mut stage = Stage::new(&folder.0);
+    let turned = Quat::from_rotation_x(1.0);
+    let before = stage.app.world().entities().count_spawned();
+    for place in [
+        Transform::default(),
+        Transform::from_xyz(0.0, 3.0, 0.0).with_rotation(turned),
+    ] {
+        let root = stage.load_at("a.gltf", place);
+        let ball = stage.node(root, "Ball");
+        // (x, y, z) becomes (z, x, y) below the frame.
+        let start = place.transform_point(Vec3::new(1.0 + 2.0, 0.0, 0.0));
+        let velocity = place.rotation * Vec3::X;
+        let (at, moving) = (stage.place(ball).translation, *stage.get::<Velocity>(ball));
+        let ticks = moving.linear.y - velocity.y;
+        assert!(at.distance(start) < 0.1, "{at} is not {start} ({ticks})");
+        run(&mut stage.app, 1.0);
+        let now = stage.place(ball).translation;
+        let seconds = -(stage.get::<Velocity>(ball).linear.y - velocity.y) / G;
+        let wanted = start + velocity * seconds - Vec3::Y * 0.5 * G * seconds * seconds;
+        assert!((0.9..1.2).contains(&seconds), "{seconds}");
+        assert!(
+            now.distance(wanted) < 0.1,
+            "{now} is not {wanted} after {seconds} s"
+        );
+        stage.app.world_mut().despawn(root);
+    }
+    run(&mut stage.app, 0.1);
+    assert_eq!(stage.app.world().entities().count_spawned(), before);
+}

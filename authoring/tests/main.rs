@@ -9,4 +9,4 @@ mod gltf_export;
 mod gltf_physics;
 mod gltf_samples;
 mod remote;
-//mod skein;
+mod skein;

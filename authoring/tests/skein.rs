@@ -1,12 +1,16 @@
-//! Can Skein, which puts components on Blender's objects, put a spring there? With its own plugin and its own formats.
+//! Can Skein, which puts components on Blender's objects, put a spring there? With its JSON format, read as Skein 0.6 reads
+//! it: each component by reflection, out of a node's extras.
 
 use crate::harness::*;
+use bevy::ecs::reflect::{AppTypeRegistry, ReflectCommandExt};
+use bevy::gltf::GltfExtras;
 use bevy::prelude::*;
+use bevy::reflect::serde::ReflectDeserializer;
 use bevy_coilover::prelude::*;
-use bevy_skein::SkeinPlugin;
+use serde::de::DeserializeSeed;
 use serde_json::{Value, json};
 
-/// A file as Skein exports it: components in `extras` up to Bevy 0.18's format, in an extension since.
+/// A file as Skein exports it, with components in `extras`.
 fn scene(on_node: impl Fn(Value) -> Value) -> Value {
     let with = |name: &str, at: [f32; 3], components: Value| {
         let mut node = on_node(components);
@@ -18,9 +22,11 @@ fn scene(on_node: impl Fn(Value) -> Value) -> Value {
         { "bevy_rapier3d::dynamics::rigid_body::RigidBody": "Dynamic" },
         { "bevy_rapier3d::dynamics::rigid_body::AdditionalMassProperties": { "Mass": 1.0 } },
     ]);
+    // What the default has there.
+    let nobody = Entity::PLACEHOLDER.to_bits();
     let spring = json!([
         { "bevy_coilover::SpringDamper": {
-            "body_a": 0, "body_b": 0, "stiffness": 100.0, "damping": 2.0, "rest_length": { "Some": 1.5 },
+            "body_a": nobody, "body_b": nobody, "stiffness": 100.0, "damping": 2.0, "rest_length": 1.5,
         } },
         { "bevy_coilover::EndNames": { "a": "Hook", "b": "Weight" } },
         { "bevy_coilover::MaxForce": 500.0 },
@@ -28,7 +34,6 @@ fn scene(on_node: impl Fn(Value) -> Value) -> Value {
     ]);
     json!({
         "asset": { "version": "2.0" },
-        "extensionsUsed": ["BEVY_skein"],
         "scene": 0,
         "scenes": [{ "name": "Scene", "nodes": [0, 1, 2] }],
         "nodes": [
@@ -39,42 +44,41 @@ fn scene(on_node: impl Fn(Value) -> Value) -> Value {
     })
 }
 
-fn check(scene: Value) {
-    let folder = std::env::temp_dir().join(format!("coilover_skein_{}", std::process::id()));
-    std::fs::create_dir_all(&folder).expect("a folder");
-    let file = folder.join(format!("{:?}.gltf", std::thread::current().id()));
-    std::fs::write(&file, scene.to_string()).expect("writes");
-    let mut app = app_with_files(&folder);
-    app.add_plugins((CoiloverPlugin::default(), SkeinPlugin::default()));
-    prime(&mut app);
-    let server = app.world().resource::<AssetServer>().clone();
-    let handle = server.load(GltfAssetLabel::Scene(0).from_asset(file.clone()));
-    app.world_mut().spawn(WorldAssetRoot(handle));
-    let element = until(&mut app, "the scene", |app| {
-        let mut found = app.world_mut().query_filtered::<Entity, With<SpringDamper>>();
-        found.single(app.world()).ok()
-    });
-    run(&mut app, 0.2);
-    let (a, b) = (named(&mut app, "Hook"), named(&mut app, "Weight"));
-    let world = app.world();
-    let pair = world.get::<SpringDamper>(element).expect("a pair");
-    assert_eq!([pair.body_a, pair.body_b], [a, b]);
-    assert_eq!((pair.stiffness, pair.damping, pair.rest_length), (100.0, 2.0, Some(1.5)));
-    assert_eq!(world.get::<MaxForce>(element), Some(&MaxForce(500.0)));
-    assert_eq!(world.get::<SpringAction>(element), Some(&SpringAction::Pull));
-    assert!(world.get::<SpringFault>(element).is_none());
-    assert!(world.get::<SpringReadout>(element).is_some_and(|seen| seen.force() > 1.0));
-    std::fs::remove_file(file).expect("ours");
+/// What Skein's plugin does with the extras of a node.
+fn read_extras(
+    added: On<Add, GltfExtras>,
+    extras: Query<&GltfExtras>,
+    registry: Res<AppTypeRegistry>,
+    mut commands: Commands,
+) {
+    let value = &extras.get(added.entity).expect("just added").value;
+    let value: Value = serde_json::from_str(value).expect("JSON");
+    for component in value["skein"].as_array().into_iter().flatten() {
+        let registry = registry.read();
+        let read = ReflectDeserializer::new(&registry).deserialize(component);
+        let read = read.unwrap_or_else(|error| panic!("{component}: {error}"));
+        commands.entity(added.entity).insert_reflect(read);
+    }
 }
 
 #[test]
 fn springs_in_extras() {
-    check(scene(|components| json!({ "extras": { "skein": components } })));
-}
-
-#[test]
-fn springs_in_skeins_extension() {
-    check(scene(
-        |components| json!({ "extensions": { "BEVY_skein": { "components": components } } }),
-    ));
+    let folder = Folder::new("skein");
+    let scene = scene(|components| json!({ "extras": { "skein": components } }));
+    folder.write("a.gltf", scene.to_string());
+    let mut stage = Stage::new(&folder.0);
+    stage.app.add_observer(read_extras);
+    let root = stage.load("a.gltf");
+    run(&mut stage.app, 3.0 * DT);
+    let [a, b, element] = ["Hook", "Weight", "Spring"].map(|name| stage.node(root, name));
+    let pair = *stage.get::<SpringDamper>(element);
+    assert_eq!([pair.body_a, pair.body_b], [a, b]);
+    assert_eq!(
+        (pair.stiffness, pair.damping, pair.rest_length),
+        (100.0, 2.0, Some(1.5))
+    );
+    assert_eq!(*stage.get::<MaxForce>(element), MaxForce(500.0));
+    assert_eq!(*stage.get::<SpringAction>(element), SpringAction::Pull);
+    assert!(stage.faults().is_empty(), "{:?}", stage.faults());
+    assert!(stage.get::<SpringReadout>(element).force() > 1.0);
 }

@@ -18,6 +18,10 @@ pub(super) fn any_loaded(
 /// Subdivisions of round shapes that are scaled unevenly, as Rapier has by default.
 const SUBDIVISIONS: u32 = 10;
 
+/// Sizes of colliders (m) and their distances from the origin, beyond which Rapier's collision detection panics.
+const LARGEST: f32 = 1e6;
+const SMALLEST: f32 = 1e-5;
+
 /// Gives all that scenes have brought to Rapier.
 pub(super) fn expand(world: &mut World) {
     let mut weights = EntityHashMap::<RapierMass>::default();
@@ -34,6 +38,7 @@ pub(super) fn expand(world: &mut World) {
         let Some(place) = place(world, entity) else {
             continue;
         };
+        level_parent(world, entity, place);
         let weight = weights.get(&entity).copied().unwrap_or_default();
         let (properties, locked) = mass::mass(&motion, weight, place.scale);
         let mut body = world.entity_mut(entity);
@@ -96,6 +101,25 @@ pub(super) fn place(world: &mut World, entity: Entity) -> Option<Transform> {
     place.is_finite().then_some(place)
 }
 
+/// Puts an entity that undoes all turning above between a body and its parent, if there is any: bevy_rapier3d 0.36 writes
+/// wrong places into bodies below what is turned.
+fn level_parent(world: &mut World, body: Entity, at: Transform) {
+    let Some(parent) = world.get::<ChildOf>(body).map(ChildOf::parent) else {
+        return;
+    };
+    let Some(above) = place(world, parent) else {
+        return;
+    };
+    if above.rotation.angle_between(Quat::IDENTITY) < 1e-6 || above.scale.cmpeq(Vec3::ZERO).any() {
+        return;
+    }
+    let undone = Transform::from_matrix(above.to_matrix().inverse());
+    let level = world
+        .spawn((undone, Visibility::default(), ChildOf(parent)))
+        .id();
+    world.entity_mut(body).insert((at, ChildOf(level)));
+}
+
 /// The collider of an entity, and what it weighs in its body's frame.
 fn add_collider(
     world: &mut World,
@@ -128,6 +152,14 @@ fn add_collider(
         here.scale
     };
     scaled.set_scale(scale, SUBDIVISIONS);
+    let extents = scaled.raw.compute_local_aabb().extents();
+    let endless = matches!(scaled.as_typed_shape(), ColliderView::HalfSpace(_));
+    let sound =
+        extents.is_finite() && extents.max_element() < LARGEST && extents.max_element() > SMALLEST;
+    if !(endless || sound) || !(here.translation.abs().max_element() < LARGEST) {
+        log::warn!("{place_of}: its collider is too large, too small or too far away; left out");
+        return None;
+    }
     let mut node = world.entity_mut(entity);
     node.insert(Collider::from(shape));
     if mirrored {

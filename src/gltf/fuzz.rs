@@ -58,6 +58,16 @@ impl Dice {
         }
     }
 
+    /// Changes what one of some extensions says, and leaves it an extension.
+    fn spoil_one(&mut self, extensions: &mut Value) {
+        if let Some(map) = extensions.as_object_mut() {
+            let which = self.roll(map.len());
+            if let Some(inner) = map.values_mut().nth(which) {
+                self.spoil(inner);
+            }
+        }
+    }
+
     /// Changes a value somewhere.
     fn spoil(&mut self, value: &mut Value) {
         let stop = self.roll(4) == 0;
@@ -258,8 +268,13 @@ fn spoilt_files_harm_nobody() {
     while started.elapsed() < Duration::from_secs(seconds) {
         let mut file = scene();
         for _ in 0..=dice.roll(6) {
-            dice.spoil(&mut file["nodes"]);
-            dice.spoil(&mut file["extensions"]);
+            let node = dice.roll(file["nodes"].as_array().map_or(0, Vec::len));
+            dice.spoil_one(&mut file["nodes"][node]["extensions"]);
+            dice.spoil_one(&mut file["extensions"]);
+            let scales = [[1e30, 1.0, 1.0], [0.0, 0.0, 0.0], [-1.0, 1.0, 1e-30]];
+            if dice.roll(8) == 0 {
+                file["nodes"][node]["scale"] = json!(dice.pick(&scales));
+            }
         }
         let now = Instant::now();
         match play(&mut app, &file) {

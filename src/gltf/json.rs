@@ -34,6 +34,9 @@ impl Told {
     }
 }
 
+/// Most that a number of a body, shape or joint can be: beyond, Rapier's squares are infinite.
+const MOST: f32 = 1e12;
+
 /// An object of the file, with its place for messages.
 #[derive(Clone)]
 pub(super) struct Object<'a> {
@@ -124,10 +127,10 @@ impl<'a> Object<'a> {
         self.wanted(key, "a number", |v| v.as_f64().map(|x| x as f32))
     }
 
-    /// A number that is not infinite.
+    /// A number that an engine can do with.
     pub(super) fn finite(&self, key: &str) -> Option<f32> {
-        self.wanted(key, "a number of single precision", |v| {
-            v.as_f64().map(|x| x as f32).filter(|x| x.is_finite())
+        self.wanted(key, "a number below 1e12", |v| {
+            v.as_f64().map(|x| x as f32).filter(|x| x.abs() <= MOST)
         })
     }
 
@@ -152,11 +155,11 @@ impl<'a> Object<'a> {
         self.numbers(key).map(Vec3::from_array)
     }
 
-    /// A vector of which no number is infinite.
+    /// A vector that an engine can do with.
     pub(super) fn finite_vector(&self, key: &str) -> Option<Vec3> {
         let vector = self.vector(key)?;
-        if !vector.is_finite() {
-            self.tell(key, "is beyond single precision; left out");
+        if !vector.abs().cmple(Vec3::splat(MOST)).all() {
+            self.tell(key, "has a number above 1e12; left out");
             return None;
         }
         Some(vector)
