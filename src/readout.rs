@@ -15,7 +15,6 @@ use bevy::prelude::*;
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
-#[type_path = "bevy_coilover"]
 pub struct SpringReadout {
     /// Distance between the anchors, m.
     pub length: f32,
@@ -60,7 +59,6 @@ pub struct SpringReadout {
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Default, Debug, PartialEq, Clone, Hash)]
-#[type_path = "bevy_coilover"]
 pub enum SpringMethod {
     /// It took no part: nothing it holds can move, or it is at fault. What is asleep shows its last step.
     #[default]

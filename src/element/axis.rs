@@ -7,7 +7,6 @@ use bevy::prelude::*;
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Component, Debug, PartialEq, Clone)]
-#[type_path = "bevy_coilover"]
 pub enum SpringAxis {
     /// An axis of the world. Each end is pushed at its own point, so ends that are apart across the axis
     /// feel a torque which nobody answers, as with any force from outside.

@@ -6,7 +6,6 @@ use bevy::prelude::*;
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Component, Debug, PartialEq, Clone)]
-#[type_path = "bevy_coilover"]
 pub struct Breakable {
     /// Size of the force of spring and damper together, N; infinite for no limit.
     pub force: f32,
@@ -22,7 +21,6 @@ pub struct Breakable {
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Default, Debug, PartialEq, Clone, Hash)]
-#[type_path = "bevy_coilover"]
 pub enum WhenBroken {
     /// It is despawned, after the observers of [`SpringBroke`] have run.
     #[default]

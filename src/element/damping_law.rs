@@ -12,7 +12,6 @@ use bevy::prelude::*;
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
-#[type_path = "bevy_coilover"]
 pub enum DampingLaw {
     /// The element's damping times the rate.
     #[default]

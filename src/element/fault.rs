@@ -9,7 +9,6 @@ use std::fmt;
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Component, Debug, PartialEq, Clone)]
-#[type_path = "bevy_coilover"]
 pub struct SpringFault {
     /// The element.
     pub entity: Entity,

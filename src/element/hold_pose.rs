@@ -36,7 +36,6 @@ use bevy::prelude::*;
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
-#[type_path = "bevy_coilover"]
 pub struct HoldPose {
     /// Which end is the load.
     pub load: HeldEnd,
@@ -52,7 +51,6 @@ pub struct HoldPose {
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Default, Debug, PartialEq, Clone, Hash)]
-#[type_path = "bevy_coilover"]
 pub enum HeldEnd {
     /// The one that moves; a fault where both do.
     #[default]

@@ -15,7 +15,6 @@ use std::sync::Arc;
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
-#[type_path = "bevy_coilover"]
 pub enum SpringLaw {
     /// The element's stiffness times the stretch.
     #[default]
@@ -39,7 +38,6 @@ pub enum SpringLaw {
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Default, Debug, PartialEq, Clone)]
-#[type_path = "bevy_coilover"]
 pub struct Polynomial {
     /// k₁, N/m.
     pub linear: f32,

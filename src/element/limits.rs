@@ -6,7 +6,6 @@ use bevy::prelude::*;
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Component, Default, Debug, PartialEq, Clone, Hash)]
-#[type_path = "bevy_coilover"]
 pub enum SpringAction {
     /// Pulls and pushes.
     #[default]
@@ -29,7 +28,6 @@ pub enum SpringAction {
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
-#[type_path = "bevy_coilover"]
 pub struct Preload(pub f32);
 
 /// Most force that spring and damper have together, N, above zero; the stops of a
@@ -39,7 +37,6 @@ pub struct Preload(pub f32);
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Component, Debug, PartialEq, Clone)]
-#[type_path = "bevy_coilover"]
 pub struct MaxForce(pub f32);
 
 /// Least and greatest length, with a stop at each: beyond it a force
@@ -50,7 +47,6 @@ pub struct MaxForce(pub f32);
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Component, Debug, PartialEq, Clone)]
-#[type_path = "bevy_coilover"]
 pub struct SpringTravel {
     /// Length at which the bump stop begins, m: the solid length of a coil, say. 0 for none.
     pub min_length: f32,

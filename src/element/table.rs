@@ -12,7 +12,6 @@ use bevy::prelude::*;
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Default, Debug, PartialEq, Clone)]
-#[type_path = "bevy_coilover"]
 pub struct ForceTable {
     /// x: stretch or rate; y: force.
     pub points: Vec<Vec2>,

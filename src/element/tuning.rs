@@ -20,7 +20,6 @@ use std::f32::consts::TAU;
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Component, Debug, PartialEq, Clone)]
-#[type_path = "bevy_coilover"]
 pub enum SpringTuning {
     /// Swings so often, and fades so fast.
     Frequency {

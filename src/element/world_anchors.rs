@@ -22,7 +22,6 @@ use bevy::prelude::*;
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 #[require(Anchors)]
-#[type_path = "bevy_coilover"]
 pub struct WorldAnchors {
     /// Where end A is held, in the world, m.
     pub a: Vec3,

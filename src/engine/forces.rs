@@ -19,7 +19,6 @@ use bevy_rapier3d::rapier::dynamics::RigidBody as RapierBody;
 #[derive(Component, Reflect, Clone, Debug)]
 #[type_path = "bevy_coilover"]
 #[reflect(Component, Debug, Clone)]
-#[type_path = "bevy_coilover"]
 pub struct SpringLoad {
     /// Force (N) and torque (N m) delivered by elements over the last step, world frame.
     pub elements: ExternalForce,

@@ -12,7 +12,6 @@ use bevy::prelude::*;
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 #[require(Transform, Visibility, Placement)]
-#[type_path = "bevy_coilover"]
 pub struct Coil {
     /// From the axis to the centre of the wire, m, or a share if it is [fitted](Self::fitted()).
     pub radius: f32,

@@ -28,7 +28,6 @@ use bevy::prelude::*;
 #[derive(GizmoConfigGroup, Reflect, Clone, Debug)]
 #[type_path = "bevy_coilover"]
 #[reflect(Default)]
-#[type_path = "bevy_coilover"]
 pub struct SpringGizmos {
     /// Draw every element that has no [`ShowSpringGizmos`] of its own.
     pub all: bool,
@@ -54,7 +53,6 @@ impl Default for SpringGizmos {
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
-#[type_path = "bevy_coilover"]
 pub struct ShowSpringGizmos(pub bool);
 
 impl Default for ShowSpringGizmos {

@@ -40,7 +40,6 @@ pub type RoundWireMaterial = ExtendedMaterial<StandardMaterial, RoundWire>;
 #[type_path = "bevy_coilover"]
 #[reflect(Default, Debug, PartialEq, Clone)]
 #[uniform(100, RoundWireUniform)]
-#[type_path = "bevy_coilover"]
 pub struct RoundWire {
     /// The coil at the length where its model is not scaled.
     pub helix: Helix,

@@ -30,7 +30,6 @@ use bevy::prelude::*;
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 #[require(Transform, Visibility)]
-#[type_path = "bevy_coilover"]
 pub struct SpringSkin {
     /// Height of what is drawn, from its foot at the origin, where it is not scaled, m.
     pub length: f32,

@@ -13,7 +13,6 @@ use bevy::prelude::*;
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 #[require(Transform, Visibility, Placement)]
-#[type_path = "bevy_coilover"]
 pub struct Telescope {
     /// Of the tube, m.
     pub tube_radius: f32,

@@ -18,7 +18,6 @@ use wire::Wire;
 #[type_path = "bevy_coilover"]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[reflect(Default, Debug, PartialEq, Clone)]
-#[type_path = "bevy_coilover"]
 pub enum HelixEnds {
     /// Steady pitch up to the cut.
     Open,
@@ -44,7 +43,6 @@ impl HelixEnds {
 #[type_path = "bevy_coilover"]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[reflect(Default, Debug, PartialEq, Clone)]
-#[type_path = "bevy_coilover"]
 pub enum Handedness {
     /// Like a common screw.
     #[default]
@@ -60,7 +58,6 @@ pub enum Handedness {
 #[type_path = "bevy_coilover"]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[reflect(Default, Debug, PartialEq, Clone)]
-#[type_path = "bevy_coilover"]
 pub struct Helix {
     /// From the axis to the middle of the wire, m.
     pub radius: f32,
