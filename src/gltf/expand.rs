@@ -156,7 +156,8 @@ fn add_collider(
     let endless = matches!(scaled.as_typed_shape(), ColliderView::HalfSpace(_));
     let sound =
         extents.is_finite() && extents.max_element() < LARGEST && extents.max_element() > SMALLEST;
-    if !(endless || sound) || !(here.translation.abs().max_element() < LARGEST) {
+    let near = here.translation.abs().max_element() < LARGEST;
+    if !((endless || sound) && near) {
         log::warn!("{place_of}: its collider is too large, too small or too far away; left out");
         return None;
     }

@@ -5,7 +5,6 @@ use crate::messages::Log;
 use bevy::ecs::entity_disabling::Disabled;
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
-use bevy_rapier3d::prelude::*;
 
 fn hook(name: &str) -> impl Bundle {
     (
