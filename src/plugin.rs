@@ -121,26 +121,8 @@ impl CoiloverPlugin {
 
 impl Plugin for CoiloverPlugin {
     fn build(&self, app: &mut App) {
-        app.register_type::<Spring>()
-            .register_type::<Damper>()
-            .register_type::<SpringDamper>()
-            .register_type::<TorsionSpring>()
-            .register_type::<TorsionDamper>()
-            .register_type::<TorsionSpringDamper>()
-            .register_type::<Anchors>()
-            .register_type::<SpringLaw>()
-            .register_type::<DampingLaw>()
-            .register_type::<SpringAction>()
-            .register_type::<SpringTravel>()
-            .register_type::<SpringAxis>()
-            .register_type::<Preload>()
-            .register_type::<MaxForce>()
-            .register_type::<Breakable>()
-            .register_type::<SpringTuning>()
-            .register_type::<HoldPose>()
-            .register_type::<WorldAnchors>()
-            .register_type::<EndNames>()
-            .register_type::<SpringReadout>()
+        register_elements(app);
+        app.register_type::<SpringReadout>()
             .register_type::<SpringLoad>()
             .register_type::<SpringFault>()
             .insert_resource(self.settings)
@@ -188,6 +170,29 @@ impl Plugin for CoiloverPlugin {
                 .run_if(engine::in_place),
         );
     }
+}
+
+/// What a designer writes is in the type registry: elements and their companions.
+pub(crate) fn register_elements(app: &mut App) {
+    app.register_type::<Spring>()
+        .register_type::<Damper>()
+        .register_type::<SpringDamper>()
+        .register_type::<TorsionSpring>()
+        .register_type::<TorsionDamper>()
+        .register_type::<TorsionSpringDamper>()
+        .register_type::<Anchors>()
+        .register_type::<SpringLaw>()
+        .register_type::<DampingLaw>()
+        .register_type::<SpringAction>()
+        .register_type::<SpringTravel>()
+        .register_type::<SpringAxis>()
+        .register_type::<Preload>()
+        .register_type::<MaxForce>()
+        .register_type::<Breakable>()
+        .register_type::<SpringTuning>()
+        .register_type::<HoldPose>()
+        .register_type::<WorldAnchors>()
+        .register_type::<EndNames>();
 }
 
 /// Sets the rates of physics and of `FixedUpdate` alike.

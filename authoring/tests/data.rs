@@ -4,10 +4,10 @@ use crate::harness::*;
 use bevy::ecs::reflect::{AppTypeRegistry, ReflectComponent};
 use bevy::prelude::*;
 use bevy::reflect::serde::{ReflectDeserializer, ReflectSerializer};
-use bevy::world_serialization::serde::WorldDeserializer;
-use bevy::world_serialization::{DynamicWorld, DynamicWorldBuilder};
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::RigidBody;
+use bevy_world_serialization::serde::WorldDeserializer;
+use bevy_world_serialization::{DynamicWorld, DynamicWorldBuilder};
 use serde::de::DeserializeSeed;
 use serde_json::json;
 
@@ -250,4 +250,23 @@ fn a_scene_macro_takes_names_as_text() {
     let pair = app.world().get::<SpringDamper>(element).expect("a pair");
     assert_eq!([pair.body_a, pair.body_b], [a, b]);
     assert_eq!((pair.stiffness, pair.damping), (100.0, 1.0));
+}
+
+#[test]
+fn elements_with_handles_for_ends_survive_a_round_trip_through_json() {
+    let entity = Entity::from_raw_u32(7).expect("an index");
+    let pair = SpringDamper::new(entity, Entity::PLACEHOLDER)
+        .with_stiffness(12.5)
+        .with_rest_length(0.25);
+    let text = serde_json::to_string(&pair).expect("writes");
+    assert_eq!(
+        serde_json::from_str::<SpringDamper>(&text).expect("reads"),
+        pair
+    );
+    let anchors = Anchors::new(Vec3::X, Vec3::NEG_Z);
+    let text = serde_json::to_string(&anchors).expect("writes");
+    assert_eq!(
+        serde_json::from_str::<Anchors>(&text).expect("reads"),
+        anchors
+    );
 }

@@ -1,23 +1,23 @@
-//! Does what `KHR_physics_rigid_bodies` says hold in Rapier, and what is soft in our elements?
+//! Does what `KHR_physics_rigid_bodies` says of bodies and colliders hold in Rapier?
 
 use crate::harness::*;
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
 use serde_json::{Value, json};
-use std::f32::consts::{FRAC_PI_2, TAU};
+use std::f32::consts::{FRAC_1_SQRT_2, FRAC_PI_2, TAU};
 
-const G: f32 = 9.81;
+pub const G: f32 = 9.81;
 
-fn physics(name: &str, at: [f32; 3], physics: Value) -> Value {
+pub fn physics(name: &str, at: [f32; 3], physics: Value) -> Value {
     json!({ "name": name, "translation": at, "extensions": { "KHR_physics_rigid_bodies": physics } })
 }
 
-fn shapes(list: Value) -> Value {
+pub fn shapes(list: Value) -> Value {
     json!({ "KHR_implicit_shapes": { "shapes": list } })
 }
 
-fn play(name: &str, nodes: Value, extensions: Value) -> (Folder, Stage, Entity) {
+pub fn play(name: &str, nodes: Value, extensions: Value) -> (Folder, Stage, Entity) {
     let folder = Folder::new(name);
     folder.write("a.gltf", gltf(nodes, extensions));
     let mut stage = Stage::new(&folder.0);
@@ -25,7 +25,7 @@ fn play(name: &str, nodes: Value, extensions: Value) -> (Folder, Stage, Entity) 
     (folder, stage, root)
 }
 
-fn mass(stage: &Stage, entity: Entity) -> MassProperties {
+pub fn mass(stage: &Stage, entity: Entity) -> MassProperties {
     match *stage.get::<AdditionalMassProperties>(entity) {
         AdditionalMassProperties::MassProperties(properties) => properties,
         AdditionalMassProperties::Mass(_) => panic!("mass alone"),
@@ -196,199 +196,6 @@ fn every_shape_is_as_large_as_it_says() {
     }
 }
 
-/// A hook that stands, a body of 2 kg a metre below, and a joint between them.
-fn joint(name: &str, kind: Value) -> (Folder, Stage, Entity) {
-    let nodes = json!([
-        physics(
-            "Hook",
-            [0.0, 2.0, 0.0],
-            json!({ "joint": { "connectedNode": 1, "joint": 0 } })
-        ),
-        physics(
-            "Body",
-            [0.0, 1.0, 0.0],
-            json!({ "motion": { "mass": 2, "inertiaDiagonal": [0.1, 0.1, 0.1] } })
-        ),
-    ]);
-    play(
-        name,
-        nodes,
-        json!({ "KHR_physics_rigid_bodies": { "physicsJoints": [kind] } }),
-    )
-}
-
-#[test]
-fn a_limit_of_equal_min_and_max_with_a_stiffness_is_a_spring_damper() {
-    let (_folder, mut stage, root) = joint(
-        "spring",
-        json!({ "limits": [
-        { "linearAxes": [0, 1, 2], "min": 1, "max": 1, "stiffness": 80, "damping": 0 }] }),
-    );
-    let mut pairs = stage.app.world_mut().query::<&SpringDamper>();
-    let pair = *pairs.single(stage.app.world()).expect("one element");
-    assert_eq!(
-        (pair.stiffness, pair.damping, pair.rest_length),
-        (80.0, 0.0, Some(1.0))
-    );
-    assert_eq!(pair.body_a, stage.node(root, "Hook"));
-    // Let go at rest length, it swings about its sag with the frequency of theory.
-    let body = stage.node(root, "Body");
-    let mut lowest = (0.0_f32, 0.0);
-    let period = TAU / (80.0_f32 / 2.0).sqrt();
-    for i in 0..(1.2 * period / DT) as usize {
-        stage.app.update();
-        let y = stage.place(body).translation.y;
-        if y < lowest.0 || i == 0 {
-            lowest = (y, i as f32 * DT);
-        }
-    }
-    let sag = 2.0 * G / 80.0;
-    assert!(
-        (lowest.0 - (1.0 - 2.0 * sag)).abs() < 0.01 * sag,
-        "{lowest:?}"
-    );
-    assert!(
-        (lowest.1 - period / 2.0).abs() < 3.0 * DT,
-        "{lowest:?} {period}"
-    );
-    assert!(stage.faults().is_empty(), "{:?}", stage.faults());
-}
-
-#[test]
-fn a_soft_max_alone_is_a_rope_and_a_rigid_one_too() {
-    for (name, stiffness) in [("rope", Some(4000.0)), ("rod", None)] {
-        let mut limit = json!({ "linearAxes": [0, 1, 2], "max": 1.5 });
-        if let Some(stiffness) = stiffness {
-            limit["stiffness"] = json!(stiffness);
-            limit["damping"] = json!(200);
-        }
-        let (_folder, mut stage, root) = joint(name, json!({ "limits": [limit] }));
-        let body = stage.node(root, "Body");
-        run(&mut stage.app, 0.2);
-        let free = 1.0 - 0.5 * G * 0.04;
-        assert!(
-            (stage.place(body).translation.y - free).abs() < 0.05,
-            "slack is slack"
-        );
-        run(&mut stage.app, 3.0);
-        let y = stage.place(body).translation.y;
-        let sag = stiffness.map_or(0.0, |k| 2.0 * G / k);
-        assert!((y - (0.5 - sag)).abs() < 5e-3, "{name} {y}");
-    }
-}
-
-#[test]
-fn one_axis_is_a_spring_axis_and_stops_are_travel() {
-    // A slide along Y: the rest rigid.
-    let (_folder, mut stage, root) = joint(
-        "slide",
-        json!({ "limits": [
-        { "linearAxes": [0, 2], "max": 0 },
-        { "angularAxes": [0, 1, 2], "max": 0 },
-        { "linearAxes": [1], "min": -1.25, "max": 0.5, "stiffness": 2000, "damping": 50 }] }),
-    );
-    run(&mut stage.app, 4.0);
-    let body = stage.node(root, "Body");
-    let place = stage.place(body);
-    let sag = 2.0 * G / 2000.0;
-    assert!(
-        (place.translation - Vec3::Y * (0.75 - sag)).length() < 2e-3,
-        "{place:?}"
-    );
-    assert_eq!(stage.count::<SpringAxis>(), 1);
-    assert_eq!(stage.count::<SpringTravel>(), 1);
-    assert!(stage.faults().is_empty(), "{:?}", stage.faults());
-}
-
-#[test]
-fn a_linear_drive_holds_its_target_against_the_weight_up_to_its_force() {
-    for (name, max, wanted) in [
-        ("drive", Value::Null, 0.5 - 2.0 * G / 500.0),
-        ("weak", json!(10), f32::NAN),
-    ] {
-        let mut drive = json!({ "type": "linear", "mode": "force", "axis": 1, "positionTarget": -1.5,
-            "stiffness": 500, "damping": 60 });
-        if !max.is_null() {
-            drive["maxForce"] = max;
-        }
-        let (_folder, mut stage, root) = joint(
-            name,
-            json!({
-                "limits": [{ "linearAxes": [0, 2], "max": 0 }, { "angularAxes": [0, 1, 2], "max": 0 }],
-                "drives": [drive],
-            }),
-        );
-        let body = stage.node(root, "Body");
-        run(&mut stage.app, 3.0);
-        let y = stage.place(body).translation.y;
-        if wanted.is_nan() {
-            assert!(y < -5.0, "10 N do not hold 2 kg: {y}");
-            assert_eq!(stage.count::<MaxForce>(), 1);
-        } else {
-            assert!((y - wanted).abs() < 2e-3, "{y} is not {wanted}");
-        }
-    }
-}
-
-#[test]
-fn drives_reach_their_speed() {
-    let slide = json!([{ "linearAxes": [0, 1], "max": 0 }, { "angularAxes": [0, 1, 2], "max": 0 }]);
-    let hinge = json!([{ "linearAxes": [0, 1, 2], "min": 0, "max": 0 }, { "angularAxes": [0, 1], "max": 0 }]);
-    for mode in ["force", "acceleration"] {
-        for (kind, limits) in [("linear", &slide), ("angular", &hinge)] {
-            let drive = json!({ "type": kind, "mode": mode, "axis": 2, "velocityTarget": 1.5, "damping": 20 });
-            let nodes = json!([
-                physics(
-                    "Hook",
-                    [0.0; 3],
-                    json!({ "joint": { "connectedNode": 1, "joint": 0 } })
-                ),
-                physics(
-                    "Body",
-                    [0.0; 3],
-                    json!({ "motion": {
-                    "mass": 2, "inertiaDiagonal": [0.1, 0.1, 0.1], "gravityFactor": 0 } })
-                ),
-            ]);
-            let kinds = json!({ "KHR_physics_rigid_bodies": { "physicsJoints": [{ "limits": limits, "drives": [drive] }] } });
-            let (_folder, mut stage, root) = play(&format!("speed_{mode}_{kind}"), nodes, kinds);
-            run(&mut stage.app, 2.0);
-            let velocity = *stage.get::<Velocity>(stage.node(root, "Body"));
-            let found = if kind == "linear" {
-                velocity.linear.z
-            } else {
-                velocity.angular.z
-            };
-            assert!((found - 1.5).abs() < 0.01, "{mode} {kind}: {velocity:?}");
-            assert!(stage.faults().is_empty(), "{:?}", stage.faults());
-        }
-    }
-}
-
-#[test]
-fn an_angular_spring_pulls_the_frames_together_not_the_bodies() {
-    // The connected node stands turned by 0.4 on its body, so the body rests at −0.4.
-    let nodes = json!([
-        physics("Hook", [0.0; 3], json!({ "joint": { "connectedNode": 2, "joint": 0 } })),
-        { "name": "Body", "children": [2], "extensions": { "KHR_physics_rigid_bodies": { "motion": {
-            "mass": 2, "inertiaDiagonal": [0.1, 0.1, 0.1], "gravityFactor": 0 } } } },
-        { "name": "Frame", "rotation": [0, 0, 0.19866933, 0.9800666] },
-    ]);
-    let kinds = json!({ "KHR_physics_rigid_bodies": { "physicsJoints": [{ "limits": [
-        { "linearAxes": [0, 1, 2], "max": 0 },
-        { "angularAxes": [0, 1], "max": 0 },
-        { "angularAxes": [2], "min": 0, "max": 0, "stiffness": 5, "damping": 1 }] }] } });
-    let (_folder, mut stage, root) = play("twist", nodes, kinds);
-    run(&mut stage.app, 3.0);
-    let turned = stage.place(stage.node(root, "Body")).rotation;
-    assert!(
-        turned.angle_between(Quat::from_rotation_z(-0.4)) < 1e-3,
-        "{turned:?}"
-    );
-    assert_eq!(stage.count::<TorsionSpringDamper>(), 1);
-    assert!(stage.faults().is_empty(), "{:?}", stage.faults());
-}
-
 #[test]
 fn triggers_tell_and_do_not_push() {
     let nodes = json!([
@@ -537,6 +344,37 @@ fn bodies_below_turned_nodes_and_turned_scenes_fall_down() {
         );
         stage.app.world_mut().despawn(root);
     }
+    run(&mut stage.app, 0.1);
+    assert_eq!(stage.app.world().entities().count_spawned(), before);
+}
+
+#[test]
+fn a_body_below_a_turning_one_goes_its_own_way() {
+    let folder = Folder::new("own_way");
+    let spins = json!({ "motion": { "mass": 1, "inertiaDiagonal": [1, 1, 1], "angularVelocity": [0, 3, 0],
+        "linearVelocity": [1, 0, 0], "gravityFactor": 0 } });
+    let flies = json!({ "motion": { "mass": 1, "inertiaDiagonal": [1, 1, 1], "linearVelocity": [0, 0, 2],
+        "gravityFactor": 0 } });
+    let mut top = physics("Top", [1.0, 2.0, 3.0], spins);
+    top["children"] = json!([1]);
+    let mut arm = json!({ "name": "Arm", "translation": [0, 1, 0], "children": [2] });
+    arm["rotation"] = json!([0.0, FRAC_1_SQRT_2, 0.0, FRAC_1_SQRT_2]);
+    let ball = physics("Ball", [0.0, 0.0, 2.0], flies);
+    folder.write("a.gltf", gltf(json!([top, arm, ball]), json!({})));
+    let mut stage = Stage::new(&folder.0);
+    let before = stage.app.world().entities().count_spawned();
+    let root = stage.load("a.gltf");
+    let (top, ball) = (stage.node(root, "Top"), stage.node(root, "Ball"));
+    let start = [top, ball].map(|body| stage.place(body).translation);
+    run(&mut stage.app, 1.0);
+    let now = [top, ball].map(|body| stage.place(body).translation);
+    let gone = [0, 1].map(|i| now[i] - start[i]);
+    // Its velocity is in its own frame, a quarter of a turn about Y.
+    assert!(gone[0].distance(Vec3::X) < 0.02, "{}", gone[0]);
+    assert!(gone[1].distance(2.0 * Vec3::X) < 0.04, "{}", gone[1]);
+    // Found a quarter of a turn aside of where it hung: 2 m along the arm, a metre up.
+    assert!((start[1].y - 3.0).abs() < 0.01, "{}", start[1]);
+    stage.app.world_mut().despawn(root);
     run(&mut stage.app, 0.1);
     assert_eq!(stage.app.world().entities().count_spawned(), before);
 }

@@ -37,7 +37,7 @@ pub fn app_with_files(folder: &Path) -> App {
         },
         bevy::image::ImagePlugin::default(),
         bevy::mesh::MeshPlugin,
-        bevy::world_serialization::WorldSerializationPlugin,
+        bevy_world_serialization::WorldSerializationPlugin,
         GltfPlugin::default(),
     ))
     .init_asset::<StandardMaterial>()
@@ -61,17 +61,17 @@ pub fn run(app: &mut App, seconds: f32) {
     }
 }
 
-/// Steps until something is there; what it says, if it never is.
+/// Steps until something is there; what it says, if it never is. A file of a million springs takes more than a minute.
 pub fn until<T>(app: &mut App, what: &str, mut look: impl FnMut(&mut App) -> Option<T>) -> T {
     let started = Instant::now();
-    while started.elapsed() < Duration::from_secs(60) {
+    while started.elapsed() < Duration::from_secs(300) {
         app.update();
         if let Some(found) = look(app) {
             return found;
         }
         std::thread::sleep(Duration::from_millis(1));
     }
-    panic!("waited a minute for {what}");
+    panic!("waited five minutes for {what}");
 }
 
 /// The one entity of that name.

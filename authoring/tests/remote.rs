@@ -2,9 +2,9 @@
 
 use crate::harness::*;
 use bevy::prelude::*;
-use bevy::remote::RemotePlugin;
-use bevy::remote::http::RemoteHttpPlugin;
 use bevy_coilover::prelude::*;
+use bevy_remote::RemotePlugin;
+use bevy_remote::http::RemoteHttpPlugin;
 use serde_json::{Value, json};
 use std::net::TcpListener;
 use std::sync::mpsc;

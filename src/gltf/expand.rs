@@ -2,7 +2,7 @@
 
 use super::carry::{LoadedBody, LoadedCollider, LoadedJoint};
 use super::{joints, mass};
-use bevy::ecs::entity::EntityHashMap;
+use bevy::ecs::entity::{EntityHashMap, EntityHashSet};
 use bevy::ecs::system::RunSystemOnce;
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
@@ -34,11 +34,13 @@ pub(super) fn expand(world: &mut World) {
             *weights.entry(body).or_default() += weight;
         }
     }
-    for (entity, LoadedBody(motion)) in take::<LoadedBody>(world) {
+    let bodies = take::<LoadedBody>(world);
+    let moving: EntityHashSet = bodies.iter().map(|(entity, _)| *entity).collect();
+    for (entity, LoadedBody(motion)) in bodies {
         let Some(place) = place(world, entity) else {
             continue;
         };
-        level_parent(world, entity, place);
+        stand_free(world, entity, place, &moving);
         let weight = weights.get(&entity).copied().unwrap_or_default();
         let (properties, locked) = mass::mass(&motion, weight, place.scale);
         let mut body = world.entity_mut(entity);
@@ -101,19 +103,30 @@ pub(super) fn place(world: &mut World, entity: Entity) -> Option<Transform> {
     place.is_finite().then_some(place)
 }
 
-/// Puts an entity that undoes all turning above between a body and its parent, if there is any: bevy_rapier3d 0.36 writes
-/// wrong places into bodies below what is turned.
-fn level_parent(world: &mut World, body: Entity, at: Transform) {
-    let Some(parent) = world.get::<ChildOf>(body).map(ChildOf::parent) else {
+/// Puts a body where nothing above it moves or turns: bevy_rapier3d 0.36 writes wrong places into bodies below what is turned.
+///
+/// One below another of the file goes to where the uppermost of these hangs: to the file, each goes its own way. If what is
+/// above is turned, an entity between them undoes that.
+fn stand_free(world: &mut World, body: Entity, at: Transform, moving: &EntityHashSet) {
+    let above = |world: &World, entity| world.get::<ChildOf>(entity).map(ChildOf::parent);
+    let (mut top, mut current) = (body, body);
+    while let Some(parent) = above(world, current) {
+        if moving.contains(&parent) {
+            top = parent;
+        }
+        current = parent;
+    }
+    let Some(parent) = above(world, top) else {
         return;
     };
-    let Some(above) = place(world, parent) else {
+    let Some(place) = place(world, parent) else {
         return;
     };
-    if above.rotation.angle_between(Quat::IDENTITY) < 1e-6 || above.scale.cmpeq(Vec3::ZERO).any() {
+    let turned = place.rotation.angle_between(Quat::IDENTITY) >= 1e-6;
+    if place.scale.cmpeq(Vec3::ZERO).any() || !(turned || top != body) {
         return;
     }
-    let undone = Transform::from_matrix(above.to_matrix().inverse());
+    let undone = Transform::from_matrix(place.to_matrix().inverse());
     let level = world
         .spawn((undone, Visibility::default(), ChildOf(parent)))
         .id();

@@ -29,7 +29,6 @@ mod soft;
 
 pub use export::{ExportedGltf, export_gltf};
 
-use crate::element::*;
 use bevy::gltf::extensions::GltfExtensionHandlers;
 use bevy::prelude::*;
 use bevy::transform::TransformSystems;
@@ -52,24 +51,8 @@ impl Plugin for CoiloverGltfPlugin {
             .write_blocking()
             .push(Box::new(handler::Handler::default()));
         // A scene with a type that is not registered does not spawn.
-        app.register_type::<Spring>()
-            .register_type::<Damper>()
-            .register_type::<SpringDamper>()
-            .register_type::<TorsionSpring>()
-            .register_type::<TorsionDamper>()
-            .register_type::<TorsionSpringDamper>()
-            .register_type::<Anchors>()
-            .register_type::<SpringLaw>()
-            .register_type::<DampingLaw>()
-            .register_type::<SpringAction>()
-            .register_type::<SpringTravel>()
-            .register_type::<SpringAxis>()
-            .register_type::<Preload>()
-            .register_type::<MaxForce>()
-            .register_type::<Breakable>()
-            .register_type::<SpringTuning>()
-            .register_type::<HoldPose>()
-            .register_type::<crate::SpringReadout>()
+        crate::plugin::register_elements(app);
+        app.register_type::<crate::SpringReadout>()
             .register_type::<carry::LoadedBody>()
             .register_type::<carry::LoadedCollider>()
             .register_type::<carry::LoadedJoint>();

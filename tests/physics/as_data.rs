@@ -141,23 +141,3 @@ fn builders_work_in_constants() {
         (1.5, 0.25, Some(2.0))
     );
 }
-
-#[cfg(feature = "serialize")]
-#[test]
-fn elements_survive_a_round_trip_through_json() {
-    let entity = Entity::from_raw_u32(7).expect("an index");
-    let pair = SpringDamper::new(entity, Entity::PLACEHOLDER)
-        .with_stiffness(12.5)
-        .with_rest_length(0.25);
-    let text = serde_json::to_string(&pair).expect("writes");
-    assert_eq!(
-        serde_json::from_str::<SpringDamper>(&text).expect("reads"),
-        pair
-    );
-    let anchors = Anchors::new(Vec3::X, Vec3::NEG_Z);
-    let text = serde_json::to_string(&anchors).expect("writes");
-    assert_eq!(
-        serde_json::from_str::<Anchors>(&text).expect("reads"),
-        anchors
-    );
-}

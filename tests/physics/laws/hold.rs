@@ -71,9 +71,8 @@ fn four_springs_share_a_tray_and_hold_it_level() {
     assert!(moved < 1e-4, "{moved}");
 }
 
-#[test]
-fn a_chassis_over_a_wheel_on_the_ground_stands_at_the_height_it_was_given() {
-    let mut lab = Lab::new();
+/// A load of 300 kg that only goes up and down, half a metre over a wheel of 20 kg on the ground: `[load, wheel]`.
+fn chassis_over_wheel(lab: &mut Lab) -> [Entity; 2] {
     lab.spawn((
         Collider::halfspace(Vec3::Y).expect("up"),
         Transform::default(),
@@ -88,6 +87,13 @@ fn a_chassis_over_a_wheel_on_the_ground_stands_at_the_height_it_was_given() {
         Collider::ball(0.3),
         ColliderMassProperties::Mass(20.0),
     ));
+    [load, wheel]
+}
+
+#[test]
+fn a_chassis_over_a_wheel_on_the_ground_stands_at_the_height_it_was_given() {
+    let mut lab = Lab::new();
+    let [load, wheel] = chassis_over_wheel(&mut lab);
     let pair = SpringDamper::new(load, wheel)
         .with_stiffness(40e3)
         .with_damping(3e3);
@@ -262,20 +268,7 @@ fn a_sag_of_a_ball_that_can_touch_is_held_as_well() {
 #[test]
 fn a_sag_of_a_chassis_over_a_wheel_is_found_once_the_wheel_stands() {
     let mut lab = Lab::new();
-    lab.spawn((
-        Collider::halfspace(Vec3::Y).expect("up"),
-        Transform::default(),
-    ));
-    let guided = LockedAxes::ROTATION_LOCKED
-        | LockedAxes::TRANSLATION_LOCKED_X
-        | LockedAxes::TRANSLATION_LOCKED_Z;
-    let load = lab.spawn((body(300.0, Vec3::Y * 0.8), guided));
-    let wheel = lab.spawn((
-        RigidBody::Dynamic,
-        Transform::from_xyz(0.0, 0.3, 0.0),
-        Collider::ball(0.3),
-        ColliderMassProperties::Mass(20.0),
-    ));
+    let [load, wheel] = chassis_over_wheel(&mut lab);
     lab.spawn((SpringDamper::new(load, wheel), SpringTuning::sag(0.1, 0.3)));
     // It falls for one step, which is 3 mm, and comes to rest where it began.
     let moved = strays(&mut lab, load);
