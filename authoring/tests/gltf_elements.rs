@@ -3,7 +3,6 @@
 use crate::harness::*;
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
-use bevy_rapier3d::prelude::*;
 use serde_json::{Value, json};
 
 const SCHEMA: &str = include_str!("../../docs/gltf.schema.json");

@@ -1,12 +1,12 @@
 //! Does what `KHR_physics_rigid_bodies` says of joints hold: what is rigid in Rapier, what is soft in our elements?
 
-use crate::gltf_physics::{G, physics, play, shapes};
+use crate::gltf_physics::{G, physics, play};
 use crate::harness::*;
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
 use serde_json::{Value, json};
-use std::f32::consts::{FRAC_PI_2, TAU};
+use std::f32::consts::TAU;
 
 /// A hook that stands, a body of 2 kg a metre below, and a joint between them.
 fn joint(name: &str, kind: Value) -> (Folder, Stage, Entity) {

@@ -2,7 +2,6 @@
 
 use crate::harness::*;
 use bevy::prelude::*;
-use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
 use serde_json::{Value, json};
 use std::f32::consts::{FRAC_1_SQRT_2, FRAC_PI_2, TAU};

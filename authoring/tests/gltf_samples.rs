@@ -8,7 +8,6 @@ use crate::gltf_sample::Sample;
 use crate::harness::*;
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
-use serde_json::Value;
 use std::path::{Path, PathBuf};
 
 /// Runs a file and says whether what its page expects has come true.

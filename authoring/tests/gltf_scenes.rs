@@ -5,7 +5,7 @@ use crate::harness::*;
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
-use serde_json::{Value, json};
+use serde_json::json;
 
 #[test]
 fn nested_scaled_and_mirrored_nodes_are_held_where_the_file_says() {

@@ -7,7 +7,7 @@
 //! [`nonlinear_pair`] for one of those with a force [`law`] of its own, [`network`] for elements that share bodies,
 //! with the linear algebra in [`system`] and [`strut`], and [`points`] for those that turn none. [`guard`] keeps strong
 //! damping honest, and [`bound`] a network, by their [`energy`]. [`delivery`] says which impulse and force
-//! make the engine arrive there.
+//! make the engine arrive there. What an engine's own solver is to solve is [`soft`], in [`pieces`].
 
 pub(crate) mod body;
 mod bound;
@@ -25,6 +25,7 @@ pub(crate) mod moving;
 pub(crate) mod network;
 pub(crate) mod nonlinear_pair;
 pub(crate) mod pair;
+pub(crate) mod pieces;
 pub(crate) mod points;
 pub(crate) mod poles;
 mod resolution;

@@ -101,12 +101,18 @@ const NO_NAMES: Names = Names {
     axis: "",
 };
 
-/// Neither NaN nor infinite.
+/// Greatest size of a number that a user gives, in SI units. Far beyond what any scene has, and with the products of two of
+/// them, over the least mass and time, still numbers of single precision. Pinned by the member `attack`.
+const MOST: f32 = 1e12;
+
+/// A number, and not one out of all measure.
 pub(super) fn finite(value: f32, field: &'static str) -> Result<f64, Fault> {
     if value.is_nan() {
         Err(Fault::new(field, "is NaN"))
     } else if value.is_infinite() {
         Err(Fault::new(field, "is infinite"))
+    } else if value.abs() > MOST {
+        Err(Fault::new(field, "is larger than 1e12"))
     } else {
         Ok(f64::from(value))
     }
@@ -173,8 +179,8 @@ impl Parameters {
             direction(axis, self.names.axis)?;
         }
         for (anchor, field) in self.anchors.iter().zip(["Anchors::a", "Anchors::b"]) {
-            if !anchor.is_finite() {
-                return Err(Fault::new(field, "is not finite"));
+            for coordinate in anchor.to_array() {
+                finite(coordinate, field)?;
             }
         }
         for (end, field) in self.ends.iter().zip(self.names.ends) {

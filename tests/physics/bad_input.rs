@@ -117,7 +117,11 @@ fn constants_that_are_no_constants() {
 fn anchors_that_are_nowhere() {
     let mut b = bench();
     b.lab.get_mut::<Anchors>(b.element).b.y = f32::NAN;
-    b.expect_fault("Anchors::b", "finite");
+    b.expect_fault("Anchors::b", "NaN");
+    b.lab.get_mut::<Anchors>(b.element).b.y = f32::NEG_INFINITY;
+    b.expect_fault("Anchors::b", "infinite");
+    b.lab.get_mut::<Anchors>(b.element).b.y = 1e20;
+    b.expect_fault("Anchors::b", "larger than");
     b.lab.get_mut::<Anchors>(b.element).b.y = 0.0;
     b.expect_recovery();
 }

@@ -5,6 +5,7 @@
 //! limit); stops at the ends of the travel come on top.
 
 mod drag;
+mod pieces;
 mod table;
 
 pub(crate) use drag::{Drag, DragLaw};
@@ -258,11 +259,6 @@ impl Law {
             (self.stop.at(self.travel[0] - length), -1.0),
             (self.stop.at(length - self.travel[1]), 1.0),
         ]
-    }
-
-    /// Greatest tension of spring and damper together, N.
-    pub(crate) fn most(&self) -> f64 {
-        self.most
     }
 
     /// Whether it can take energy at all.

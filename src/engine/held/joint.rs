@@ -121,22 +121,45 @@ fn ordered_damping(stiffness: f32, wanted: f32, substep: f32) -> f32 {
 const NEIGHBOURS: usize = 64;
 const EXACT: f64 = 3e-7;
 
-/// The joints of one element: its damper alone, where that is to be solved before all springs, and its spring with the
+/// Joints of one element besides its damper: for each piece of its force a spring, and what moves the middle of its range.
+pub(in crate::engine) const SPRINGS: usize = 6;
+
+type Known = Option<(ImpulseJointHandle, SoftJoint)>;
+
+/// The joints of one element: its damper alone, where that is to be solved before all springs, and its springs with the
 /// damper otherwise.
 #[derive(Clone, Debug, Default)]
 pub(in crate::engine) struct Joints {
-    damper: Option<(ImpulseJointHandle, SoftJoint)>,
-    spring: Option<(ImpulseJointHandle, SoftJoint)>,
+    damper: Known,
+    springs: [Known; SPRINGS],
 }
 
 /// What an element's joints are to be.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(in crate::engine) struct Wanted {
     pub damper: Option<SoftJoint>,
-    pub spring: SoftJoint,
+    springs: [Option<SoftJoint>; SPRINGS],
+    count: usize,
 }
 
-fn fits(known: &Option<(ImpulseJointHandle, SoftJoint)>, wanted: Option<&SoftJoint>) -> bool {
+impl Wanted {
+    /// One more, to be solved after those before it.
+    pub(in crate::engine) fn push(&mut self, spring: SoftJoint) {
+        self.springs[self.count] = Some(spring);
+        self.count += 1;
+    }
+
+    pub(in crate::engine) fn is_empty(&self) -> bool {
+        self.count == 0
+    }
+
+    /// The bodies at both ends.
+    pub(in crate::engine) fn bodies(&self) -> Option<[RigidBodyHandle; 2]> {
+        self.springs[0].map(|spring| spring.bodies)
+    }
+}
+
+fn fits(known: &Known, wanted: &Option<SoftJoint>) -> bool {
     match (known, wanted) {
         (None, None) => true,
         (Some((_, known)), Some(wanted)) => {
@@ -146,20 +169,14 @@ fn fits(known: &Option<(ImpulseJointHandle, SoftJoint)>, wanted: Option<&SoftJoi
     }
 }
 
-fn insert(
-    set: &mut ImpulseJointSet,
-    wanted: &SoftJoint,
-) -> Option<(ImpulseJointHandle, SoftJoint)> {
+fn insert(set: &mut ImpulseJointSet, wanted: &Option<SoftJoint>) -> Known {
+    let wanted = (*wanted)?;
     let [a, b] = wanted.bodies;
-    Some((set.insert(a, b, wanted.data(), false), *wanted))
+    Some((set.insert(a, b, wanted.data(), false), wanted))
 }
 
-fn update(
-    set: &mut ImpulseJointSet,
-    known: &mut Option<(ImpulseJointHandle, SoftJoint)>,
-    wanted: &SoftJoint,
-) {
-    if let Some((handle, known)) = known
+fn update(set: &mut ImpulseJointSet, known: &mut Known, wanted: &Option<SoftJoint>) {
+    if let (Some((handle, known)), Some(wanted)) = (known, wanted)
         && known != wanted
         && let Some(joint) = set.get_mut(*handle, false)
     {
@@ -169,51 +186,56 @@ fn update(
 }
 
 impl Joints {
+    fn all(&self) -> impl Iterator<Item = &Known> {
+        [&self.damper].into_iter().chain(&self.springs)
+    }
+
     /// How many there are.
     pub(in crate::engine) fn count(&self) -> usize {
-        usize::from(self.damper.is_some()) + usize::from(self.spring.is_some())
+        self.all().flatten().count()
     }
 
     /// Whether other numbers are all that these need.
     pub(in crate::engine) fn fit(&self, wanted: &Wanted, set: &ImpulseJointSet) -> bool {
-        let there = |known: &Option<(ImpulseJointHandle, SoftJoint)>| {
-            known.is_none_or(|(handle, _)| set.contains(handle))
-        };
-        self.spring.is_some()
-            && fits(&self.spring, Some(&wanted.spring))
-            && fits(&self.damper, wanted.damper.as_ref())
-            && there(&self.spring)
-            && there(&self.damper)
+        let there = |known: &Known| known.is_none_or(|(handle, _)| set.contains(handle));
+        let orders = [&wanted.damper].into_iter().chain(&wanted.springs);
+        self.all()
+            .zip(orders)
+            .all(|(known, wanted)| fits(known, wanted) && there(known))
     }
 
     /// Takes them out of the engine.
     pub(in crate::engine) fn remove(&mut self, set: &mut ImpulseJointSet) {
-        for (handle, _) in [self.damper.take(), self.spring.take()]
-            .into_iter()
-            .flatten()
-        {
+        let springs = self.springs.iter_mut().filter_map(Option::take);
+        for (handle, _) in self.damper.take().into_iter().chain(springs) {
             set.remove(handle, false);
         }
     }
 
     /// A damper that is solved before all springs.
     pub(in crate::engine) fn put_damper(&mut self, wanted: &Wanted, set: &mut ImpulseJointSet) {
-        self.damper = wanted
-            .damper
-            .as_ref()
-            .and_then(|damper| insert(set, damper));
+        self.damper = insert(set, &wanted.damper);
     }
 
-    pub(in crate::engine) fn put_spring(&mut self, wanted: &Wanted, set: &mut ImpulseJointSet) {
-        self.spring = insert(set, &wanted.spring);
+    /// Its springs, the first one last if they are to be.
+    pub(in crate::engine) fn put_springs(
+        &mut self,
+        wanted: &Wanted,
+        reversed: bool,
+        set: &mut ImpulseJointSet,
+    ) {
+        for i in 0..SPRINGS {
+            let i = if reversed { SPRINGS - 1 - i } else { i };
+            self.springs[i] = insert(set, &wanted.springs[i]);
+        }
     }
 
     /// Other numbers.
     pub(in crate::engine) fn update(&mut self, wanted: &Wanted, set: &mut ImpulseJointSet) {
-        if let Some(damper) = &wanted.damper {
-            update(set, &mut self.damper, damper);
+        update(set, &mut self.damper, &wanted.damper);
+        for (known, wanted) in self.springs.iter_mut().zip(&wanted.springs) {
+            update(set, known, wanted);
         }
-        update(set, &mut self.spring, &wanted.spring);
     }
 }
 

@@ -8,7 +8,7 @@ pub(super) use twist::Turn;
 
 use crate::dynamics::body::shortest;
 use crate::dynamics::line::Line;
-use crate::dynamics::soft::Tangent;
+use crate::dynamics::pieces::Pieces;
 use bevy::math::{DQuat, DVec3};
 use bevy::prelude::Entity;
 use bevy_rapier3d::rapier::dynamics::RigidBodyHandle;
@@ -23,7 +23,7 @@ pub(super) struct Inside {
     pub context: Option<Entity>,
     /// It acts in the coming step.
     pub active: bool,
-    pub tangent: Tangent,
+    pub pieces: Pieces,
     /// Length at the start of the step.
     pub from: f64,
     pub direction: DVec3,
@@ -89,10 +89,10 @@ impl Leeway {
 
 impl Inside {
     /// Notes what it is to do.
-    pub(super) fn begin(&mut self, from: f64, tangent: Tangent, line: &Line, facings: [DQuat; 2]) {
+    pub(super) fn begin(&mut self, from: f64, pieces: Pieces, line: &Line, facings: [DQuat; 2]) {
         self.facings = facings;
         self.from = from;
-        self.tangent = tangent;
+        self.pieces = pieces;
         self.direction = line.direction;
         self.places = line.holds.map(|hold| hold.position);
     }

@@ -18,18 +18,18 @@ impl ElementRow {
         let Some(inside) = &self.inside else {
             return (length, 0.0);
         };
-        let (from, tangent, direction) = (inside.from, inside.tangent, inside.direction);
+        let (from, pieces, direction) = (inside.from, inside.pieces, inside.direction);
         let rate = (length - from) / time;
         let middle = 0.5 * (from + length);
         let drag = self.drag(middle, rate);
         let heat = drag * rate * time;
         let won = if self.companion.law.is_some() {
             let stored = |length: f64| self.elastic(length).energy;
-            stored(length) - stored(from) - tangent.work([from, length])
+            stored(length) - stored(from) - pieces.work([from, length])
         } else {
             0.0
         };
-        let tension = tangent.elastic(middle) + drag;
+        let tension = pieces.tension(middle, 0.0) + drag;
         let mut work = 0.0;
         for (by, sign) in moved.into_iter().zip([-1.0, 1.0]) {
             work += sign * tension * by.map_or(0.0, |by| by.dot(direction));

@@ -3,6 +3,7 @@
 use crate::dynamics::element::Element;
 use crate::dynamics::guide::Guide;
 use crate::dynamics::line::Line;
+use crate::dynamics::pieces::{Outreach, Pieces};
 use crate::dynamics::single;
 use crate::dynamics::soft::{self, Tangent};
 use crate::engine::held::Turn;
@@ -24,7 +25,9 @@ pub(super) struct Order {
     pub from: f64,
     /// Rotations of what holds both ends.
     pub facings: [DQuat; 2],
-    pub tangent: Tangent,
+    pub pieces: Pieces,
+    /// How far it may come over the step.
+    pub reach: Outreach,
     /// Bound on the stiffest mode that it takes part in, rad/s.
     pub omega: f64,
     /// Bound on that mode where contacts hold still what they press, rad/s.
@@ -55,7 +58,7 @@ impl Order {
 
     /// Stiffness of the joint's coordinate.
     pub(super) fn stiffness(&self) -> f64 {
-        self.leverage().powi(2) * self.tangent.stiffness
+        self.leverage().powi(2) * self.pieces.stiffness()
     }
 
     /// The joints that make it act in substeps of so long; none where there is no force. `holders` are the bodies at
@@ -67,56 +70,64 @@ impl Order {
         substep: f64,
         time: f64,
     ) -> Option<Wanted> {
-        let Tangent {
-            stiffness, damping, ..
-        } = self.tangent;
-        let from = self.from;
-        let force = self.tangent.elastic(from);
-        if stiffness == 0.0 && damping == 0.0 && force == 0.0 {
-            return None;
-        }
+        let frame = self.frame(row, holders);
         let law = self.element.law.as_ref();
-        let limit = law.map_or(f64::INFINITY, |law| law.most());
         let across = self
             .turn
             .as_ref()
             .map_or(0.0, |turn| turn.across_damping(time));
-        let floor = across * stiffness.abs();
-        let apart = self.apart && damping > 0.0 && limit == f64::INFINITY;
-        let left = Tangent {
-            damping: if apart { 0.0 } else { damping },
-            ..self.tangent
-        };
-        let acting = soft::damping(&left, [self.omega, self.lively], substep).max(floor);
-        if let Some(turn) = &mut self.turn {
-            turn.damping = acting + if apart { damping } else { 0.0 };
-        }
-        // A linear force is the same in every step; others are measured from where they are now.
-        let (target, offset) = match (law, self.turn.is_some()) {
-            (_, true) => (0.0, force),
-            (None, false) => (self.element.rest_length, 0.0),
-            (Some(_), false) => (from, force),
-        };
         let scale = self.leverage();
         let inverse_mass: f64 = self.line.holds.iter().map(|h| h.most_inverse_mass()).sum();
         let nothing = NOTHING / (inverse_mass * substep).max(f64::MIN_POSITIVE);
-        let frame = self.frame(row, holders);
-        let joint = |stiffness: f64, damping: f64, force: f64| SoftJoint {
-            bodies: frame.bodies,
-            anchors: frame.anchors,
-            rotations: frame.rotations,
-            along: frame.along,
-            substep: substep as f32,
-            stiffness: single(scale * scale * stiffness),
-            damping: single((scale * scale * damping).max(nothing)),
-            target: single(target),
-            force: single(scale * force),
-            most: single(scale * limit),
-        };
-        Some(Wanted {
-            damper: apart.then(|| joint(0.0, damping, 0.0)),
-            spring: joint(stiffness, acting, offset),
-        })
+        let joint =
+            |[stiffness, damping]: [f64; 2], target: f64, [force, most]: [f64; 2]| SoftJoint {
+                bodies: frame.bodies,
+                anchors: frame.anchors,
+                rotations: frame.rotations,
+                along: frame.along,
+                substep: substep as f32,
+                stiffness: single(scale * scale * stiffness),
+                damping: single((scale * scale * damping).max(nothing)),
+                target: single(target),
+                force: single(scale * force),
+                most: single(scale * most),
+            };
+        let mut wanted = Wanted::default();
+        for (i, piece) in self.pieces.iter().enumerate() {
+            let Tangent {
+                stiffness, damping, ..
+            } = piece.tangent;
+            let force = piece.tangent.elastic(self.from);
+            if stiffness == 0.0 && damping == 0.0 && force == 0.0 {
+                continue;
+            }
+            let (middle, most) = piece.middle();
+            let apart = self.apart && i == 0 && damping > 0.0 && most == f64::INFINITY;
+            let left = Tangent {
+                damping: if apart { 0.0 } else { damping },
+                ..piece.tangent
+            };
+            let acting = soft::damping(&left, [self.omega, self.lively], substep)
+                .max(across * stiffness.abs());
+            if let Some(turn) = self.turn.as_mut().filter(|_| i == 0) {
+                turn.damping = acting + if apart { damping } else { 0.0 };
+            }
+            // A linear force is the same in every step; others are measured from where they are now.
+            let (target, offset) = match (law, self.turn.is_some()) {
+                (_, true) => (0.0, force),
+                (None, false) => (self.element.rest_length, 0.0),
+                (Some(_), false) => (self.from, force),
+            };
+            if apart {
+                wanted.damper = Some(joint([0.0, damping], target, [0.0, most]));
+            }
+            if middle != 0.0 {
+                // A motor's range lies evenly about zero. One that is always at its limit moves that of the spring.
+                wanted.push(joint([0.0; 2], target, [2.0 * middle, middle.abs()]));
+            }
+            wanted.push(joint([stiffness, acting], target, [offset - middle, most]));
+        }
+        (!wanted.is_empty()).then_some(wanted)
     }
 
     fn frame(&self, row: &ElementRow, holders: [RigidBodyHandle; 2]) -> Frame {
@@ -168,7 +179,7 @@ impl Order {
         };
         let [a, b] = &self.line.holds;
         let (index, _) = (a.body?, b.body?);
-        let force = self.tangent.elastic(self.line.distance()) * axis;
+        let force = self.pieces.tension(self.line.distance(), 0.0) * axis;
         Some((index, (b.position - a.position).cross(force)))
     }
 }

@@ -5,7 +5,7 @@ use super::order::Order;
 use crate::dynamics::body::Body;
 use crate::dynamics::element::Element;
 use crate::dynamics::line::Line;
-use crate::dynamics::soft::Tangent;
+use crate::dynamics::pieces::{Outreach, Piece, Pieces};
 use crate::engine::body::read;
 use crate::engine::element::element;
 use crate::engine::held::Inside;
@@ -27,12 +27,22 @@ pub(super) struct Plan {
     pub disturbed: bool,
     /// For each body, the stiffness of its elements over its mass,
     sums: Vec<f64>,
-    /// and its acceleration by all springs and outside forces, beside the sum of their sizes.
-    forces: Vec<(DVec3, f64)>,
+    /// and what springs and outside forces do to it.
+    pulls: Vec<Pull>,
     /// Joints of the game's hold some body of it.
     jointed: bool,
     /// Springs pull some body to and fro by far more than its weight, while the component rests on something.
     tense: bool,
+}
+
+/// What springs and outside forces do to a body.
+struct Pull {
+    /// Acceleration by all of them, m/s²,
+    net: DVec3,
+    /// and the sum of their sizes.
+    all: f64,
+    /// Speed that they can give it over the step, m/s: a spring that swings faster than that turns round before.
+    gain: f64,
 }
 
 /// Sum of what springs pull at a body, in units of its weight, above which one sweep over all joints leaves it trembling
@@ -40,8 +50,9 @@ pub(super) struct Plan {
 /// example `tensegrity` and by `ground::play`.
 const TENSE: f64 = 100.0;
 
-/// Sweeps over all joints and contacts in a substep of what is tense: with two, the bridge still trembles. They cost
-/// little beside the making of joints in each substep.
+/// Sweeps over all joints and contacts in a substep of what is tense, or has forces that end on one side: with two, the
+/// bridge still trembles; with one, stiff ropes that fall on the ground win energy (`ground::ropes`). They cost little beside
+/// the making of joints in each substep.
 const TENSE_SWEEPS: usize = 4;
 
 /// Share of all forces on a body that may be left of them where they are in balance. Pinned by `ground::heap`.
@@ -59,6 +70,10 @@ const DAMPED: f64 = 0.02;
 /// Sweeps in a substep there: with one, a lamp's arm rests where its damper still pushes; with four, a bridge on hinges
 /// does not come to rest. Pinned by `ground::hinge` and `ground::play`.
 const LIGHT_SWEEPS: usize = 2;
+
+/// Times as far as its ends can come at their speed and with what pushes them that an element is ready for. Pinned by
+/// `ground::ropes`.
+const FAR: f64 = 2.0;
 
 impl Plan {
     /// Reads a component; says whether all its bodies can be moved.
@@ -135,23 +150,41 @@ impl Plan {
             order.apart = self.jointed && !touched;
             self.orders.push(order);
         }
+        self.balance(members, elements, bodies, time);
+        for at in 0..self.orders.len() {
+            self.act(at, elements, time);
+        }
         self.bound(members, bodies);
-        self.balance(members, bodies);
         true
     }
 
     /// Finds which bodies are pressed, hang in balance, or are taken along by joints: where they go, others take them.
-    fn balance(&mut self, members: &Members, bodies: &mut [BodyRow]) {
-        self.forces.clear();
-        let weight = |body: &Body| (body.acceleration, body.acceleration.length());
-        self.forces.extend(self.bodies.iter().map(weight));
+    fn balance(
+        &mut self,
+        members: &Members,
+        elements: &[ElementRow],
+        bodies: &mut [BodyRow],
+        time: f64,
+    ) {
+        self.pulls.clear();
+        self.pulls.extend(self.bodies.iter().map(|body| {
+            let all = body.acceleration.length();
+            Pull {
+                net: body.acceleration,
+                all,
+                gain: time * all,
+            }
+        }));
         for order in &self.orders {
-            let tension = order.tangent.elastic(order.from);
+            let elastic = elements[order.row].elastic(order.from);
+            let omega = (elastic.stiffness * order.line.inverse_mass).sqrt();
             for (hold, sign) in order.line.holds.iter().zip([1.0, -1.0]) {
                 if let Some(body) = hold.body.filter(|_| !hold.twist) {
-                    let pull = hold.inverse_mass * (sign * tension * order.line.direction);
-                    self.forces[body].0 += pull;
-                    self.forces[body].1 += pull.length();
+                    let pull = hold.inverse_mass * (sign * elastic.force * order.line.direction);
+                    let on = &mut self.pulls[body];
+                    on.net += pull;
+                    on.all += pull.length();
+                    on.gain += pull.length() * time.min(omega.recip());
                 }
             }
         }
@@ -159,16 +192,17 @@ impl Plan {
         let pressed = pressed.filter(|row| row.pressed);
         // How fast what lies on something goes, if there is any such body.
         let creeping = pressed.map(|row| row.rest.rate).reduce(f32::max);
-        let pulled = self.bodies.iter().zip(&self.forces);
+        let pulled = self.bodies.iter().zip(&self.pulls);
         self.tense = creeping.is_some()
-            && pulled.into_iter().any(|(body, (_, all))| {
+            && pulled.into_iter().any(|(body, pull)| {
                 let weight = body.acceleration.length();
-                weight > 0.0 && *all > TENSE * weight
+                weight > 0.0 && pull.all > TENSE * weight
             });
-        for (b, (net, all)) in members.bodies.iter().zip(&self.forces) {
+        for (b, pull) in members.bodies.iter().zip(&self.pulls) {
             let row = &mut bodies[*b];
             let taken_along = creeping.is_some_and(|rate| {
-                net.length() < BALANCE * all || (row.jointed && row.rest.rate <= ALONG * rate)
+                pull.net.length() < BALANCE * pull.all
+                    || (row.jointed && row.rest.rate <= ALONG * rate)
             });
             row.creeps = row.pressed || taken_along;
         }
@@ -178,7 +212,7 @@ impl Plan {
     fn order(
         &self,
         row: usize,
-        inside: &mut Inside,
+        inside: &Inside,
         (element, line, turn): (Element, Line, Option<Turn>),
         touched: bool,
         time: f64,
@@ -193,30 +227,23 @@ impl Plan {
         // As the last steps went on: the engine's own velocities are those of its last substep.
         let [last, before] = inside.rates.unwrap_or([rate; 2]);
         let ahead = 2.0 * last - before;
-        let mut tangent = match &element.law {
-            None => Tangent::linear(element.stiffness, element.damping, element.rest_length),
-            Some(law) => {
-                let way = [from, from + time * ahead];
-                Tangent::of(law, element.rest_length, way, ahead)
-            }
-        };
-        if inside.debt > 0.0 && last != 0.0 && line.inverse_mass > 0.0 {
-            // At most what stops the motion within the step.
-            let most = 1.0 / (line.inverse_mass * time);
-            tangent.damping += (inside.debt / (last * last * time)).min(most);
-        }
         let facings = element
             .ends
             .each_ref()
             .map(|end| end.rotation(&self.bodies));
-        inside.begin(from, tangent, &line, facings);
         Order {
             row,
             from,
             facings,
             element,
             line,
-            tangent,
+            pieces: Pieces::default(),
+            reach: Outreach {
+                way: [from, from + time * ahead],
+                rate: ahead,
+                change: 0.0,
+                speed: rate.abs(),
+            },
             omega: 0.0,
             lively: 0.0,
             touched,
@@ -224,6 +251,47 @@ impl Plan {
             turn,
             jointed: inside.leeway.jointed,
         }
+    }
+
+    /// Finds with what force an element acts over the step, now that it is known what may push its ends.
+    fn act(&mut self, at: usize, elements: &mut [ElementRow], time: f64) {
+        let Self {
+            bodies,
+            pulls,
+            orders,
+            ..
+        } = self;
+        let order = &mut orders[at];
+        let (element, line) = (&order.element, &order.line);
+        for hold in &line.holds {
+            let Some(body) = hold.body else { continue };
+            let spin = bodies[body].angular_velocity().length();
+            order.reach.speed += if hold.twist {
+                spin
+            } else {
+                bodies[body].velocity.length() + spin * hold.arm.length()
+            };
+            order.reach.speed += pulls[body].gain;
+        }
+        order.reach.change = FAR * time * order.reach.speed;
+        if element.guide.is_twist() {
+            // What springs turn a body with is not looked at.
+            order.reach.change += 1.0;
+        }
+        order.pieces = match &element.law {
+            None => Pieces::linear(element.stiffness, element.damping, element.rest_length),
+            Some(law) => Pieces::of(law, element.rest_length, order.reach),
+        };
+        let Some(inside) = &mut elements[order.row].inside else {
+            return;
+        };
+        let last = inside.rates.map_or(0.0, |rates| rates[0]);
+        if inside.debt > 0.0 && last != 0.0 && line.inverse_mass > 0.0 {
+            // At most what stops the motion within the step.
+            let most = 1.0 / (line.inverse_mass * time);
+            order.pieces.spring().damping += (inside.debt / (last * last * time)).min(most);
+        }
+        inside.begin(order.from, order.pieces, line, order.facings);
     }
 
     /// Bounds on the stiffest mode: ω² is at most the sum over both ends of an element of their elements' stiffness over
@@ -252,7 +320,10 @@ impl Plan {
     pub(super) fn undamped(&self, substep: f64) -> f64 {
         let orders = self.orders.iter();
         orders
-            .filter(|order| order.tangent.is_undamped(substep))
+            .filter(|order| {
+                let mut pieces = order.pieces.iter();
+                pieces.any(|piece| piece.tangent.is_undamped(substep))
+            })
             .map(|order| order.lively)
             .fold(0.0, f64::max)
     }
@@ -261,11 +332,13 @@ impl Plan {
     /// push, or what other springs do.
     pub(super) fn sweeps(&self, substep: f64) -> usize {
         let light = |order: &Order| {
-            let damped = order.tangent.damping * order.line.inverse_mass * substep;
+            let damping = order.pieces.iter().map(|piece| piece.tangent.damping);
+            let damped = damping.sum::<f64>() * order.line.inverse_mass * substep;
             // Where contacts press, the engine's warm start has brought their answer already.
             order.jointed < LIGHT && damped > DAMPED && !order.touched
         };
-        if self.tense && !self.jointed {
+        let mut pieces = self.orders.iter().flat_map(|order| order.pieces.iter());
+        if pieces.any(Piece::ends) || (self.tense && !self.jointed) {
             TENSE_SWEEPS
         } else if self.orders.iter().any(light) {
             LIGHT_SWEEPS
@@ -276,9 +349,7 @@ impl Plan {
 
     /// Whether its joints may be solved in finer substeps than they are made for.
     pub(super) fn stands_finer(&self, substep: f64, finest: f64) -> bool {
-        self.orders.iter().all(|order| {
-            let tangent = &order.tangent;
-            tangent.damping > (substep - finest) * tangent.stiffness
-        })
+        let mut pieces = self.orders.iter().flat_map(|order| order.pieces.iter());
+        pieces.all(|piece| piece.tangent.damping > (substep - finest) * piece.tangent.stiffness)
     }
 }

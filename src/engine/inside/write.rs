@@ -260,7 +260,7 @@ fn stagger(plan: &Plan, by: f64, members: &Members, bodies: &[BodyRow], set: &mu
     }
     for order in &plan.orders {
         let rate = order.line.motion(&order.element, &plan.bodies, 0.0).axial;
-        let tension = order.tangent.elastic(order.line.distance()) + order.tangent.damping * rate;
+        let tension = order.pieces.tension(order.line.distance(), rate);
         let impulse = -by * tension * order.line.direction;
         order.line.impulse(&mut moved, impulse);
     }
@@ -332,8 +332,8 @@ fn join(
         return;
     }
     let fixed = |wanted: &Wanted| {
-        let mut bodies = wanted.spring.bodies.iter();
-        bodies.any(|body| engine.bodies.get(*body).is_none_or(RapierBody::is_fixed))
+        let mut bodies = wanted.bodies().into_iter().flatten();
+        bodies.any(|body| engine.bodies.get(body).is_none_or(RapierBody::is_fixed))
     };
     // Rapier solves joints of two bodies in the order in which they come, and then those to a fixed one in the reverse
     // order. Either way dampers are to go first: pinned by `ground::hinge`.
@@ -341,7 +341,7 @@ fn join(
         each(&mut |inside, wanted| match () {
             () if fixed(wanted) != to_fixed => {}
             () if damper => inside.joints.put_damper(wanted, set),
-            () => inside.joints.put_spring(wanted, set),
+            () => inside.joints.put_springs(wanted, to_fixed, set),
         });
     };
     put(true, false);

@@ -21,6 +21,7 @@ mod play;
 mod ragdoll;
 mod rates;
 mod rolling;
+mod ropes;
 mod scenes;
 mod shock;
 mod sizes;

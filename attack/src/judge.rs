@@ -1,0 +1,161 @@
+//! Runs a planned scene and says what is wrong with it.
+
+use crate::plan::{Plan, TICKS};
+use crate::stage::Stage;
+use bevy::prelude::*;
+use bevy_coilover::prelude::*;
+use bevy_rapier3d::prelude::*;
+use std::cell::RefCell;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Once;
+
+thread_local! {
+    static LAST_PANIC: RefCell<String> = const { RefCell::new(String::new()) };
+}
+
+/// What came of a scene.
+#[derive(Debug, PartialEq)]
+pub enum Verdict {
+    /// Nothing is wrong.
+    Sound,
+    /// Something is, but the same deeds without springs do the same: the engine's.
+    Engines(String),
+    /// It is ours.
+    Ours(String),
+}
+
+/// Has panics kept, instead of printed.
+fn listen() {
+    static ONCE: Once = Once::new();
+    ONCE.call_once(|| {
+        std::panic::set_hook(Box::new(|info| {
+            LAST_PANIC.with(|last| *last.borrow_mut() = info.to_string());
+        }));
+    });
+}
+
+/// Runs a scene; what is wrong, if anything is.
+fn run(plan: &Plan, with_springs: bool) -> Result<(), String> {
+    listen();
+    let played = catch_unwind(AssertUnwindSafe(|| play(plan, with_springs)));
+    played.unwrap_or_else(|_| {
+        let panic = LAST_PANIC.with(|last| last.borrow().clone());
+        Err(format!("panic: {panic}"))
+    })
+}
+
+/// Runs a scene, and if something is wrong, once more without springs.
+pub fn judge(plan: &Plan) -> Verdict {
+    match run(plan, true) {
+        Ok(()) => Verdict::Sound,
+        Err(wrong) => match run(plan, false) {
+            Ok(()) => Verdict::Ours(wrong),
+            // A panic of ours stays ours, whatever else goes wrong.
+            Err(_) if wrong.contains("panicked at src/") => Verdict::Ours(wrong),
+            Err(engines) => Verdict::Engines(engines),
+        },
+    }
+}
+
+fn play(plan: &Plan, with_springs: bool) -> Result<(), String> {
+    let mut stage = Stage::new(plan, with_springs);
+    let mut deeds = plan.deeds.clone();
+    deeds.sort_by_key(|(tick, _)| *tick);
+    let mut deeds = deeds.iter().peekable();
+    for tick in 0..TICKS {
+        while let Some((_, deed)) = deeds.next_if(|(at, _)| *at == tick) {
+            stage.act(deed, with_springs);
+        }
+        stage.app.update();
+        is_finite(&mut stage).map_err(|wrong| format!("tick {tick}: {wrong}"))?;
+    }
+    if with_springs {
+        nothing_is_left(&mut stage)?;
+    }
+    Ok(())
+}
+
+/// Whether all that can be seen is a number.
+fn is_finite(stage: &mut Stage) -> Result<(), String> {
+    let world = stage.app.world_mut();
+    let mut bodies = world.query::<(
+        Entity,
+        &Transform,
+        Option<&Velocity>,
+        Option<&ExternalForce>,
+    )>();
+    for (entity, place, velocity, force) in bodies.iter(world) {
+        let moves = velocity.is_none_or(|v| v.linear.is_finite() && v.angular.is_finite());
+        let pushed = force.is_none_or(|f| f.force.is_finite() && f.torque.is_finite());
+        if !(place.is_finite() && moves && pushed) {
+            return Err(format!("{entity}: {place:?}, {velocity:?}, {force:?}"));
+        }
+    }
+    let mut readouts = world.query::<(Entity, &SpringReadout)>();
+    for (entity, readout) in readouts.iter(world) {
+        let all = [
+            readout.length,
+            readout.rate,
+            readout.spring_force,
+            readout.damper_force,
+            readout.stored_energy,
+            readout.dissipated_energy,
+        ];
+        if !all.into_iter().all(f32::is_finite) {
+            return Err(format!("{entity}: {readout:?}"));
+        }
+    }
+    Ok(())
+}
+
+/// Takes all elements away: nothing of theirs may be left.
+fn nothing_is_left(stage: &mut Stage) -> Result<(), String> {
+    let mut configurations = stage.app.world_mut().query::<&mut RapierConfiguration>();
+    for mut configuration in configurations.iter_mut(stage.app.world_mut()) {
+        configuration.physics_pipeline_active = true;
+    }
+    for element in stage.elements.clone() {
+        if let Ok(element) = stage.app.world_mut().get_entity_mut(element) {
+            element.despawn();
+        }
+    }
+    for _ in 0..3 {
+        stage.app.update();
+    }
+    let world = stage.app.world_mut();
+    let loads = world.query::<&SpringLoad>().iter(world).count();
+    if loads > 0 {
+        return Err(format!("{loads} bodies still have a SpringLoad"));
+    }
+    let joints = world
+        .query::<&RapierImpulseJointHandle>()
+        .iter(world)
+        .count();
+    for context in world.query::<&RapierContextJoints>().iter(world) {
+        let inside = context.impulse_joints.len();
+        if inside > joints {
+            return Err(format!(
+                "{inside} joints in the engine, {joints} of the game's"
+            ));
+        }
+    }
+    let mut bodies = world.query::<(&RapierRigidBodyHandle, Option<&AdditionalSolverIterations>)>();
+    let ordered: Vec<_> = bodies
+        .iter(world)
+        .map(|(handle, more)| (handle.0, more.map_or(0, |more| more.0)))
+        .collect();
+    for set in world.query::<&RapierRigidBodySet>().iter(world) {
+        for (handle, ordered) in &ordered {
+            let more = set
+                .bodies
+                .get(*handle)
+                .map_or(*ordered, |b| b.additional_solver_iterations());
+            if more != *ordered {
+                return Err(format!(
+                    "{more} iterations more, of which the game ordered {ordered}"
+                ));
+            }
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,115 @@
+//! Random scenes: is there any in which ours panics, makes what is not a number, or leaves something behind?
+//!
+//! `cargo test --workspace --test attack` runs a few; `cargo test --release --workspace --test attack -- --scenes 100000` is
+//! the long search, and `--seed N` gives others than those of 0. A program of its own, not a list of tests, so that it
+//! tells what it has found as it goes on.
+
+use attack::judge::{Verdict, judge};
+use attack::plan::plans;
+use lexopt::prelude::*;
+use proptest::strategy::{Strategy, ValueTree};
+use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
+use std::collections::BTreeMap;
+use std::process::ExitCode;
+
+/// Scenes of a short search.
+const SCENES: u64 = 200;
+
+/// Smaller scenes that are tried for one that fails.
+const SHRINKS: usize = 600;
+
+fn main() -> ExitCode {
+    match search() {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::FAILURE,
+        Err(wrong) => {
+            eprintln!("{wrong}\n[--scenes N] [--seed N]");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// Says whether nothing of ours was found.
+fn search() -> Result<bool, lexopt::Error> {
+    let (mut scenes, mut seed) = (SCENES, 0_u64);
+    let mut words = lexopt::Parser::from_env();
+    while let Some(word) = words.next()? {
+        match word {
+            Long("scenes") => scenes = words.value()?.parse()?,
+            Long("seed") => seed = words.value()?.parse()?,
+            // What is meant for lists of tests.
+            Value(filter) if !"attack".contains(&*filter.to_string_lossy()) => return Ok(true),
+            Value(_) | Long("nocapture" | "quiet") | Short('q') => {}
+            other => return Err(other.unexpected()),
+        }
+    }
+    let mut engines = BTreeMap::<String, u64>::new();
+    let mut ours = BTreeMap::<String, u64>::new();
+    for scene in 0..scenes {
+        let mut bytes = [0; 32];
+        bytes[..8].copy_from_slice(&(seed + scene).to_le_bytes());
+        let rng = TestRng::from_seed(RngAlgorithm::ChaCha, &bytes);
+        let mut runner = TestRunner::new_with_rng(Config::default(), rng);
+        let Ok(mut tree) = plans().new_tree(&mut runner) else {
+            continue;
+        };
+        match judge(&tree.current()) {
+            Verdict::Sound => {}
+            Verdict::Engines(wrong) => *engines.entry(kind(&wrong)).or_default() += 1,
+            Verdict::Ours(wrong) => {
+                let kind = kind(&wrong);
+                let count = ours.entry(kind.clone()).or_default();
+                *count += 1;
+                if *count > 1 {
+                    continue;
+                }
+                println!("seed {}: {wrong}", seed + scene);
+                let smallest = shrink(&mut tree, &kind);
+                println!("as small as can be: {smallest}\n");
+            }
+        }
+        if scene % 1000 == 999 {
+            println!(
+                "{} scenes, ours {ours:?}, the engine's {engines:?}",
+                scene + 1
+            );
+        }
+    }
+    println!("{scenes} scenes from seed {seed}: ours {ours:#?}, the engine's {engines:#?}");
+    Ok(ours.is_empty())
+}
+
+/// What is wrong without its numbers, to count by.
+fn kind(wrong: &str) -> String {
+    match wrong.find("panicked at ") {
+        Some(at) => wrong[at..].chars().take(100).collect(),
+        None => wrong
+            .split(|c: char| c == ':' || c.is_ascii_digit())
+            .map(str::trim)
+            .find(|part| part.len() > 6)
+            .unwrap_or("not a number")
+            .into(),
+    }
+}
+
+/// The smallest scene in which the same is wrong, and what is.
+fn shrink(tree: &mut impl ValueTree<Value = attack::plan::Plan>, wanted: &str) -> String {
+    let mut best = String::new();
+    let mut fails = true;
+    for _ in 0..SHRINKS {
+        if !(if fails {
+            tree.simplify()
+        } else {
+            tree.complicate()
+        }) {
+            break;
+        }
+        let plan = tree.current();
+        let verdict = judge(&plan);
+        fails = matches!(&verdict, Verdict::Ours(wrong) if kind(wrong) == wanted);
+        if fails {
+            best = format!("{plan:#?}\n{verdict:?}");
+        }
+    }
+    best
+}

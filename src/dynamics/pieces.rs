@@ -1,0 +1,249 @@
+//! An element's force over a step inside an engine's solver, as pieces each of which is linear within a range.
+//!
+//! Whether a rope is taut, or a stop touched, is decided in every substep by the range, not once in a step. Decided before
+//! the step, a rope that is slack then would not hold what stretches it meanwhile, and have its energy from nothing.
+
+use super::law::Law;
+use super::soft::Tangent;
+
+/// Spring, and stops below and above.
+const MOST: usize = 3;
+
+/// Times the force that a piece can come to over a step, as far as can be seen, that it may have.
+const ROOM: f64 = 2.0;
+
+/// A force that is linear as long as it does not leave its range.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Piece {
+    pub tangent: Tangent,
+    /// Least and greatest tension, N.
+    pub range: [f64; 2],
+}
+
+impl Piece {
+    /// Tension at a length and its rate.
+    pub(crate) fn tension(&self, length: f64, rate: f64) -> f64 {
+        let tension = self.tangent.elastic(length) + self.tangent.damping * rate;
+        tension.max(self.range[0]).min(self.range[1])
+    }
+
+    /// Integral of the tension at rest between two lengths, J: what the bodies lose to it.
+    fn work(&self, [from, to]: [f64; 2]) -> f64 {
+        let Tangent {
+            force,
+            at,
+            stiffness,
+            ..
+        } = self.tangent;
+        if stiffness <= 0.0 {
+            return (to - from) * 0.5 * (self.tension(from, 0.0) + self.tension(to, 0.0));
+        }
+        // Where it comes to the ends of its range.
+        let ends = self.range.map(|tension| at + (tension - force) / stiffness);
+        let until = |length: f64| {
+            let within = length.max(ends[0]).min(ends[1]);
+            let inside = self.tangent.work([at, within]);
+            let outside = length - within;
+            inside
+                + if outside == 0.0 {
+                    0.0
+                } else {
+                    outside * self.tension(length, 0.0)
+                }
+        };
+        until(to) - until(from)
+    }
+
+    /// Whether its range ends on one side nearer than on the other.
+    pub(crate) fn ends(&self) -> bool {
+        self.middle().0 != 0.0
+    }
+
+    /// Its range as one that lies evenly about a middle, and half of its width.
+    pub(crate) fn middle(&self) -> (f64, f64) {
+        let [least, greatest] = self.range;
+        if least == -greatest {
+            (0.0, greatest)
+        } else {
+            (0.5 * (least + greatest), 0.5 * (greatest - least))
+        }
+    }
+}
+
+/// How far an element may come over a step.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Outreach {
+    /// Lengths at its start and at its end, as the last steps went on, m.
+    pub way: [f64; 2],
+    /// Rate over it, m/s.
+    pub rate: f64,
+    /// Greatest change of length that can be thought of, m,
+    pub change: f64,
+    /// and greatest rate, m/s.
+    pub speed: f64,
+}
+
+/// All pieces of an element's force.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Pieces {
+    all: [Piece; MOST],
+    count: usize,
+}
+
+impl Pieces {
+    /// Of a linear element.
+    pub(crate) fn linear(stiffness: f64, damping: f64, rest_length: f64) -> Self {
+        let mut pieces = Self::default();
+        pieces.push(Piece {
+            tangent: Tangent::linear(stiffness, damping, rest_length),
+            range: [f64::NEG_INFINITY, f64::INFINITY],
+        });
+        pieces
+    }
+
+    /// Of a law.
+    pub(crate) fn of(law: &Law, rest_length: f64, reach: Outreach) -> Self {
+        let mut pieces = Self::default();
+        let drag = law.drag.at(reach.rate);
+        let mut tangent =
+            Tangent::chord(|length| law.spring_beyond(length, rest_length), reach.way);
+        tangent.damping = if reach.rate == 0.0 {
+            drag.slope
+        } else {
+            drag.force / reach.rate
+        };
+        tangent.damping = tangent.damping.max(0.0);
+        pieces.push(reach.piece(tangent, law.range()));
+        for above in [false, true] {
+            let away = law.to_stop(above, reach.way[0]);
+            if away.is_none_or(|away| away > reach.change) {
+                continue;
+            }
+            let mut tangent = Tangent::chord(|length| law.stop_beyond(above, length), reach.way);
+            tangent.damping = law.stop_damping();
+            let range = if above {
+                [0.0, f64::INFINITY]
+            } else {
+                [f64::NEG_INFINITY, 0.0]
+            };
+            pieces.push(reach.piece(tangent, range));
+        }
+        pieces
+    }
+
+    fn push(&mut self, piece: Piece) {
+        self.all[self.count] = piece;
+        self.count += 1;
+    }
+
+    pub(crate) fn iter(&self) -> impl Iterator<Item = &Piece> {
+        self.all[..self.count].iter()
+    }
+
+    /// The spring with its damper.
+    pub(crate) fn spring(&mut self) -> &mut Tangent {
+        &mut self.all[0].tangent
+    }
+
+    /// Tension at a length and its rate.
+    pub(crate) fn tension(&self, length: f64, rate: f64) -> f64 {
+        self.iter().map(|piece| piece.tension(length, rate)).sum()
+    }
+
+    /// Integral of the tension at rest between two lengths, J.
+    pub(crate) fn work(&self, way: [f64; 2]) -> f64 {
+        self.iter().map(|piece| piece.work(way)).sum()
+    }
+
+    /// Greatest slope, N/m.
+    pub(crate) fn stiffness(&self) -> f64 {
+        self.iter().map(|piece| piece.tangent.stiffness.abs()).sum()
+    }
+}
+
+impl Outreach {
+    /// A piece whose range is closed, if it ends on one side: it may be as strong as it can come to be, and more.
+    fn piece(&self, tangent: Tangent, [least, greatest]: [f64; 2]) -> Piece {
+        let now = tangent.elastic(self.way[0]).abs();
+        let more = tangent.stiffness.abs() * self.change + tangent.damping * self.speed;
+        let most = (ROOM * (now + more)).max(f64::MIN_POSITIVE);
+        let range = if least.is_finite() == greatest.is_finite() {
+            [least, greatest]
+        } else {
+            [least.max(-most), greatest.min(most)]
+        };
+        Piece { tangent, range }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::law::{DragLaw, Recipe, SpringForce, Stop};
+    use super::*;
+
+    const STIFFNESS: f64 = 50.0;
+
+    fn law(limits: [f64; 2]) -> Law {
+        let force = [STIFFNESS, 0.0, 0.0];
+        Law::new(Recipe {
+            spring: SpringForce::Polynomial {
+                pull: force,
+                push: force,
+            },
+            drag: DragLaw::Sided {
+                bump: 2.0,
+                rebound: 6.0,
+            },
+            preload: 0.0,
+            limits,
+            most: f64::INFINITY,
+            travel: [0.5, 1.5],
+            stop: Stop {
+                stiffness: 1e3,
+                ..Stop::default()
+            },
+        })
+    }
+
+    fn reach(way: [f64; 2], rate: f64) -> Outreach {
+        Outreach {
+            way,
+            rate,
+            change: 0.4,
+            speed: 10.0,
+        }
+    }
+
+    #[test]
+    fn pieces_do_the_work_of_the_laws_energy_across_its_kinks() {
+        let free = [f64::NEG_INFINITY, f64::INFINITY];
+        for limits in [free, [0.0, f64::INFINITY], [f64::NEG_INFINITY, 0.0]] {
+            let law = law(limits);
+            for way in [[0.9, 1.2], [1.2, 0.8], [0.6, 0.4], [1.3, 1.6], [1.6, 1.4]] {
+                // It was thought to go the other way.
+                let pieces = Pieces::of(&law, 1.0, reach([way[0], 2.0 * way[0] - way[1]], 1.0));
+                let stored = way.map(|length| law.elastic(length, 1.0).energy);
+                let missed = pieces.work(way) - (stored[1] - stored[0]);
+                assert!(missed.abs() < 1e-12, "{limits:?}, {way:?}: {missed}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_slack_rope_is_ready_and_has_no_force() {
+        let law = law([0.0, f64::INFINITY]);
+        let pieces = Pieces::of(&law, 1.0, reach([0.9, 0.9], 0.0));
+        assert_eq!(pieces.tension(0.9, 0.0), 0.0);
+        assert!((pieces.tension(1.1, 0.0) - 0.1 * STIFFNESS).abs() < 1e-12);
+        assert_eq!(pieces.stiffness(), STIFFNESS, "no stop is near");
+    }
+
+    #[test]
+    fn a_damper_takes_what_its_law_takes() {
+        for (rate, wanted) in [(1.0, 6.0), (-0.2, 2.0), (0.0, 6.0)] {
+            let law = law([f64::NEG_INFINITY, f64::INFINITY]);
+            let mut pieces = Pieces::of(&law, 1.0, reach([1.0, 1.1], rate));
+            assert_eq!(pieces.spring().damping, wanted, "at {rate} m/s");
+        }
+    }
+}

@@ -1,0 +1,185 @@
+//! Elements that pull only, push only, or have nothing but stops, where contacts hold their ends.
+
+use super::stand::*;
+use crate::harness::*;
+use bevy::prelude::*;
+use bevy_coilover::prelude::*;
+use bevy_rapier3d::prelude::*;
+
+/// How the links of a chain give way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Link {
+    /// Pulls where it is longer than its rest length.
+    Rope,
+    /// Pushes where it is shorter.
+    Buffer,
+    /// Pulls and pushes.
+    Both,
+    /// Has stops a tenth of its rest length either way, and nothing between.
+    Loose,
+}
+
+impl Link {
+    /// Energy of a link so stretched, J.
+    fn stored(self, stiffness: f32, rest_length: f64, stretch: f64) -> f64 {
+        let within = match self {
+            Self::Rope => stretch.max(0.0),
+            Self::Buffer => stretch.min(0.0),
+            Self::Both => stretch,
+            Self::Loose => (stretch.abs() - 0.1 * rest_length).max(0.0),
+        };
+        0.5 * f64::from(stiffness) * within * within
+    }
+}
+
+struct Chain {
+    scene: Stand,
+    link: Link,
+}
+
+/// Balls of 1 kg in all, in a level row of 2 m from a hook, 1.5 m above the ground; stretched by 1 % by their own weight if
+/// they hung.
+fn chain(plugin: CoiloverPlugin, link: Link, links: usize, firmness: f32) -> Chain {
+    let mut scene = Stand::new(plugin, Engine::default());
+    scene.ground();
+    let pitch = 2.0 / links as f32;
+    let each = 1.0 / links as f32;
+    let stiffness = firmness * GRAVITY as f32 / pitch;
+    let damping = 0.2 * (stiffness * each).sqrt();
+    let mut last = scene.lab.point(Vec3::Y * 1.5);
+    for i in 1..=links {
+        let at = Vec3::new(pitch * i as f32, 1.5, 0.0);
+        let ball = (
+            Collider::ball(0.02),
+            ColliderMassProperties::Mass(each),
+            LockedAxes::ROTATION_LOCKED,
+        );
+        let next = scene.body(Transform::from_translation(at), ball);
+        let law = match link {
+            Link::Loose => [0.0, 0.0],
+            _ => [stiffness, damping],
+        };
+        let element = scene.coil([last, next], [Vec3::ZERO; 2], law, Some(pitch));
+        let mut element = scene.lab.app.world_mut().entity_mut(element);
+        match link {
+            Link::Rope => element.insert(SpringAction::Pull),
+            Link::Buffer => element.insert(SpringAction::Push),
+            Link::Both => &mut element,
+            Link::Loose => element.insert(
+                SpringTravel::new(0.9 * pitch, 1.1 * pitch, stiffness).with_stop_damping(damping),
+            ),
+        };
+        if let Some(coil) = scene.coils.last_mut() {
+            coil.stiffness = stiffness;
+        }
+        last = next;
+    }
+    Chain { scene, link }
+}
+
+impl Chain {
+    fn stored(&self) -> f64 {
+        let of = |coil: &SceneSpring| {
+            let rest = f64::from(coil.rest_length);
+            let stretch = self.scene.length(coil) - rest;
+            self.link.stored(coil.stiffness, rest, stretch)
+        };
+        self.scene.coils.iter().map(of).sum()
+    }
+
+    /// Motion, weight and what is stored in links, J.
+    fn energy(&self) -> f64 {
+        self.scene.energy() - self.scene.stored() + self.stored()
+    }
+
+    fn fastest(&self) -> f32 {
+        let of = |body: &Entity| self.scene.lab.velocity(*body).length();
+        self.scene.bodies.iter().map(of).fold(0.0, f32::max)
+    }
+}
+
+#[test]
+fn a_rope_that_falls_on_the_ground_wins_nothing() {
+    for (name, way) in ways().into_iter().step_by(2) {
+        for link in [Link::Rope, Link::Both, Link::Buffer, Link::Loose] {
+            let mut line = String::new();
+            // ω·dt of two neighbours 5, 15, 52.
+            for (links, firmness) in [(10, 100.0), (30, 100.0), (10, 1e4)] {
+                let mut chain = chain(way, link, links, firmness);
+                chain.scene.lab.tick();
+                let first = chain.energy();
+                let (mut most, mut fastest) = (f64::MIN, 0.0_f32);
+                for _ in 0..chain.scene.lab.ticks(6.0) {
+                    chain.scene.lab.tick();
+                    most = most.max(chain.energy() / first);
+                    fastest = fastest.max(chain.fastest());
+                }
+                let last = chain.fastest();
+                line += &format!("  {links}: {most:.4}, {fastest:.1}→{last:.2} m/s");
+                assert!(most < 1.002, "{name}, {link:?}, {links}: E × {most}");
+            }
+            println!("{link:?}, {name} micro-steps: E ×{line}");
+        }
+    }
+}
+
+/// A bridge of ropes between planks, and a box of 80 kg that falls on it.
+#[test]
+fn a_bridge_of_ropes_holds_what_falls_on_it() {
+    const PLANKS: usize = 10;
+    const PITCH: f32 = 0.5;
+    for stiffness in [3e4, 2e5] {
+        let mut scene = Stand::new(CoiloverPlugin::default(), Engine::default());
+        let plank = |i: usize| {
+            let at = Vec3::X * PITCH * (i as f32 - 0.5 * (PLANKS + 1) as f32);
+            Transform::from_translation(at)
+        };
+        let size = Vec3::new(0.2, 0.03, 0.5);
+        let bank = |scene: &mut Stand, i| scene.lab.spawn((RigidBody::Fixed, plank(i)));
+        let mut all = vec![bank(&mut scene, 0)];
+        for i in 1..=PLANKS {
+            let collider = Collider::cuboid(size.x, size.y, size.z);
+            let weight = (
+                collider,
+                ColliderMassProperties::Mass(8.0),
+                Damping {
+                    linear_damping: 0.5,
+                    angular_damping: 0.5,
+                },
+            );
+            all.push(scene.body(plank(i), weight));
+        }
+        all.push(bank(&mut scene, PLANKS + 1));
+        for pair in all.windows(2) {
+            for side in [-0.5, 0.5] {
+                let anchors = [0.2, -0.2].map(|x| Vec3::new(x, 0.0, side));
+                let ends = [pair[0], pair[1]];
+                let rope = scene.coil(ends, anchors, [stiffness, 300.0], Some(0.15));
+                let mut rope = scene.lab.app.world_mut().entity_mut(rope);
+                rope.insert(SpringAction::Pull);
+            }
+        }
+        let crate_of = (
+            Collider::cuboid(0.3, 0.3, 0.3),
+            ColliderMassProperties::Mass(80.0),
+        );
+        let load = scene.body(Transform::from_xyz(0.1, 1.0, 0.0), crate_of);
+        let mut fastest = 0.0_f32;
+        for _ in 0..scene.lab.ticks(20.0) {
+            scene.lab.tick();
+            let of = |body: &Entity| scene.lab.velocity(*body).length();
+            fastest = fastest.max(scene.bodies.iter().map(of).fold(0.0, f32::max));
+        }
+        let of = |body: &Entity| scene.lab.velocity(*body).length();
+        let last = scene.bodies.iter().map(of).fold(0.0, f32::max);
+        let at = scene.lab.position(load);
+        println!(
+            "bridge of ropes, {stiffness} N/m: at most {fastest:.1} m/s, in the end {last:.3}, load at {at:.2}"
+        );
+        assert!(fastest < 10.0, "{fastest} m/s");
+        assert!(
+            last < 0.1 && (-2.5..0.0).contains(&at.y),
+            "{last} m/s, at {at}"
+        );
+    }
+}
