@@ -103,7 +103,7 @@ const NO_NAMES: Names = Names {
 
 /// Greatest size of a number that a user gives, in SI units. Far beyond what any scene has, and with the products of two of
 /// them, over the least mass and time, still numbers of single precision. Pinned by the member `attack`.
-const MOST: f32 = 1e12;
+pub(super) const MOST: f32 = 1e12;
 
 /// A number, and not one out of all measure.
 pub(super) fn finite(value: f32, field: &'static str) -> Result<f64, Fault> {

@@ -1,6 +1,6 @@
 //! What stands beside an element and changes its law: read, judged and made into one.
 
-use super::check::{Fault, Parameters, direction, finite, number};
+use super::check::{Fault, MOST, Parameters, direction, finite, number};
 use crate::dynamics::guide::Guide;
 use crate::dynamics::law::{DragLaw, Law, Recipe, SpringForce, Stop, Table};
 use crate::element::*;
@@ -290,6 +290,16 @@ fn table(table: &ForceTable, field: &'static str) -> Result<Table, Fault> {
         .iter()
         .map(|p| (f64::from(p.x), f64::from(p.y)))
         .collect();
+    let steep = |p: &[(f64, f64)]| p[1].1 - p[0].1 > f64::from(MOST) * (p[1].0 - p[0].0);
+    if points
+        .iter()
+        .any(|(x, y)| x.abs().max(y.abs()) > f64::from(MOST))
+    {
+        return fault("has a point larger than 1e12");
+    }
+    if points.windows(2).any(steep) {
+        return fault("has a slope larger than 1e12");
+    }
     Ok(Table::new(&points))
 }
 
