@@ -209,7 +209,7 @@ mod tests {
         Outreach {
             way,
             rate,
-            change: 0.4,
+            change: 0.3,
             speed: 10.0,
         }
     }

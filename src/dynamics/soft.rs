@@ -156,7 +156,7 @@ pub(crate) fn damping(tangent: &Tangent, [omega, lively]: [f64; 2], substep: f64
 
 #[cfg(test)]
 mod tests {
-    use super::super::law::{DragLaw, Recipe, SpringForce, Stop};
+    use super::super::law::{DragLaw, Law, Recipe, SpringForce, Stop};
     use super::*;
 
     fn cubic() -> Law {

@@ -3,7 +3,7 @@ use std::fmt;
 
 /// Stands on an element that does not act, and says why; gone once that is mended.
 ///
-/// The same text is logged once as a warning.
+/// The same text is logged once as a warning, after the element's `Name` if it has one.
 #[derive(Component, Reflect, Clone, Debug, PartialEq, Eq)]
 #[type_path = "bevy_coilover"]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]

@@ -17,23 +17,28 @@ pub(super) fn report(row: &mut ElementRow, commands: &mut Commands) {
                 field: fault.field.into(),
                 reason: fault.reason.into(),
             };
-            log::warn!("{fault}");
+            let ends = row.parameters.ends;
+            let lasts = row.trouble.lasting().is_some();
             let mut element = commands.entity(row.entity);
-            element.try_insert(fault);
-            if row.trouble.lasting().is_some() {
-                let ends = row.parameters.ends;
-                element.queue_silenced(move |mut element: EntityWorldMut| {
-                    // An end that went is looked for by its name again.
-                    let is_gone = |end| element.world().get_entity(end).is_err();
-                    if element.contains::<EndNames>() && ends.into_iter().any(is_gone) {
-                        element.insert(AwaitsEnds);
-                    }
-                    // What it shows would be taken for a force that still acts.
-                    if let Some(mut readout) = element.get_mut::<SpringReadout>() {
-                        *readout = SpringReadout::default();
-                    }
-                });
-            }
+            element.queue_silenced(move |mut element: EntityWorldMut| {
+                match element.get::<Name>() {
+                    Some(name) => log::warn!("{name}, {fault}"),
+                    None => log::warn!("{fault}"),
+                }
+                element.insert(fault);
+                if !lasts {
+                    return;
+                }
+                // An end that went is looked for by its name again.
+                let is_gone = |end| element.world().get_entity(end).is_err();
+                if element.contains::<EndNames>() && ends.into_iter().any(is_gone) {
+                    element.insert(AwaitsEnds);
+                }
+                // What it shows would be taken for a force that still acts.
+                if let Some(mut readout) = element.get_mut::<SpringReadout>() {
+                    *readout = SpringReadout::default();
+                }
+            });
         }
         None => {
             commands.entity(row.entity).try_remove::<SpringFault>();

@@ -148,7 +148,10 @@ impl Finder<'_, '_> {
         };
         let along = lever.line.direction.dot(down);
         if along.abs() < LEVEL {
-            return fault("stands on an element that is level, so no tension of it holds a weight");
+            return fault(
+                "stands on an element that is level, so no tension of it holds a weight (levers on joints between bodies \
+                 that move are not looked at: give Preload)",
+            );
         }
         let sign = if end == 0 { -1.0 } else { 1.0 };
         Ok(sign * share * weight.length() / along)

@@ -159,3 +159,17 @@ fn with_an_engine_step_that_is_not_the_tick() {
     assert_eq!(told.len(), 1, "{told:?}");
     assert!(told[0].contains("2.00 times as fast"));
 }
+
+#[test]
+fn an_element_with_a_name_is_told_by_it() {
+    let log = Log::capture();
+    let mut lab = Lab::new();
+    let hook = lab.point(Vec3::ZERO);
+    let body = lab.body(1.0, Vec3::X);
+    let spring = Spring::new(hook, body).with_stiffness(f32::NAN);
+    lab.spawn((Name::new("Left rear"), spring));
+    lab.run(0.1);
+    let told = log.take();
+    assert_eq!(told.len(), 1, "{told:?}");
+    assert!(told[0].starts_with("Left rear, ") && told[0].contains("Spring::stiffness is NaN"));
+}

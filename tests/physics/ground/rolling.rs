@@ -167,3 +167,60 @@ fn more_micro_steps_make_nothing_worse() {
         assert!((sag - 1.0).abs() < 0.03, "{name}: {sag}");
     }
 }
+
+/// How far below its radius a wheel's centre is while it rolls, m: mean over two seconds. Its load weighs on it, or rests on a
+/// spring above it.
+fn sinks(sprung: bool, speed: f32) -> f32 {
+    let mut scene = Stand::new(CoiloverPlugin::default(), Engine::default());
+    ground(&mut scene, Ground::HalfSpace);
+    let rolling = Velocity {
+        linear: Vec3::X * speed,
+        angular: Vec3::NEG_Z * speed / RADIUS,
+    };
+    let own = if sprung { 20.0 } else { 20.0 + LOAD };
+    let wheel = scene.body(
+        Transform::from_xyz(0.0, RADIUS, 0.0),
+        (
+            Collider::ball(RADIUS),
+            ColliderMassProperties::Mass(own),
+            Friction::new(1.0),
+            rolling,
+        ),
+    );
+    if sprung {
+        let load = scene.body(
+            Transform::from_xyz(0.0, RADIUS + REST, 0.0),
+            (
+                AdditionalMassProperties::Mass(LOAD),
+                LockedAxes::ROTATION_LOCKED,
+                Velocity::linear(Vec3::X * speed),
+            ),
+        );
+        let guide = GenericJointBuilder::new(JointAxesMask::LIN_X | JointAxesMask::LIN_Z);
+        let guide = ImpulseJoint::new(load, TypedJoint::GenericJoint(guide.build()));
+        scene.lab.app.world_mut().entity_mut(wheel).insert(guide);
+        scene.coil([load, wheel], [Vec3::ZERO; 2], [40e3, 3e3], Some(REST));
+    }
+    scene.lab.run(2.0);
+    let ticks = scene.lab.ticks(2.0);
+    let mut sum = 0.0;
+    for _ in 0..ticks {
+        scene.lab.tick();
+        sum += RADIUS - scene.lab.position(wheel).y;
+    }
+    sum / ticks as f32
+}
+
+#[test]
+fn a_rolling_wheel_sinks_into_the_road_as_far_as_the_limits_say() {
+    for (speed, most) in [(0.0, 1.5), (3.0, 4.0), (6.0, 12.0), (12.0, 30.0)] {
+        let [alone, sprung] = [false, true].map(|sprung| 1e3 * sinks(sprung, speed));
+        println!(
+            "wheel at {speed} m/s sinks {alone:.1} mm by itself, {sprung:.1} mm under a spring"
+        );
+        assert!(
+            sprung < most && alone < most,
+            "{sprung} mm, {alone} by itself"
+        );
+    }
+}
