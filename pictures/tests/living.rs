@@ -37,7 +37,11 @@ fn after_ten_minutes_nothing_has_left_the_picture_or_lies_askew() {
         let begin = |(scene, minutes): &(&'static str, &str)| {
             let mut watched = command(scene);
             let minutes: f32 = minutes.parse().expect("a number");
-            let minutes = if all { minutes } else { (minutes / 5.0).max(1.0) };
+            let minutes = if all {
+                minutes
+            } else {
+                (minutes / 5.0).max(1.0)
+            };
             watched.args(["--minutes", &minutes.to_string()]);
             watched.stdout(Stdio::piped()).stderr(Stdio::piped());
             (*scene, watched.spawn().expect("the example starts"))

@@ -3,11 +3,14 @@
 //! Whether a rope is taut, or a stop touched, is decided in every substep by the range, not once in a step. Decided before
 //! the step, a rope that is slack then would not hold what stretches it meanwhile, and have its energy from nothing.
 
-use super::law::Law;
+use super::law::{Elastic, Law};
 use super::soft::Tangent;
 
-/// Spring, and stops below and above.
-const MOST: usize = 3;
+/// Damper, spring below and above a kink, and stops below and above.
+pub(crate) const MOST: usize = 5;
+
+/// Share of how far an element may come over which the slope beside a kink is taken, where it is not there yet.
+const BESIDE: f64 = 0.01;
 
 /// Times the force that a piece can come to over a step, as far as can be seen, that it may have.
 const ROOM: f64 = 2.0;
@@ -105,15 +108,21 @@ impl Pieces {
     pub(crate) fn of(law: &Law, rest_length: f64, reach: Outreach) -> Self {
         let mut pieces = Self::default();
         let drag = law.drag.at(reach.rate);
-        let mut tangent =
-            Tangent::chord(|length| law.spring_beyond(length, rest_length), reach.way);
-        tangent.damping = if reach.rate == 0.0 {
+        let damping = if reach.rate == 0.0 {
             drag.slope
         } else {
             drag.force / reach.rate
         };
-        tangent.damping = tangent.damping.max(0.0);
-        pieces.push(reach.piece(tangent, law.range()));
+        let damping = damping.max(0.0);
+        let spring = |length| law.spring_beyond(length, rest_length);
+        match law.kink(rest_length) {
+            None => {
+                let tangent = Tangent::chord(spring, reach.way);
+                let tangent = Tangent { damping, ..tangent };
+                pieces.push(reach.piece(tangent, law.range()));
+            }
+            Some(kink) => pieces.push_split(&reach, spring, kink, damping, law.range()),
+        }
         for above in [false, true] {
             let away = law.to_stop(above, reach.way[0]);
             if away.is_none_or(|away| away > reach.change) {
@@ -129,6 +138,46 @@ impl Pieces {
             pieces.push(reach.piece(tangent, range));
         }
         pieces
+    }
+
+    /// A spring whose slope leaps: a piece that comes up to the kink from below, and one that goes on above it.
+    fn push_split(
+        &mut self,
+        reach: &Outreach,
+        spring: impl Fn(f64) -> Elastic,
+        kink: f64,
+        damping: f64,
+        [least, greatest]: [f64; 2],
+    ) {
+        let middle = spring(kink).force.max(least).min(greatest);
+        let free = least.is_finite() == greatest.is_finite();
+        if free {
+            // Damping of its own, which neither side's range cuts off.
+            let tangent = Tangent::linear(0.0, damping, kink);
+            self.push(reach.piece(tangent, [least, greatest]));
+        }
+        for above in [false, true] {
+            let (beside, beyond) = if above {
+                (f64::max as fn(f64, f64) -> f64, 1.0)
+            } else {
+                (f64::min as fn(f64, f64) -> f64, -1.0)
+            };
+            let mut way = reach.way.map(|length| beside(length, kink));
+            if way[0] == way[1] {
+                way = [kink, kink + beyond * BESIDE * reach.change];
+            }
+            let mut tangent = Tangent::chord(&spring, way);
+            let mut range = [least, middle];
+            if above {
+                tangent.force -= middle;
+                range = [0.0, greatest - middle];
+            }
+            // A rope's damper is a part of what pulls.
+            if !free && above == (least == 0.0) {
+                tangent.damping = damping;
+            }
+            self.push(reach.piece(tangent, range));
+        }
     }
 
     fn push(&mut self, piece: Piece) {
@@ -167,10 +216,10 @@ impl Outreach {
         let now = tangent.elastic(self.way[0]).abs();
         let more = tangent.stiffness.abs() * self.change + tangent.damping * self.speed;
         let most = (ROOM * (now + more)).max(f64::MIN_POSITIVE);
-        let range = if least.is_finite() == greatest.is_finite() {
-            [least, greatest]
-        } else {
-            [least.max(-most), greatest.min(most)]
+        let range = match [least, greatest].map(f64::is_finite) {
+            [true, false] => [least, most.max(least)],
+            [false, true] => [(-most).min(greatest), greatest],
+            _ => [least, greatest],
         };
         Piece { tangent, range }
     }
@@ -184,8 +233,12 @@ mod tests {
     const STIFFNESS: f64 = 50.0;
 
     fn law(limits: [f64; 2]) -> Law {
+        Law::new(recipe(limits))
+    }
+
+    fn recipe(limits: [f64; 2]) -> Recipe {
         let force = [STIFFNESS, 0.0, 0.0];
-        Law::new(Recipe {
+        Recipe {
             spring: SpringForce::Polynomial {
                 pull: force,
                 push: force,
@@ -202,7 +255,7 @@ mod tests {
                 stiffness: 1e3,
                 ..Stop::default()
             },
-        })
+        }
     }
 
     fn reach(way: [f64; 2], rate: f64) -> Outreach {
@@ -226,6 +279,22 @@ mod tests {
                 let missed = pieces.work(way) - (stored[1] - stored[0]);
                 assert!(missed.abs() < 1e-12, "{limits:?}, {way:?}: {missed}");
             }
+        }
+    }
+
+    #[test]
+    fn a_spring_that_is_stiffer_one_way_does_its_work_across_the_kink() {
+        let mut recipe = recipe([f64::NEG_INFINITY, f64::INFINITY]);
+        recipe.spring = SpringForce::Polynomial {
+            pull: [300.0, 0.0, 0.0],
+            push: [10.0, 0.0, 0.0],
+        };
+        let law = Law::new(recipe);
+        for way in [[0.9, 1.1], [1.1, 0.9], [0.8, 0.9], [1.0, 1.2], [1.2, 1.1]] {
+            let pieces = Pieces::of(&law, 1.0, reach([way[0], way[0]], 0.0));
+            let stored = way.map(|length| law.elastic(length, 1.0).energy);
+            let missed = pieces.work(way) - (stored[1] - stored[0]);
+            assert!(missed.abs() < 1e-9, "{way:?}: {missed}");
         }
     }
 

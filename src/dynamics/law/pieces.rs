@@ -23,6 +23,11 @@ impl Law {
         self.bare(length - rest_length)
     }
 
+    /// The length at which the spring's slope leaps, if it does: tables are smooth, and only pull and push may differ.
+    pub(crate) fn kink(&self, rest_length: f64) -> Option<f64> {
+        self.spring.is_bent().then_some(rest_length)
+    }
+
     /// Least and greatest tension of spring and damper together, N.
     pub(crate) fn range(&self) -> [f64; 2] {
         [

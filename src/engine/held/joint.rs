@@ -4,6 +4,7 @@
 //! where s is the length at the start and ṡ its rate at the end. So a damping of C is ordered as C − h k; what is left is
 //! the symplectic Euler rule with an implicit damper.
 
+use crate::dynamics::pieces::MOST;
 use bevy::math::{Quat, Vec3};
 use bevy_rapier3d::rapier::dynamics::{
     GenericJoint, GenericJointBuilder, ImpulseJoint, ImpulseJointHandle, ImpulseJointSet,
@@ -122,7 +123,7 @@ const NEIGHBOURS: usize = 64;
 const EXACT: f64 = 3e-7;
 
 /// Joints of one element besides its damper: for each piece of its force a spring, and what moves the middle of its range.
-pub(in crate::engine) const SPRINGS: usize = 6;
+const SPRINGS: usize = 2 * MOST;
 
 type Known = Option<(ImpulseJointHandle, SoftJoint)>;
 
