@@ -130,7 +130,8 @@ impl Cloth {
 /// Energy that the balls have to lose by falling, J.
 const FALLS: f64 = GRAVITY * (3.0 * 1.2 + 1.5 * 1.6 + 2.0 * 0.9);
 
-/// Energy that they may seem to win, as a share of that; and how high that would lift the lightest of them, m.
+/// Energy that they may seem to win, as a share of that; and how high that would lift the lightest of them, m. Nothing forbids
+/// that one ball takes over what another one brought: of these fifteen cases it rises by a millimetre in one.
 const GAIN: f64 = 1e-3;
 const RISE: f32 = (GAIN * FALLS / (GRAVITY * 1.5)) as f32;
 
@@ -183,8 +184,9 @@ fn balls_that_fall_on_a_cloth_win_no_energy() {
             let seen = watch(cloth(Link::Ours, stiffness, damping, friction, off));
             println!(
                 "cloth of {stiffness} N/m, {damping} N s/m, friction {friction}, {off} m aside: energy at \
-                 most {:+.3} of the falls' above the first, in the end no point faster than {:.2} m/s",
-                seen.gain, seen.fastest
+                 most {:+.3} of the falls' above the first, no ball higher than {:+.4} m, in the end no point \
+                 faster than {:.2} m/s",
+                seen.gain, seen.rise, seen.fastest
             );
             assert!(seen.gain < GAIN, "gained {}", seen.gain);
             assert!(seen.rise < RISE, "rose by {} m", seen.rise);
