@@ -97,7 +97,7 @@ fn setup(
             .with_stiffness(30e3)
             .with_damping(2_500.0)
             .with_rest_length(0.62),
-        Anchors::new(Vec3::Y * 0.14, Vec3::NEG_Y * 0.1),
+        Anchors::new(Vec3::Y * 0.1, Vec3::NEG_Y * 0.06),
     ));
 }
 
