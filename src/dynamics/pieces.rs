@@ -84,6 +84,8 @@ pub(crate) struct Outreach {
     pub change: f64,
     /// and greatest rate, m/s.
     pub speed: f64,
+    /// Stiffness, N/m, and damping, N s/m, above which a piece whose range ends on one side is softened.
+    pub firmest: [f64; 2],
 }
 
 /// All pieces of an element's force.
@@ -119,7 +121,9 @@ impl Pieces {
             None => {
                 let tangent = Tangent::chord(spring, reach.way);
                 let tangent = Tangent { damping, ..tangent };
-                pieces.push(reach.piece(tangent, law.range()));
+                let range = law.range();
+                let share = reach.share(&tangent, range);
+                pieces.push(reach.piece(tangent.times(share), range));
             }
             Some(kink) => pieces.push_split(&reach, spring, kink, damping, law.range()),
         }
@@ -135,7 +139,15 @@ impl Pieces {
             } else {
                 [f64::NEG_INFINITY, 0.0]
             };
-            pieces.push(reach.piece(tangent, range));
+            let share = reach.share(&tangent, range);
+            pieces.push(reach.piece(tangent.times(share), range));
+        }
+        let has_stop = [false, true].map(|above| law.to_stop(above, reach.way[0]));
+        if pieces.iter().any(Piece::ends) || has_stop != [None; 2] {
+            // A damper beside them must not be firmer either, nor one beside a stop that is not near.
+            for piece in &mut pieces.all {
+                piece.tangent.damping = piece.tangent.damping.min(reach.firmest[1]);
+            }
         }
         pieces
     }
@@ -149,14 +161,13 @@ impl Pieces {
         damping: f64,
         [least, greatest]: [f64; 2],
     ) {
-        let middle = spring(kink).force.max(least).min(greatest);
         let free = least.is_finite() == greatest.is_finite();
         if free {
             // Damping of its own, which neither side's range cuts off.
             let tangent = Tangent::linear(0.0, damping, kink);
             self.push(reach.piece(tangent, [least, greatest]));
         }
-        for above in [false, true] {
+        let sides = [false, true].map(|above| {
             let (beside, beyond) = if above {
                 (f64::max as fn(f64, f64) -> f64, 1.0)
             } else {
@@ -167,17 +178,19 @@ impl Pieces {
                 way = [kink, kink + beyond * BESIDE * reach.change];
             }
             let mut tangent = Tangent::chord(&spring, way);
-            let mut range = [least, middle];
-            if above {
-                tangent.force -= middle;
-                range = [0.0, greatest - middle];
-            }
             // A rope's damper is a part of what pulls.
             if !free && above == (least == 0.0) {
                 tangent.damping = damping;
             }
-            self.push(reach.piece(tangent, range));
-        }
+            tangent
+        });
+        let shares = sides.map(|tangent| reach.share(&tangent, [0.0, f64::INFINITY]));
+        let share = shares[0].min(shares[1]);
+        let middle = (share * spring(kink).force).max(least).min(greatest);
+        let [below, mut above] = sides.map(|tangent| tangent.times(share));
+        above.force -= middle;
+        self.push(reach.piece(below, [least, middle]));
+        self.push(reach.piece(above, [0.0, greatest - middle]));
     }
 
     fn push(&mut self, piece: Piece) {
@@ -211,6 +224,17 @@ impl Pieces {
 }
 
 impl Outreach {
+    /// What is left of a piece with such a range, as a share. The motor that moves its middle is as strong as all that it
+    /// may come to, and in f32 their difference would be lost.
+    fn share(&self, tangent: &Tangent, [least, greatest]: [f64; 2]) -> f64 {
+        if least.is_finite() == greatest.is_finite() {
+            return 1.0;
+        }
+        let [stiffness, damping] = self.firmest;
+        let over = (tangent.stiffness.abs() / stiffness).max(tangent.damping / damping);
+        over.max(1.0).recip()
+    }
+
     /// A piece whose range is closed, if it ends on one side: it may be as strong as it can come to be, and more.
     fn piece(&self, tangent: Tangent, [least, greatest]: [f64; 2]) -> Piece {
         let now = tangent.elastic(self.way[0]).abs();
@@ -264,6 +288,7 @@ mod tests {
             rate,
             change: 0.3,
             speed: 10.0,
+            firmest: [f64::INFINITY; 2],
         }
     }
 

@@ -58,6 +58,16 @@ impl Tangent {
         self.damping < SETTLING * substep * self.stiffness
     }
 
+    /// That share of it.
+    pub(crate) fn times(self, share: f64) -> Self {
+        Self {
+            force: share * self.force,
+            at: self.at,
+            stiffness: share * self.stiffness,
+            damping: share * self.damping,
+        }
+    }
+
     /// Of a linear element.
     pub(crate) const fn linear(stiffness: f64, damping: f64, rest_length: f64) -> Self {
         Self {
