@@ -12,7 +12,8 @@ use bevy_rapier3d::prelude::{PhysicsSet, TimestepMode};
 ///
 /// Add it beside `RapierPhysicsPlugin::<NoUserData>::default().in_fixed_schedule()`.
 ///
-/// One kick of every element per engine step is enough for most scenes. The error of anything that
+/// One kick of every element per engine step is enough for most scenes, and stiffer springs take more by themselves. The
+/// error of anything that
 /// swings or turns falls with the square of [`with_microsteps`](Self::with_microsteps), and
 /// [`with_extrapolation`](Self::with_extrapolation) buys fourth order for three kicks.
 #[derive(Clone, Copy, Debug)]
@@ -21,6 +22,9 @@ pub struct CoiloverPlugin {
     /// Ticks per second, if the plugin is to set them.
     rate: Option<f64>,
 }
+
+/// Kicks that stiff networks take together in a step by default, at most: about half a millisecond.
+const RESOLVE: u32 = 1024;
 
 /// What the plugin does in its schedule, in this order.
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -46,6 +50,7 @@ impl CoiloverPlugin {
         Self {
             settings: CoiloverSettings {
                 microsteps: 1,
+                resolve: RESOLVE,
                 extrapolation: false,
                 tolerance: None,
                 max_microsteps: 256,
@@ -81,9 +86,18 @@ impl CoiloverPlugin {
         }
     }
 
-    /// Sets the accuracy dial: micro-steps per engine step (default 1; 0 counts as 1).
+    /// Sets the accuracy dial: exactly so many micro-steps per engine step (0 counts as 1). By default it is one, and more
+    /// where springs are too stiff for that: see [`with_resolve`](Self::with_resolve), which may follow.
     pub const fn with_microsteps(mut self, microsteps: u32) -> Self {
         self.settings.microsteps = microsteps;
+        self.settings.resolve = 1;
+        self
+    }
+
+    /// Sets how many kicks stiff networks may take together in a step to be followed
+    /// ([`CoiloverSettings::resolve`], default 1024; 1 for no more than asked).
+    pub const fn with_resolve(mut self, kicks: u32) -> Self {
+        self.settings.resolve = kicks;
         self
     }
 

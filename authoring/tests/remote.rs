@@ -44,7 +44,10 @@ impl Remote {
         std::thread::spawn(move || {
             let told = (0..50).find_map(|_| {
                 let sent = ureq::post(&address).send(question.to_string());
-                let text = sent.ok()?.body_mut().read_to_string().ok();
+                let read = |mut sent: ureq::http::Response<ureq::Body>| {
+                    sent.body_mut().read_to_string().ok()
+                };
+                let text = sent.ok().and_then(read);
                 if text.is_none() {
                     // The server may not listen yet.
                     std::thread::sleep(std::time::Duration::from_millis(50));

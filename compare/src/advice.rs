@@ -19,9 +19,8 @@ pub fn section(scenes: &[(&Scene, Vec<Row>)]) -> String {
          - **ω·dt up to 2.** One micro-step has frequency and decay right; a lone element's motion along its line \
          is exact. What is left comes from turning, and falls with the square of micro-steps and tick rate alike: \
          micro-steps cost less.\n\
-         - **ω·dt above 2.** The spring's own motion is not resolved. If it matters, take at least ω·dt/2 \
-         micro-steps; if it does not, leave it. The maps above show what one micro-step makes of it; there a \
-         `SpringJoint` can be nearer, since it damps what it cannot resolve.\n\
+         - **ω·dt above 2.** The default follows the spring's own motion with more micro-steps: a lone element up to \
+         ω·dt = 64, networks as far as a budget of time allows. The maps above show how far.\n\
          - **Elements that share bodies** (chains, cloth, stars): three times as many micro-steps for the same \
          error, or extrapolation, which is the best bargain up to about ω·dt = 1.5 of the stiffest mode.\n\
          - **Contacts** follow the engine's step, not ours: raise the tick rate for them.\n\n\

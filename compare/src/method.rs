@@ -104,7 +104,7 @@ impl fmt::Display for Dial {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::None => write!(f, "-"),
-            Self::Microsteps(1) => write!(f, "1 micro-step"),
+            Self::Microsteps(1) => write!(f, "default"),
             Self::Microsteps(n) => write!(f, "{n} micro-steps"),
             Self::Extrapolated => write!(f, "extrapolated"),
             Self::Tolerance(n) => write!(f, "tolerance 1e-{n}"),

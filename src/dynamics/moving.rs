@@ -2,6 +2,7 @@
 
 use super::kick::Memo;
 use super::pair::{Pair, Separation};
+use super::resolution::lone_steps;
 use super::tolerance::{Motion, VELOCITY_COUNTS};
 use bevy::math::DVec3;
 
@@ -38,8 +39,8 @@ impl Motion for Moving<'_> {
         self.state = self.saved(slot);
     }
 
-    fn least(&mut self, _: f64) -> u32 {
-        1
+    fn least(&mut self, time: f64, most: u32) -> u32 {
+        lone_steps(self.pair.stiffness_number(time), most)
     }
 
     fn run(&mut self, time: f64, count: u32) {

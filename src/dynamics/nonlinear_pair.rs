@@ -308,7 +308,7 @@ impl Motion for NonlinearPair<'_> {
         self.state = self.saved[slot];
     }
 
-    fn least(&mut self, _: f64) -> u32 {
+    fn least(&mut self, _: f64, _: u32) -> u32 {
         1
     }
 

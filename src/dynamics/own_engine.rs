@@ -70,6 +70,7 @@ fn ball(mass: f32, position: Vec3) -> Ball {
 fn plain(microsteps: u32) -> Accuracy {
     Accuracy {
         microsteps,
+        resolve: 1,
         extrapolate: false,
         tolerance: None,
         max_microsteps: 256,

@@ -81,7 +81,7 @@ impl Separation {
 
 impl Pair {
     /// (ω h)².
-    fn stiffness_number(&self, step: f64) -> f64 {
+    pub(super) fn stiffness_number(&self, step: f64) -> f64 {
         self.stiffness * self.inverse_mass * step * step
     }
 

@@ -13,7 +13,7 @@ mod survey;
 use super::body::{Body, Spin};
 use super::element::{Element, End, rounding};
 use super::guide::Guide;
-use super::resolution::EXTRAPOLATION_LIMIT;
+use super::resolution::{EXTRAPOLATION_LIMIT, network_steps};
 use super::tolerance::{Motion, velocity_counts};
 use bevy::math::DVec3;
 pub(crate) use free_points::{Flight, FreePoint};
@@ -277,11 +277,11 @@ impl Motion for Points {
         self.wires.clone_from(wires);
     }
 
-    fn least(&mut self, time: f64) -> u32 {
+    fn least(&mut self, time: f64, most: u32) -> u32 {
         let (z, _) = self.bounds(time);
-        let finer = super::resolution::finer(z);
-        self.stiffest = z / f64::from(finer * finer);
-        finer
+        let steps = network_steps(z, self.wires.len(), most);
+        self.stiffest = z / f64::from(steps * steps);
+        steps
     }
 
     fn run(&mut self, time: f64, count: u32) {

@@ -8,20 +8,45 @@ pub(super) const EXTRAPOLATION_LIMIT: f64 = 1.5;
 /// (ω h)² of the stiffest mode beyond which a network steps finer.
 pub(super) const RESOLVED: f64 = 4.0;
 
-/// Most that a network steps finer by itself to resolve a stiff mode.
+/// (ω h)² at which a network follows the motion that it resolves: its frequencies are right to a few parts in a million, and
+/// so little energy sways that nothing of it is taken for won. Pinned by `stiff_by_default`.
+const FOLLOWED: f64 = 0.1;
+
+/// Most that a network steps finer by itself to resolve a stiff mode, whatever its size and whatever is asked.
 const EXTRA_STEPS: u32 = 4;
+
+/// Kicks that a network takes to follow what it resolves already: few, as it is not wrong by much.
+const FEW_KICKS: usize = 16;
+
+/// Most micro-steps that resolve a lone element, whatever is asked: ω·dt of 64, at a microsecond.
+const MOST_ALONE: u32 = 32;
 
 /// How far ahead a bend of a law is looked for, as a multiple of the way in a step.
 const AHEAD: f64 = 1.25;
 
-/// Micro-steps that resolve a network's stiffest mode, of (ω h)² = `z`; one where that is out of reach.
-pub(super) fn finer(z: f64) -> u32 {
-    let finer = (z / RESOLVED).sqrt().ceil();
-    if finer <= f64::from(EXTRA_STEPS) {
-        finer.max(1.0) as u32
-    } else {
+/// Micro-steps that resolve a lone element of (ω h)² = `z`, along whose line the step is exact then; one where that is more
+/// than `most`.
+pub(super) fn lone_steps(z: f64, most: u32) -> u32 {
+    within((z / RESOLVED).sqrt(), most.min(MOST_ALONE)).unwrap_or(1)
+}
+
+/// Micro-steps with which a network of so many elements follows its stiffest mode, of (ω h)² = `z`, if they are not more than
+/// `most`; else those that just resolve it, if they are few.
+pub(super) fn network_steps(z: f64, elements: usize, most: u32) -> u32 {
+    // These are its own, whatever others there are; none where just one step is asked for.
+    let few = if most == 0 {
         1
-    }
+    } else {
+        (FEW_KICKS / elements.max(1)) as u32
+    };
+    let most = if z <= RESOLVED { few } else { most.max(few) };
+    within((z / FOLLOWED).sqrt(), most)
+        .or_else(|| within((z / RESOLVED).sqrt(), EXTRA_STEPS))
+        .unwrap_or(1)
+}
+
+fn within(steps: f64, most: u32) -> Option<u32> {
+    (steps <= f64::from(most)).then(|| steps.ceil().max(1.0) as u32)
 }
 
 /// Ways along the line that the present motion can lead to in a step, as fast as it is in its middle and in its end

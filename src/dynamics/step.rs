@@ -10,7 +10,7 @@ use super::kick::{self, Map, Memo};
 use super::network::Network;
 use super::nonlinear_pair::PairView;
 use super::points::Points;
-use super::resolution::{EXTRAPOLATION_LIMIT, finer};
+use super::resolution::{EXTRAPOLATION_LIMIT, lone_steps, network_steps};
 use super::tolerance::{
     Accuracy, Controller, Method, Motion, Outcome, VELOCITY_COUNTS, velocity_counts,
 };
@@ -262,15 +262,19 @@ impl Motion for Component {
         self.elements.clone_from(&saved.elements);
     }
 
-    /// As many as resolve a network's stiffest mode, and the blow where a law kinks; one where that is out of
-    /// reach.
-    fn least(&mut self, time: f64) -> u32 {
+    /// As many as resolve the stiffest mode, and the blow where a law kinks; one where that is out of reach.
+    fn least(&mut self, time: f64, most: u32) -> u32 {
         if self.is_alone() {
-            return 1;
+            let element = &self.elements[0];
+            let line = element.line(&self.bodies);
+            let z = line.map_or(0.0, |line| {
+                element.stiffness * line.inverse_mass * time * time
+            });
+            return lone_steps(z, most);
         }
         let network = &mut self.memory.network;
         let (z, _) = network.bounds(&self.elements, &self.bodies, time);
-        let steps = finer(z).max(self.steps_at_bends(z, time));
+        let steps = network_steps(z, self.elements.len(), most).max(self.steps_at_bends(z, time));
         self.memory.bound.see(z / f64::from(steps * steps));
         steps
     }

@@ -66,6 +66,7 @@ fn held(index: usize, arm: DVec3) -> End {
 fn accuracy(microsteps: u32, extrapolate: bool) -> Accuracy {
     Accuracy {
         microsteps,
+        resolve: 1,
         extrapolate,
         tolerance: None,
         max_microsteps: 256,

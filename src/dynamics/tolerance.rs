@@ -8,6 +8,8 @@
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Accuracy {
     pub microsteps: u32,
+    /// Most micro-steps that are taken instead to follow a motion, where it needs more; 0 for as many as are asked.
+    pub resolve: u32,
     pub extrapolate: bool,
     /// Error of position that may be added, m per simulated second; then the two above do not count.
     pub tolerance: Option<f64>,
@@ -25,6 +27,15 @@ impl Accuracy {
 
     fn most(&self) -> u32 {
         self.max_microsteps.max(1)
+    }
+
+    /// For each of so many elements in networks, which share what may be taken to follow them.
+    pub(crate) fn shared(self, elements: usize) -> Self {
+        let share = self.resolve / u32::try_from(elements.max(1)).unwrap_or(u32::MAX);
+        Self {
+            resolve: if self.resolve > 1 { share.max(1) } else { 0 },
+            ..self
+        }
     }
 
     /// How many times as finely as by default an engine is to solve what it solves itself.
@@ -81,8 +92,8 @@ pub(crate) trait Motion {
     fn save(&mut self, slot: usize);
     /// Takes it back.
     fn load(&mut self, slot: usize);
-    /// Micro-steps that it needs in any case.
-    fn least(&mut self, time: f64) -> u32;
+    /// Micro-steps that resolve it, if they are not more than `most`; else those that it needs in any case.
+    fn least(&mut self, time: f64, most: u32) -> u32;
     /// Runs over the step in so many micro-steps.
     fn run(&mut self, time: f64, count: u32);
     /// Distance to the state in a slot, m.
@@ -155,7 +166,8 @@ impl Controller {
             return fixed(motion, time, accuracy);
         };
         let most = accuracy.most();
-        let (least, cut) = accuracy.cap(motion.least(time));
+        // How fine it has to be is found out.
+        let (least, cut) = accuracy.cap(motion.least(time, 0));
         let mut outcome = match self.known.filter(|_| self.age > 0) {
             Some(known) => {
                 self.age -= 1;
@@ -247,7 +259,11 @@ impl Controller {
 
 /// As many micro-steps as are asked for.
 fn fixed(motion: &mut impl Motion, time: f64, accuracy: Accuracy) -> Outcome {
-    let (count, capped) = accuracy.cap(accuracy.microsteps.max(motion.least(time)));
+    let (count, capped) = accuracy.cap(
+        accuracy
+            .microsteps
+            .max(motion.least(time, accuracy.resolve)),
+    );
     let plan = if accuracy.extrapolate {
         Plan::Extrapolated(count).sound(motion, time)
     } else {
@@ -323,7 +339,7 @@ mod tests {
         fn load(&mut self, slot: usize) {
             self.now = self.slots[slot];
         }
-        fn least(&mut self, _: f64) -> u32 {
+        fn least(&mut self, _: f64, _: u32) -> u32 {
             1
         }
         fn run(&mut self, time: f64, count: u32) {
@@ -359,6 +375,7 @@ mod tests {
             let mut controller = Controller::default();
             let accuracy = Accuracy {
                 microsteps: 1,
+                resolve: 1,
                 extrapolate: false,
                 tolerance: Some(tolerance),
                 max_microsteps: 256,

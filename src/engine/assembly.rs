@@ -8,7 +8,7 @@ use super::step::Step;
 use super::warm_start::WarmStart;
 use crate::dynamics::body::Body;
 use crate::dynamics::step::Component;
-use crate::dynamics::tolerance::Outcome;
+use crate::dynamics::tolerance::{Accuracy, Outcome};
 use bevy_rapier3d::rapier::dynamics::RigidBodySet;
 use std::mem::{replace, take};
 use std::sync::atomic::Ordering;
@@ -152,6 +152,7 @@ impl Assembly {
     pub(super) fn advance(
         &mut self,
         step: &Step,
+        accuracy: Accuracy,
         members: &Members,
         bodies: &[BodyRow],
         set: &RigidBodySet,
@@ -160,7 +161,7 @@ impl Assembly {
             return;
         }
         let carried = self.component.is_warm;
-        self.outcome = self.component.advance(step.plan.time, step.accuracy);
+        self.outcome = self.component.advance(step.plan.time, accuracy);
         if !self.component.is_finite() {
             self.state = State::Powerless;
             self.component.forget_points();

@@ -126,13 +126,15 @@ impl Scene {
 
     /// Takes lone elements through the step that need the general solver.
     fn step_general(&mut self, step: &Step, set: &mut RigidBodySet, spare: &mut Spare) {
+        let all = spare.general_once.len() + spare.general.len();
+        let accuracy = step.accuracy.shared(all);
         let once = spare.general_once.drain(..);
         for g in once.chain(spare.general.iter().copied()) {
             let members = self.groups.members(&self.groups.list()[g]);
             let (elements, bodies) = (&mut self.elements, &mut self.bodies);
             let assembly = &mut spare.assembly;
             assembly.gather(step, &members, elements, bodies, set, &mut self.stale);
-            assembly.advance(step, &members, bodies, set);
+            assembly.advance(step, accuracy, &members, bodies, set);
             assembly.deliver(step, &members, elements, bodies, set);
             assembly.forget();
         }
@@ -160,6 +162,7 @@ fn advance(
     set: &RigidBodySet,
 ) {
     let load: usize = assemblies.iter().map(Assembly::load).sum();
+    let accuracy = step.accuracy.shared(load);
     // The one that waits for the pool works too: on two cores the pool has just one.
     let pool = ComputeTaskPool::try_get().map_or(0, |pool| pool.thread_num());
     let threads = CORES.min(pool + 1);
@@ -167,7 +170,7 @@ fn advance(
     let advance = |assemblies: &mut [Assembly]| {
         for assembly in assemblies {
             let group = &groups.list()[assembly.group];
-            assembly.advance(step, &groups.members(group), bodies, set);
+            assembly.advance(step, accuracy, &groups.members(group), bodies, set);
         }
     };
     if threads < 2 || ready < 2 || load < WORTH_SHARING {

@@ -42,6 +42,7 @@ mod sleeping;
 mod spinning_pair;
 mod stability;
 mod static_sag;
+mod stiff_by_default;
 mod still;
 mod strangers;
 mod strays;

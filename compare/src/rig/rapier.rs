@@ -41,6 +41,8 @@ pub fn plug(app: &mut App, gravity: Vec3, ground: Option<f32>, setting: Setting)
         Method::Ours => {
             let plugin = CoiloverPlugin::default();
             app.add_plugins(match setting.dial {
+                // As a user gets it: as many as stiff springs take by themselves.
+                Dial::Microsteps(1) => plugin,
                 Dial::Microsteps(n) => plugin.with_microsteps(n),
                 Dial::Extrapolated => plugin.with_extrapolation(),
                 Dial::Tolerance(n) => plugin.with_tolerance(10.0_f32.powi(-(n as i32))),

@@ -1,0 +1,114 @@
+//! Are springs that are too stiff for one micro-step followed, although nobody asked for more?
+
+use crate::harness::*;
+use bevy::prelude::*;
+use bevy_coilover::prelude::*;
+
+const AMPLITUDE: f64 = 0.1;
+
+/// Bodies of these masses in a row from a hook, on springs of these stiffnesses; the last one stretched.
+fn row<const N: usize>(plugin: CoiloverPlugin, bodies: [(f32, f64); N]) -> (Lab, Entity) {
+    let mut lab = Lab::with(plugin, Engine::weightless());
+    let mut last = lab.point(Vec3::ZERO);
+    for (i, (mass, stiffness)) in bodies.into_iter().enumerate() {
+        let stretched = if i + 1 == N { AMPLITUDE as f32 } else { 0.0 };
+        let next = lab.body(mass, Vec3::X * ((i + 1) as f32 + stretched));
+        lab.spawn(
+            Spring::new(last, next)
+                .with_stiffness(stiffness as f32)
+                .with_rest_length(1.0),
+        );
+        last = next;
+    }
+    (lab, last)
+}
+
+/// Largest distance of the last body from where it should be in three seconds, over the amplitude.
+fn error(lab: &mut Lab, body: Entity, places: f64, wanted: impl Fn(f64) -> f64) -> f64 {
+    let mut worst = 0.0_f64;
+    for tick in 1..=180 {
+        lab.tick();
+        let time = f64::from(tick) * f64::from(DT);
+        let off = f64::from(lab.position(body).x) - places - AMPLITUDE * wanted(time);
+        worst = worst.max(off.abs() / AMPLITUDE);
+    }
+    worst
+}
+
+#[test]
+fn a_lone_spring_keeps_its_phase_at_any_stiffness() {
+    for phase in [1.0, 3.0, 10.0, 40.0, 60.0] {
+        let stiffness = (phase / f64::from(DT)).powi(2);
+        let omega = f64::from(stiffness as f32).sqrt();
+        let (mut lab, ball) = row(CoiloverPlugin::default(), [(1.0, stiffness)]);
+        let off = error(&mut lab, ball, 1.0, |time| (omega * time).cos());
+        println!("lone spring, ω·dt {phase}: off by {off:.1e} of its amplitude in 3 s");
+        assert!(off < 0.01, "ω·dt {phase}: {off}");
+    }
+}
+
+#[test]
+fn a_heavy_body_behind_a_light_one_keeps_its_phase() {
+    for (phase, ratio) in [(0.5, 1.0), (0.1, 1e3), (1.0, 300.0), (10.0, 3.0)] {
+        let wanted = ratio * (phase / f64::from(DT)).powi(2);
+        let (k, m) = (f64::from(wanted as f32), ratio);
+        // Modes of M⁻¹K = [[2k, −k], [−k/m, k/m]].
+        let half = 0.5 * (2.0 * k + k / m);
+        let high = half + (half * half - k * k / m).sqrt();
+        let squares = [k * k / m / high, high];
+        let [slow, fast] = squares.map(|square| 2.0 * k - square);
+        let truth = |time: f64| {
+            let wave = squares.map(|square| (square.sqrt() * time).cos());
+            (slow * wave[0] - fast * wave[1]) / (slow - fast)
+        };
+        let bodies = [(1.0, wanted), (ratio as f32, wanted)];
+        let (mut lab, ball) = row(CoiloverPlugin::default(), bodies);
+        let off = error(&mut lab, ball, 2.0, truth);
+        println!("1 : {ratio} kg, ω·dt {phase}: off by {off:.1e} of its amplitude in 3 s");
+        assert!(off < 0.01, "ω·dt {phase}, 1 : {ratio}: {off}");
+    }
+}
+
+#[test]
+fn who_asks_for_one_micro_step_gets_one_and_what_is_too_stiff_stays_stable() {
+    for (plugin, phase, microsteps) in [
+        (CoiloverPlugin::default().with_microsteps(1), 39.0, 1),
+        (CoiloverPlugin::default().with_resolve(1), 39.0, 1),
+        (CoiloverPlugin::default(), 39.0, 20),
+        (CoiloverPlugin::default().with_microsteps(32), 39.0, 32),
+        (CoiloverPlugin::default(), 1e3, 1),
+    ] {
+        let stiffness = (phase / f64::from(DT)).powi(2);
+        let (mut lab, ball) = row(plugin, [(1.0, stiffness)]);
+        let mut farthest = 0.0_f32;
+        for _ in 0..180 {
+            lab.tick();
+            farthest = farthest.max((lab.position(ball).x - 1.0).abs());
+        }
+        let mut readouts = lab.app.world_mut().query::<&SpringReadout>();
+        let taken = readouts.iter(lab.app.world()).map(|r| r.microsteps).max();
+        assert_eq!(taken, Some(microsteps), "ω·dt {phase}");
+        assert!(f64::from(farthest) < 1.01 * AMPLITUDE, "{farthest} m");
+    }
+}
+
+/// A hundred pairs of bodies on springs that each would take the whole budget.
+#[test]
+fn networks_share_the_budget() {
+    let mut lab = Lab::with(CoiloverPlugin::default(), Engine::weightless());
+    let stiffness = 30.0 * (10.0 / DT).powi(2);
+    for i in 0..100 {
+        let at = |x: f32| Vec3::new(x, i as f32, 0.0);
+        let mut last = lab.point(at(0.0));
+        for (mass, x) in [(1.0, 1.0), (30.0, 2.1)] {
+            let next = lab.body(mass, at(x));
+            let spring = Spring::new(last, next).with_stiffness(stiffness);
+            lab.spawn(spring.with_rest_length(1.0));
+            last = next;
+        }
+    }
+    lab.run(0.5);
+    let mut readouts = lab.app.world_mut().query::<&SpringReadout>();
+    let kicks: u32 = readouts.iter(lab.app.world()).map(|r| r.microsteps).sum();
+    assert!(kicks <= 1024, "{kicks} kicks");
+}
