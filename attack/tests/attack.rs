@@ -15,6 +15,9 @@ use std::process::ExitCode;
 /// Scenes of a short search.
 const SCENES: u64 = 200;
 
+/// Seeds whose scenes were wrong once; they are run first, always.
+const ONCE_WRONG: [u64; 3] = [503, 2738, 51_601];
+
 /// Smaller scenes that are tried for one that fails.
 const SHRINKS: usize = 600;
 
@@ -45,9 +48,12 @@ fn search() -> Result<bool, lexopt::Error> {
     }
     let mut engines = BTreeMap::<String, u64>::new();
     let mut ours = BTreeMap::<String, u64>::new();
-    for scene in 0..scenes {
+    let seeds = ONCE_WRONG
+        .into_iter()
+        .chain(seed..seed.saturating_add(scenes));
+    for (scene, seed) in (1..).zip(seeds) {
         let mut bytes = [0; 32];
-        bytes[..8].copy_from_slice(&(seed + scene).to_le_bytes());
+        bytes[..8].copy_from_slice(&seed.to_le_bytes());
         let rng = TestRng::from_seed(RngAlgorithm::ChaCha, &bytes);
         let mut runner = TestRunner::new_with_rng(Config::default(), rng);
         let Ok(mut tree) = plans().new_tree(&mut runner) else {
@@ -63,16 +69,13 @@ fn search() -> Result<bool, lexopt::Error> {
                 if *count > 1 {
                     continue;
                 }
-                println!("seed {}: {wrong}", seed + scene);
+                println!("seed {seed}: {wrong}");
                 let smallest = shrink(&mut tree, &kind);
                 println!("as small as can be: {smallest}\n");
             }
         }
-        if scene % 1000 == 999 {
-            println!(
-                "{} scenes, ours {ours:?}, the engine's {engines:?}",
-                scene + 1
-            );
+        if scene % 1000 == 0 {
+            println!("{scene} scenes, ours {ours:?}, the engine's {engines:?}");
         }
     }
     println!("{scenes} scenes from seed {seed}: ours {ours:#?}, the engine's {engines:#?}");
