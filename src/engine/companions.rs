@@ -1,12 +1,14 @@
 //! What stands beside an element and changes its law: read, judged and made into one.
 
 use super::check::{Fault, MOST, Parameters, direction, finite, number};
+use super::parts::PartsItem;
 use crate::dynamics::guide::Guide;
 use crate::dynamics::law::{DragLaw, Law, Recipe, SpringForce, Stop, Table};
 use crate::element::*;
+use bevy::ecs::change_detection::Tick;
 use bevy::ecs::entity::EntityHashSet;
 use bevy::ecs::query::QueryData;
-use bevy::ecs::system::SystemParam;
+use bevy::ecs::system::{SystemChangeTick, SystemParam};
 use bevy::prelude::*;
 use std::sync::Arc;
 
@@ -25,6 +27,50 @@ pub(crate) struct Beside {
     breakable: Option<&'static Breakable>,
     tuning: Option<&'static SpringTuning>,
     pose: Option<&'static HoldPose>,
+}
+
+/// When they changed last.
+#[derive(QueryData)]
+pub(crate) struct Stamps {
+    laws: (
+        Option<Ref<'static, SpringLaw>>,
+        Option<Ref<'static, CustomSpringLaw>>,
+        Option<Ref<'static, DampingLaw>>,
+        Option<Ref<'static, CustomDampingLaw>>,
+    ),
+    action: Option<Ref<'static, SpringAction>>,
+    travel: Option<Ref<'static, SpringTravel>>,
+    preload: Option<Ref<'static, Preload>>,
+    max_force: Option<Ref<'static, MaxForce>>,
+    axis: Option<Ref<'static, SpringAxis>>,
+    breakable: Option<Ref<'static, Breakable>>,
+    tuning: Option<Ref<'static, SpringTuning>>,
+    pose: Option<Ref<'static, HoldPose>>,
+}
+
+impl StampsItem<'_, '_> {
+    fn is_after(&self, since: Tick, now: Tick) -> bool {
+        fn at<T: Component>(part: &Option<Ref<T>>) -> Option<Tick> {
+            part.as_ref().map(Ref::last_changed)
+        }
+        let all = [
+            at(&self.laws.0),
+            at(&self.laws.1),
+            at(&self.laws.2),
+            at(&self.laws.3),
+            at(&self.action),
+            at(&self.travel),
+            at(&self.preload),
+            at(&self.max_force),
+            at(&self.axis),
+            at(&self.breakable),
+            at(&self.tuning),
+            at(&self.pose),
+        ];
+        all.into_iter()
+            .flatten()
+            .any(|at| at.is_newer_than(since, now))
+    }
 }
 
 type AnyBeside = Or<(
@@ -61,7 +107,7 @@ type ChangedBeside = Or<(
 #[derive(SystemParam)]
 pub(crate) struct Companions<'w, 's> {
     pub(super) all: Query<'w, 's, Beside, AnyBeside>,
-    changed: Query<'w, 's, Entity, ChangedBeside>,
+    changed: Query<'w, 's, (Entity, Stamps), ChangedBeside>,
     gone: (
         RemovedComponents<'w, 's, SpringLaw>,
         RemovedComponents<'w, 's, CustomSpringLaw>,
@@ -75,6 +121,9 @@ pub(crate) struct Companions<'w, 's> {
     ),
     /// Entities where something changed since the last tick.
     pub(super) touched: Local<'s, EntityHashSet>,
+    /// What changed up to then is no change.
+    since: Local<'s, Option<Tick>>,
+    ticks: SystemChangeTick,
 }
 
 /// What they make of an element.
@@ -85,10 +134,14 @@ pub(super) struct Companion {
 }
 
 impl Companions<'_, '_> {
-    /// Looks for changes.
-    pub(super) fn look(&mut self) {
+    /// Looks for changes, or for those after a tick alone.
+    pub(super) fn look(&mut self, since: Option<Tick>) {
+        *self.since = since;
+        let now = self.ticks.this_run();
+        let is_new = |stamps: &StampsItem| since.is_none_or(|since| stamps.is_after(since, now));
+        let changed = self.changed.iter().filter(|(_, stamps)| is_new(stamps));
         self.touched.clear();
-        self.touched.extend(&self.changed);
+        self.touched.extend(changed.map(|(entity, _)| entity));
         let gone = &mut self.gone;
         self.touched.extend(gone.0.read());
         self.touched.extend(gone.1.read());
@@ -99,6 +152,14 @@ impl Companions<'_, '_> {
         self.touched.extend(gone.6.read());
         self.touched.extend(gone.7.read());
         self.touched.extend(gone.8.read());
+    }
+
+    /// Whether some part of an element changed since the last tick, or after the tick of the last [look](Self::look).
+    pub(super) fn is_new(&self, parts: &PartsItem) -> bool {
+        match *self.since {
+            Some(since) => parts.is_changed_after(since, self.ticks.this_run()),
+            None => parts.is_changed(),
+        }
     }
 
     /// How an element is to be tuned once its ends are known, if it is.

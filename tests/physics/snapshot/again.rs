@@ -1,0 +1,40 @@
+//! Back to an earlier tick in the same app.
+
+use super::film::*;
+use super::scenes::*;
+
+/// Ticks until the snapshot, and from there.
+const BEFORE: usize = 200;
+const AFTER: usize = 300;
+
+/// The same future twice, from a snapshot at such a tick.
+fn go_back(name: &str, film: &mut Film, before: usize) {
+    film.run(before);
+    let then = Both::take(film);
+    let at = film.tick;
+    let first = film.watch(AFTER);
+    assert!(film.is_sound(), "{name}");
+    for _ in 0..2 {
+        then.restore(film);
+        film.tick = at;
+        film.rewind();
+        let second = film.watch(AFTER);
+        assert_same(name, &first, &second);
+    }
+}
+
+#[test]
+fn a_scene_that_goes_back_has_the_same_future() {
+    let mut failures = Vec::new();
+    for (name, plugin, scene) in all() {
+        let run = std::panic::catch_unwind(|| {
+            let mut film = scene(plugin);
+            go_back(&name, &mut film, BEFORE);
+        });
+        if let Err(failure) = run {
+            let text = failure.downcast_ref::<String>().cloned();
+            failures.push(text.unwrap_or_else(|| name.clone()));
+        }
+    }
+    assert!(failures.is_empty(), "{failures:#?}");
+}

@@ -1,0 +1,163 @@
+//! A scene that is played and watched, tick by tick, to the last bit.
+
+use crate::harness::*;
+use bevy::prelude::*;
+use bevy_coilover::prelude::*;
+use bevy_rapier3d::prelude::*;
+
+/// A lab whose entities are known by the order in which they were spawned: the key that is the same in every app.
+pub struct Film {
+    pub lab: Lab,
+    pub cast: Vec<Entity>,
+    pub tick: usize,
+    /// What the game does before each tick.
+    pub deed: fn(&mut Film),
+}
+
+impl Film {
+    pub fn new(plugin: CoiloverPlugin) -> Self {
+        Self {
+            lab: Lab::with(plugin, Engine::default()),
+            cast: Vec::new(),
+            tick: 0,
+            deed: |_| {},
+        }
+    }
+
+    pub fn spawn(&mut self, bundle: impl Bundle) -> Entity {
+        let entity = self.lab.spawn(bundle);
+        self.cast.push(entity);
+        entity
+    }
+
+    pub fn run(&mut self, ticks: usize) {
+        for _ in 0..ticks {
+            (self.deed)(self);
+            self.lab.tick();
+            self.tick += 1;
+        }
+    }
+
+    /// Runs and notes everything after each tick.
+    pub fn watch(&mut self, ticks: usize) -> Vec<Vec<u32>> {
+        let mut seen = Vec::new();
+        for _ in 0..ticks {
+            self.run(1);
+            seen.push(self.bits());
+        }
+        seen
+    }
+
+    /// Everything that a game sees of every entity.
+    pub fn bits(&self) -> Vec<u32> {
+        let mut bits = Vec::new();
+        for entity in &self.cast {
+            let before = bits.len();
+            self.bits_of(*entity, &mut bits);
+            bits.resize(before + WORDS, 0);
+        }
+        bits
+    }
+
+    fn bits_of(&self, entity: Entity, bits: &mut Vec<u32>) {
+        let Ok(entity) = self.lab.app.world().get_entity(entity) else {
+            return;
+        };
+        let mut add = |numbers: &[f32]| {
+            bits.resize(bits.len().next_multiple_of(16), 0);
+            bits.extend(numbers.iter().map(|x| x.to_bits()));
+        };
+        if let Some(place) = entity.get::<Transform>() {
+            add(&place.translation.to_array());
+            add(&place.rotation.to_array());
+        }
+        if let Some(velocity) = entity.get::<Velocity>() {
+            add(&velocity.linear.to_array());
+            add(&velocity.angular.to_array());
+        }
+        if let Some(sleeping) = entity.get::<Sleeping>() {
+            add(&[f32::from(u8::from(sleeping.sleeping))]);
+        }
+        if let Some(load) = entity.get::<SpringLoad>() {
+            for force in [load.elements, load.user] {
+                add(&force.force.to_array());
+                add(&force.torque.to_array());
+            }
+        }
+        if let Some(force) = entity.get::<ExternalForce>() {
+            add(&force.force.to_array());
+            add(&force.torque.to_array());
+        }
+        if let Some(seen) = entity.get::<SpringReadout>() {
+            add(&[
+                seen.length,
+                seen.rate,
+                seen.spring_force,
+                seen.damper_force,
+                seen.stored_energy,
+                seen.dissipated_power,
+                seen.dissipated_energy,
+                seen.work,
+                seen.omega_dt,
+                seen.effective_mass,
+                seen.method as u8 as f32,
+                seen.microsteps as f32,
+                seen.error,
+                f32::from(u8::from(seen.capped)),
+            ]);
+        }
+    }
+
+    /// Of all bodies' and elements' forces and places, the number that is no number at all.
+    pub fn is_sound(&self) -> bool {
+        let places = self.cast.iter().filter_map(|e| {
+            let entity = self.lab.app.world().get_entity(*e).ok()?;
+            entity.get::<Transform>().map(|at| at.translation)
+        });
+        places.into_iter().all(|at| at.is_finite())
+    }
+}
+
+/// Room for the words of an entity.
+const WORDS: usize = 16 * 16;
+
+/// Rapier's state and that of springs.
+#[derive(Clone)]
+pub struct Both {
+    pub engine: RapierSnapshot,
+    pub springs: CoiloverSnapshot,
+}
+
+impl Both {
+    pub fn take(film: &Film) -> Self {
+        let world = film.lab.app.world();
+        Self {
+            engine: RapierSnapshot::take(world),
+            springs: CoiloverSnapshot::take(world),
+        }
+    }
+
+    pub fn restore(&self, film: &mut Film) {
+        let world = film.lab.app.world_mut();
+        self.engine.restore(world).expect("Rapier's side fits");
+        self.springs.restore(world).expect("the springs' side fits");
+    }
+}
+
+/// Fails with the first tick and entity where two runs differ.
+pub fn assert_same(name: &str, first: &[Vec<u32>], second: &[Vec<u32>]) {
+    for (tick, (a, b)) in first.iter().zip(second).enumerate() {
+        if a != b {
+            let word = a.iter().zip(b).position(|(a, b)| a != b).unwrap_or(0);
+            let (entity, word) = (word / WORDS, word % WORDS);
+            panic!(
+                "{name}: tick {} after the snapshot, entity {entity}, field {}.{}: {} is not {}",
+                tick + 1,
+                word / 16,
+                word % 16,
+                f32::from_bits(b[entity * WORDS + word]),
+                f32::from_bits(a[entity * WORDS + word]),
+            );
+        }
+    }
+}

@@ -1,0 +1,8 @@
+//! Is the future the same after going back to an earlier tick, bit for bit?
+
+mod again;
+mod apart;
+mod changed;
+mod film;
+mod scenes;
+mod wrong;
