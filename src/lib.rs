@@ -181,10 +181,10 @@ pub mod prelude {
         Anchors, Breakable, CoiloverDiagnosticsPlugin, CoiloverPlugin, CoiloverPlugins,
         CoiloverSettings, CoiloverSnapshot, CoiloverSystems, CustomDampingLaw, CustomSpringLaw,
         Damper, DampingLaw, EndNames, ForceLaw, ForceTable, HeldEnd, HoldPose, MaxForce,
-        Polynomial, Preload, Spring, SpringAction, SpringAxis, SpringBroke, SpringDamper,
-        SpringFault, SpringLaw, SpringLoad, SpringMethod, SpringReadout, SpringTravel,
-        SpringTuning, TorsionDamper, TorsionSpring, TorsionSpringDamper, WhenBroken, WorldAnchors,
-        recommend,
+        Polynomial, Preload, RapierSnapshot, SnapshotError, Spring, SpringAction, SpringAxis,
+        SpringBroke, SpringDamper, SpringFault, SpringLaw, SpringLoad, SpringMethod, SpringReadout,
+        SpringTravel, SpringTuning, TorsionDamper, TorsionSpring, TorsionSpringDamper, WhenBroken,
+        WorldAnchors, recommend,
     };
     #[cfg(feature = "visual")]
     pub use crate::{

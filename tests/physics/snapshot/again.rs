@@ -2,6 +2,7 @@
 
 use super::film::*;
 use super::scenes::*;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// Ticks until the snapshot, and from there.
 const BEFORE: usize = 200;
@@ -27,10 +28,10 @@ fn go_back(name: &str, film: &mut Film, before: usize) {
 fn a_scene_that_goes_back_has_the_same_future() {
     let mut failures = Vec::new();
     for (name, plugin, scene) in all() {
-        let run = std::panic::catch_unwind(|| {
+        let run = catch_unwind(AssertUnwindSafe(|| {
             let mut film = scene(plugin);
             go_back(&name, &mut film, BEFORE);
-        });
+        }));
         if let Err(failure) = run {
             let text = failure.downcast_ref::<String>().cloned();
             failures.push(text.unwrap_or_else(|| name.clone()));

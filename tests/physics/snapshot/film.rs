@@ -1,6 +1,7 @@
 //! A scene that is played and watched, tick by tick, to the last bit.
 
 use crate::harness::*;
+use bevy::ecs::entity::{EntityHashMap, EntityMapper};
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
@@ -14,10 +15,21 @@ pub struct Film {
     pub deed: fn(&mut Film),
 }
 
+thread_local! {
+    /// Entities that an app has before its scene is made, so that those of the scene have other ids.
+    pub static STRANGERS: std::cell::Cell<usize> = const { std::cell::Cell::new(0) };
+}
+
 impl Film {
     pub fn new(plugin: CoiloverPlugin) -> Self {
+        let mut lab = Lab::with(plugin, Engine::default());
+        STRANGERS.with(|count| {
+            for _ in 0..count.get() {
+                lab.spawn(());
+            }
+        });
         Self {
-            lab: Lab::with(plugin, Engine::default()),
+            lab,
             cast: Vec::new(),
             tick: 0,
             deed: |_| {},
@@ -108,7 +120,7 @@ impl Film {
         }
     }
 
-    /// Of all bodies' and elements' forces and places, the number that is no number at all.
+    /// Whether every place is a number.
     pub fn is_sound(&self) -> bool {
         let places = self.cast.iter().filter_map(|e| {
             let entity = self.lab.app.world().get_entity(*e).ok()?;
@@ -158,6 +170,87 @@ pub fn assert_same(name: &str, first: &[Vec<u32>], second: &[Vec<u32>]) {
                 f32::from_bits(b[entity * WORDS + word]),
                 f32::from_bits(a[entity * WORDS + word]),
             );
+        }
+    }
+}
+
+/// What the game itself has to put back of elements, and of ends that are no bodies.
+pub struct Props(Vec<Option<Prop>>);
+
+type Elements = (
+    Option<SpringDamper>,
+    Option<Spring>,
+    Option<Damper>,
+    Option<TorsionSpringDamper>,
+    Option<TorsionSpring>,
+);
+
+#[derive(Clone)]
+struct Prop {
+    element: Elements,
+    beside: (Option<Preload>, Option<SpringTuning>, Option<HoldPose>),
+    place: Option<Transform>,
+}
+
+impl Props {
+    pub fn take(film: &Film) -> Self {
+        let of = |entity: &Entity| {
+            let entity = film.lab.app.world().get_entity(*entity).ok()?;
+            Some(Prop {
+                element: (
+                    entity.get().copied(),
+                    entity.get().copied(),
+                    entity.get().copied(),
+                    entity.get().copied(),
+                    entity.get().copied(),
+                ),
+                beside: (
+                    entity.get().copied(),
+                    entity.get().copied(),
+                    entity.get().copied(),
+                ),
+                place: entity
+                    .get()
+                    .copied()
+                    .filter(|_| !entity.contains::<RigidBody>()),
+            })
+        };
+        Self(film.cast.iter().map(of).collect())
+    }
+
+    /// Puts all of it back, under these names.
+    pub fn restore(&self, film: &mut Film, names: &EntityHashMap<Entity>) {
+        let mut names = names.clone();
+        for (entity, prop) in film.cast.clone().into_iter().zip(&self.0) {
+            let world = film.lab.app.world_mut();
+            let Some(prop) = prop else {
+                world.despawn(entity);
+                continue;
+            };
+            let mut entity = world.entity_mut(entity);
+            macro_rules! put {
+                ($($field:tt),*) => {$(
+                    if let Some(mut element) = prop.element.$field {
+                        element.body_a = names.get_mapped(element.body_a);
+                        element.body_b = names.get_mapped(element.body_b);
+                        entity.insert(element);
+                    }
+                )*};
+            }
+            put!(0, 1, 2, 3, 4);
+            let (preload, tuning, pose) = prop.beside;
+            if let Some(preload) = preload {
+                entity.insert(preload);
+            }
+            if tuning.is_none() {
+                entity.remove::<SpringTuning>();
+            }
+            if pose.is_none() {
+                entity.remove::<HoldPose>();
+            }
+            if let Some(place) = prop.place {
+                entity.insert(place);
+            }
         }
     }
 }

@@ -7,17 +7,17 @@ use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
 
 /// How a scene is made.
-pub type Scene = fn(CoiloverPlugin) -> Film;
+pub type Play = fn(CoiloverPlugin) -> Film;
 
 /// Every scene, each with the ways to step that make a difference to it.
-pub fn all() -> Vec<(String, CoiloverPlugin, Scene)> {
+pub fn all() -> Vec<(String, CoiloverPlugin, Play)> {
     let plain = CoiloverPlugin::default;
     let ways = [
         ("plain", plain()),
         ("tolerance", plain().with_tolerance(1e-4)),
         ("extrapolation", plain().with_extrapolation()),
     ];
-    let scenes: [(&str, Scene); 16] = [
+    let scenes: [(&str, Play); 16] = [
         ("lone", lone),
         ("laws", laws),
         ("torsion", torsion),
@@ -35,7 +35,7 @@ pub fn all() -> Vec<(String, CoiloverPlugin, Scene)> {
         ("actuator", actuator),
         ("breaking", breaking),
     ];
-    let named = |(name, scene): (&str, Scene)| {
+    let named = |(name, scene): (&str, Play)| {
         ways.map(|(way, plugin)| (format!("{name}, {way}"), plugin, scene))
     };
     scenes.into_iter().flat_map(named).collect()
@@ -122,25 +122,27 @@ fn laws(plugin: CoiloverPlugin) -> Film {
         companion(&mut world.commands().entity(element));
         world.flush();
     };
-    hang(0, |e| drop(e.insert(SpringLaw::Cubic)));
-    hang(1, |e| drop(e.insert(SpringAction::Pull)));
-    hang(2, |e| drop(e.insert(SpringTravel::new(0.8, 1.1))));
-    hang(3, |e| drop(e.insert((Preload(4.0), MaxForce(12.0)))));
+    // Commands come back from each insertion; nobody needs them.
+    fn add(_: &mut EntityCommands) {}
+    hang(0, |e| add(e.insert(SpringLaw::Cubic)));
+    hang(1, |e| add(e.insert(SpringAction::Pull)));
+    hang(2, |e| add(e.insert(SpringTravel::new(0.8, 1.1, 2e3))));
+    hang(3, |e| add(e.insert((Preload(4.0), MaxForce(12.0)))));
     hang(4, |e| {
         e.insert(DampingLaw::Sided {
             bump: 0.3,
             rebound: 1.2,
         });
     });
-    hang(5, |e| drop(e.insert(SpringAxis::World(Vec3::Y))));
+    hang(5, |e| add(e.insert(SpringAxis::World(Vec3::Y))));
     hang(6, |e| {
         e.insert((
             Anchors::new(Vec3::ZERO, Vec3::new(0.1, 0.2, 0.0)),
             SpringAction::Pull,
         ));
     });
-    hang(7, |e| drop(e.insert(SpringTuning::frequency(1.5, 0.05))));
-    hang(8, |e| drop(e.insert(HoldPose::new())));
+    hang(7, |e| add(e.insert(SpringTuning::frequency(1.5, 0.05))));
+    hang(8, |e| add(e.insert(HoldPose::new())));
     film
 }
 
@@ -361,7 +363,7 @@ fn ropes(plugin: CoiloverPlugin) -> Film {
             let link = film.spawn(coil(last, next, 2e3, 0.5).with_rest_length(0.2));
             match row {
                 0 => film.insert(link, SpringAction::Pull),
-                1 => film.insert(link, SpringTravel::new(0.15, 0.22)),
+                1 => film.insert(link, SpringTravel::new(0.15, 0.22, 2e3)),
                 _ => film.insert(link, (SpringAction::Push, Preload(-1.0))),
             }
             last = next;
