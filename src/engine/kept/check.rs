@@ -41,6 +41,9 @@ impl Kept {
                 return Err(SnapshotError::Twice(body.entity));
             }
         }
+        if self.engine_stays {
+            return Ok(());
+        }
         self.check_engine(world)
     }
 
@@ -72,19 +75,12 @@ impl Kept {
 
     /// Leaves out what is in the engine: joints are made anew then.
     pub(crate) fn forget_engine(&mut self) {
+        self.engine_stays = true;
         for element in &mut self.elements {
             if let Some(inside) = &mut element.inside {
                 inside.joints.clear();
                 inside.hidden = [None; 2];
             }
-        }
-        self.left.clear();
-        self.unloaded.clear();
-        for context in &mut self.contexts {
-            context.sweeps = default();
-        }
-        for body in &mut self.bodies {
-            body.raised = default();
         }
     }
 }

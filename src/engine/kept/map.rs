@@ -30,6 +30,7 @@ impl MapEntities for Kept {
             left,
             unloaded,
             time: _,
+            engine_stays: _,
         } = self;
         let contexts = contexts.iter_mut().map(|context| &mut context.entity);
         let left = left.iter_mut().map(|(context, _)| context);

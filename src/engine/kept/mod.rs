@@ -38,6 +38,8 @@ pub(crate) struct Kept {
     unloaded: Vec<(Entity, RigidBodyHandle, Raised)>,
     /// Seconds that the engine stepped in the last tick.
     time: f64,
+    /// The engine has not gone back: what it has of ours is that of the world.
+    engine_stays: bool,
 }
 
 /// A Rapier context.

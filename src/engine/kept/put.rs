@@ -71,11 +71,16 @@ impl Kept {
 
     /// Rows as there are to be, before anything is known of their ends.
     fn place_rows(&mut self, scene: &mut Scene, world: &World) {
-        let mut before: EntityHashMap<ElementRow> = scene
-            .elements
-            .drain(..)
-            .map(|row| (row.entity, row))
-            .collect();
+        if !self.engine_stays {
+            scene.left.clear();
+            scene.unloaded.clear();
+        }
+        let mut before = EntityHashMap::default();
+        for mut row in scene.elements.drain(..) {
+            let inside = row.take_inside();
+            scene.left.extend(inside.filter(|_| self.engine_stays));
+            before.insert(row.entity, row);
+        }
         scene.row_of.clear();
         for (index, kept) in self.elements.iter().enumerate() {
             let mut row = ElementRow::new(kept.entity);
@@ -87,7 +92,9 @@ impl Kept {
             scene.row_of.insert(kept.entity, index);
             scene.elements.push(row);
         }
-        scene.bodies.clear();
+        let lent = scene.bodies.drain(..);
+        let lent = lent.map(|row| (row.entity, (row.context, row.handle, row.raised)));
+        let mut lent: EntityHashMap<_> = lent.filter(|_| self.engine_stays).collect();
         scene.index.clear();
         for kept in &self.bodies {
             let place = world.get_entity(kept.entity).ok().and_then(|body| {
@@ -95,16 +102,22 @@ impl Kept {
                 Some((handle, body.get::<RapierContextEntityLink>()?.0))
             });
             if let Some((handle, context)) = place {
-                scene.bodies.push(kept.row(handle, context));
+                let mut row = kept.row(handle, context);
+                if self.engine_stays {
+                    let lent = lent.remove(&kept.entity);
+                    row.raised = lent.map(|lent| lent.2).unwrap_or_default();
+                }
+                scene.bodies.push(row);
             }
         }
+        let others = lent.values().filter(|(_, _, raised)| raised.is_any());
+        scene.unloaded.extend(others.copied());
         scene.bodies.sort_by_key(|row| row.entity);
         let rows = scene.bodies.iter().enumerate();
         scene
             .index
             .extend(rows.map(|(slot, row)| (row.entity, slot)));
         scene.assemblies.clear();
-        scene.left.clear();
         scene.pending.clear();
     }
 
@@ -182,15 +195,17 @@ impl Kept {
         scene.time = self.time;
         let stepped = self.contexts.iter().filter(|context| context.stepped);
         scene.stepped = stepped.map(|context| context.entity).collect();
-        let sweeps = self.contexts.iter();
-        scene.sweeps = sweeps
-            .map(|context| (context.entity, context.sweeps))
-            .collect();
-        let left = self.left.iter();
-        scene.left = left
-            .map(|(context, inside)| (*context, inside.put(*context)))
-            .collect();
-        scene.unloaded.clone_from(&self.unloaded);
+        if !self.engine_stays {
+            let sweeps = self.contexts.iter();
+            scene.sweeps = sweeps
+                .map(|context| (context.entity, context.sweeps))
+                .collect();
+            let left = self.left.iter();
+            scene.left = left
+                .map(|(context, inside)| (*context, inside.put(*context)))
+                .collect();
+            scene.unloaded.clone_from(&self.unloaded);
+        }
         scene.still = default();
         // Elements and bodies that the snapshot does not know.
         scene.stale =
