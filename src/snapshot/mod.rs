@@ -30,8 +30,7 @@ use bevy::prelude::*;
 ///   back first.
 /// - `Transform` of ends that are no bodies, `Time<Fixed>`, and whatever else the game's own systems read.
 ///
-/// It takes some 500 bytes for a spring on one body of its own; [`bytes`](Self::bytes) tells. `&World` is enough to take
-/// one.
+/// It takes some 700 bytes for a spring with a body of its own; [`bytes`](Self::bytes) tells.
 ///
 /// ```
 /// # use bevy::prelude::*;

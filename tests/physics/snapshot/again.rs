@@ -25,6 +25,37 @@ fn go_back(name: &str, film: &mut Film, before: usize) {
 }
 
 #[test]
+fn what_sleeps_goes_on_sleeping_and_wakes_when_it_did() {
+    for (name, plugin, scene) in sleepers() {
+        for before in [150, 450, 640] {
+            let mut film = scene(plugin);
+            go_back(&format!("{name}, {before}"), &mut film, before);
+        }
+        let mut film = scene(plugin);
+        film.run(450);
+        assert!(film.asleep() > 0, "{name}");
+    }
+}
+
+#[test]
+fn a_scene_goes_back_to_its_first_ticks() {
+    // What breaks meanwhile is for the game to spawn again: see `changed`.
+    let whole = |(name, ..): &(String, _, _)| !name.starts_with("breaking");
+    for (name, plugin, scene) in all().into_iter().filter(whole) {
+        for before in [1, 2, 3] {
+            let mut film = scene(plugin);
+            film.run(before);
+            let then = Both::take(&film);
+            let first = film.watch(40);
+            then.restore(&mut film);
+            film.tick = before;
+            film.rewind();
+            assert_same(&format!("{name}, {before}"), &first, &film.watch(40));
+        }
+    }
+}
+
+#[test]
 fn a_scene_that_goes_back_has_the_same_future() {
     let mut failures = Vec::new();
     for (name, plugin, scene) in all() {

@@ -16,13 +16,24 @@ pub struct Film {
 }
 
 thread_local! {
+    /// The plugin that draws springs is there.
+    pub static DRAWN: std::cell::Cell<bool> = const { std::cell::Cell::new(false) };
     /// Entities that an app has before its scene is made, so that those of the scene have other ids.
     pub static STRANGERS: std::cell::Cell<usize> = const { std::cell::Cell::new(0) };
 }
 
 impl Film {
     pub fn new(plugin: CoiloverPlugin) -> Self {
-        let mut lab = Lab::with(plugin, Engine::default());
+        let mut lab = Lab::without_plugin(Engine::default());
+        lab.app.add_plugins(plugin);
+        #[cfg(feature = "visual")]
+        if DRAWN.get() {
+            lab.app
+                .add_plugins((AssetPlugin::default(), CoiloverVisualPlugin))
+                .init_asset::<Mesh>()
+                .init_asset::<StandardMaterial>();
+        }
+        lab.prime();
         STRANGERS.with(|count| {
             for _ in 0..count.get() {
                 lab.spawn(());
@@ -79,7 +90,9 @@ impl Film {
             bits.resize(bits.len().next_multiple_of(16), 0);
             bits.extend(numbers.iter().map(|x| x.to_bits()));
         };
-        if let Some(place) = entity.get::<Transform>() {
+        // That of an element is where its coil is drawn.
+        let place = entity.get::<Transform>();
+        if let Some(place) = place.filter(|_| !entity.contains::<SpringReadout>()) {
             add(&place.translation.to_array());
             add(&place.rotation.to_array());
         }

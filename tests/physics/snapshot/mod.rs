@@ -1,6 +1,7 @@
 //! Is the future the same after going back to an earlier tick, bit for bit?
 
 mod again;
+mod alike;
 mod apart;
 mod changed;
 mod film;

@@ -41,7 +41,73 @@ pub fn all() -> Vec<(String, CoiloverPlugin, Play)> {
     scenes.into_iter().flat_map(named).collect()
 }
 
+/// Scenes that fall asleep, and are woken by the game.
+pub fn sleepers() -> Vec<(String, CoiloverPlugin, Play)> {
+    let ways = [
+        ("plain", CoiloverPlugin::default()),
+        ("tolerance", CoiloverPlugin::default().with_tolerance(1e-4)),
+    ];
+    ways.map(|(way, plugin)| (format!("sleepers, {way}"), plugin, resting as Play))
+        .into()
+}
+
+/// Weights on well damped springs: in the air, in a network, on a hinge and on the ground. One of each is pushed later.
+fn resting(plugin: CoiloverPlugin) -> Film {
+    let mut film = Film::new(plugin);
+    film.ground();
+    for i in 0..2 {
+        let at = Vec3::new(0.0, 3.0, 3.0 * i as f32);
+        let hook = film.point(at);
+        let weight = film.brick(1.0, at - 0.5 * Vec3::Y);
+        film.spawn(coil(hook, weight, 80.0, 18.0).with_rest_length(0.4));
+        let second = film.brick(0.5, at - 1.0 * Vec3::Y);
+        if i > 0 {
+            film.spawn(coil(weight, second, 80.0, 10.0).with_rest_length(0.4));
+        } else {
+            film.spawn(coil(hook, second, 80.0, 12.0).with_rest_length(0.9));
+        }
+    }
+    let foot = film.solid(
+        Vec3::new(3.0, 0.1, 0.0),
+        Collider::cuboid(0.2, 0.1, 0.2),
+        2.0,
+    );
+    let load = film.solid(
+        Vec3::new(3.0, 0.8, 0.0),
+        Collider::cuboid(0.1, 0.1, 0.1),
+        3.0,
+    );
+    let guide = GenericJointBuilder::new(JointAxesMask::LOCKED_PRISMATIC_AXES)
+        .local_axis1(Vec3::Y)
+        .local_axis2(Vec3::Y);
+    film.insert(
+        load,
+        ImpulseJoint::new(foot, TypedJoint::GenericJoint(guide.build())),
+    );
+    film.spawn(coil(foot, load, 900.0, 60.0).with_rest_length(0.7));
+    film.deed = |film| {
+        if film.tick == 600 {
+            for body in [2, 7, 12] {
+                let body = film.cast[body];
+                if let Some(mut velocity) = film.lab.app.world_mut().get_mut::<Velocity>(body) {
+                    velocity.linear.y += 0.5;
+                }
+            }
+        }
+    };
+    film
+}
+
 impl Film {
+    /// Bodies that sleep.
+    pub fn asleep(&self) -> usize {
+        let sleeps = |entity: &&Entity| {
+            let sleeping = self.lab.app.world().get::<Sleeping>(**entity);
+            sleeping.is_some_and(|sleeping| sleeping.sleeping)
+        };
+        self.cast.iter().filter(sleeps).count()
+    }
+
     pub fn point(&mut self, at: Vec3) -> Entity {
         self.spawn(Transform::from_translation(at))
     }
