@@ -42,6 +42,7 @@ mod scene;
 mod setup;
 mod sleep;
 mod solve;
+mod stamps;
 mod statics;
 mod step;
 mod still;

@@ -5,5 +5,6 @@ mod alike;
 mod apart;
 mod changed;
 mod film;
+mod held;
 mod scenes;
 mod wrong;
