@@ -5,7 +5,7 @@ use bevy::ecs::lifecycle::Add;
 use bevy::prelude::On;
 use bevy_rapier3d::parry::query;
 use bevy_rapier3d::parry::shape::Shape;
-use bevy_rapier3d::prelude::RapierContextJoints;
+use bevy_rapier3d::prelude::{RapierContextJoints, RapierRigidBodySet};
 use bevy_rapier3d::rapier::dynamics::{IslandManager, RigidBodyHandle, RigidBodySet};
 use bevy_rapier3d::rapier::geometry::{ColliderSet, ContactManifold, ContactPair};
 use bevy_rapier3d::rapier::math::Pose;
@@ -60,3 +60,12 @@ pub(crate) fn remove(
         true,
     );
 }
+
+/// Soft bodies, which this version has not.
+pub(crate) type SoftBodies = ();
+
+/// Those of a context.
+pub(crate) fn soft_bodies(_: &RapierRigidBodySet) -> SoftBodies {}
+
+/// Puts them back.
+pub(crate) fn put_soft_bodies(_: &mut RapierRigidBodySet, (): &SoftBodies) {}

@@ -17,6 +17,7 @@ mod plugin;
 mod readout;
 mod recommend;
 mod settings;
+mod snapshot;
 #[cfg(feature = "visual")]
 mod visual;
 
@@ -34,6 +35,7 @@ pub use plugin::{CoiloverPlugin, CoiloverSystems};
 pub use readout::{SpringMethod, SpringReadout};
 pub use recommend::recommend;
 pub use settings::CoiloverSettings;
+pub use snapshot::{CoiloverSnapshot, RapierSnapshot, SnapshotError};
 #[cfg(feature = "visual")]
 pub use visual::{
     Coil, Coilover, CoiloverVisualPlugin, CoiloverVisualSystems, Handedness, Helix, HelixEnds,
@@ -177,11 +179,12 @@ pub mod prelude {
     pub use crate::CoiloverGltfPlugin;
     pub use crate::{
         Anchors, Breakable, CoiloverDiagnosticsPlugin, CoiloverPlugin, CoiloverPlugins,
-        CoiloverSettings, CoiloverSystems, CustomDampingLaw, CustomSpringLaw, Damper, DampingLaw,
-        EndNames, ForceLaw, ForceTable, HeldEnd, HoldPose, MaxForce, Polynomial, Preload, Spring,
-        SpringAction, SpringAxis, SpringBroke, SpringDamper, SpringFault, SpringLaw, SpringLoad,
-        SpringMethod, SpringReadout, SpringTravel, SpringTuning, TorsionDamper, TorsionSpring,
-        TorsionSpringDamper, WhenBroken, WorldAnchors, recommend,
+        CoiloverSettings, CoiloverSnapshot, CoiloverSystems, CustomDampingLaw, CustomSpringLaw,
+        Damper, DampingLaw, EndNames, ForceLaw, ForceTable, HeldEnd, HoldPose, MaxForce,
+        Polynomial, Preload, RapierSnapshot, SnapshotError, Spring, SpringAction, SpringAxis,
+        SpringBroke, SpringDamper, SpringFault, SpringLaw, SpringLoad, SpringMethod, SpringReadout,
+        SpringTravel, SpringTuning, TorsionDamper, TorsionSpring, TorsionSpringDamper, WhenBroken,
+        WorldAnchors, recommend,
     };
     #[cfg(feature = "visual")]
     pub use crate::{

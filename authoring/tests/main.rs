@@ -13,3 +13,4 @@ mod gltf_samples;
 mod gltf_scenes;
 mod remote;
 mod skein;
+mod snapshot;

@@ -5,7 +5,7 @@ use bevy::ecs::lifecycle::Add;
 use bevy::prelude::On;
 use bevy_rapier3d::parry::query;
 use bevy_rapier3d::parry::shape::Shape;
-use bevy_rapier3d::prelude::RapierContextJoints;
+use bevy_rapier3d::prelude::{RapierContextJoints, RapierRigidBodySet};
 use bevy_rapier3d::rapier::dynamics::{IslandManager, RigidBodyHandle, RigidBodySet, SoftBodySet};
 use bevy_rapier3d::rapier::geometry::{ColliderSet, ContactManifold, ContactPair};
 use bevy_rapier3d::rapier::math::Pose;
@@ -62,4 +62,17 @@ pub(crate) fn remove(
         soft,
         true,
     );
+}
+
+/// Soft bodies.
+pub(crate) type SoftBodies = SoftBodySet;
+
+/// Those of a context.
+pub(crate) fn soft_bodies(set: &RapierRigidBodySet) -> SoftBodies {
+    set.soft_bodies.clone()
+}
+
+/// Puts them back.
+pub(crate) fn put_soft_bodies(set: &mut RapierRigidBodySet, soft: &SoftBodies) {
+    set.soft_bodies.clone_from(soft);
 }

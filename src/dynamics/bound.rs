@@ -24,6 +24,7 @@ const ROUNDS: usize = 4;
 
 /// What a network may have.
 #[derive(Clone, Copy, Debug, Default)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Bound {
     /// Energy given so far: at first what it had, then what others than its elements changed.
     given: Option<f64>,

@@ -256,6 +256,23 @@ impl Network {
         self.trial = moved;
     }
 
+    /// What iterations of the next solve start from, if it goes by iterations.
+    pub(super) fn start(&self) -> Option<&Twists> {
+        (!self.system.is_dense()).then_some(&self.acceleration)
+    }
+
+    /// Has iterations start there, if that is a place.
+    pub(super) fn start_from(&mut self, start: &Twists) {
+        if start
+            .linear
+            .iter()
+            .chain(&start.angular)
+            .all(|x| x.is_finite())
+        {
+            self.acceleration.clone_from(start);
+        }
+    }
+
     /// Whether solves since this was last asked went by iterations, and whether all came to an end.
     pub(crate) fn take_effort(&mut self) -> (bool, bool) {
         let effort = self.effort.take();

@@ -18,9 +18,11 @@ use bevy::math::DVec3;
 
 mod keep;
 mod kinks;
+mod remember;
 mod warm_start;
 
 use kinks::Kinks;
+pub(crate) use remember::Remembered;
 
 /// Bodies that elements connect, with those elements: what has to be solved together. Kept from step to
 /// step by whoever fills it, so that nothing is allocated anew.

@@ -22,6 +22,7 @@ pub(super) struct Strut {
 
 /// Linear and angular part for every body; no angular ones where nothing turns.
 #[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Twists {
     pub linear: Vec<DVec3>,
     pub angular: Vec<DVec3>,

@@ -126,6 +126,7 @@ const GROWTH: f64 = 2.0;
 
 /// Memory of a motion's errors.
 #[derive(Clone, Copy, Debug, Default)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Controller {
     /// Error constants, m/s: plain, and of the combination where that is valid.
     known: Option<(f64, Option<f64>)>,

@@ -1,12 +1,15 @@
 //! What stands beside an element and changes its law: read, judged and made into one.
 
 use super::check::{Fault, MOST, Parameters, direction, finite, number};
+use super::parts::PartsItem;
+use super::stamps::{Stamps, StampsItem};
 use crate::dynamics::guide::Guide;
 use crate::dynamics::law::{DragLaw, Law, Recipe, SpringForce, Stop, Table};
 use crate::element::*;
+use bevy::ecs::change_detection::Tick;
 use bevy::ecs::entity::EntityHashSet;
 use bevy::ecs::query::QueryData;
-use bevy::ecs::system::SystemParam;
+use bevy::ecs::system::{SystemChangeTick, SystemParam};
 use bevy::prelude::*;
 use std::sync::Arc;
 
@@ -61,7 +64,7 @@ type ChangedBeside = Or<(
 #[derive(SystemParam)]
 pub(crate) struct Companions<'w, 's> {
     pub(super) all: Query<'w, 's, Beside, AnyBeside>,
-    changed: Query<'w, 's, Entity, ChangedBeside>,
+    changed: Query<'w, 's, (Entity, Stamps), ChangedBeside>,
     gone: (
         RemovedComponents<'w, 's, SpringLaw>,
         RemovedComponents<'w, 's, CustomSpringLaw>,
@@ -75,6 +78,9 @@ pub(crate) struct Companions<'w, 's> {
     ),
     /// Entities where something changed since the last tick.
     pub(super) touched: Local<'s, EntityHashSet>,
+    /// What changed up to then is no change.
+    since: Local<'s, Option<Tick>>,
+    ticks: SystemChangeTick,
 }
 
 /// What they make of an element.
@@ -85,10 +91,14 @@ pub(super) struct Companion {
 }
 
 impl Companions<'_, '_> {
-    /// Looks for changes.
-    pub(super) fn look(&mut self) {
+    /// Looks for changes, or for those after a tick alone.
+    pub(super) fn look(&mut self, since: Option<Tick>) {
+        *self.since = since;
+        let now = self.ticks.this_run();
+        let is_new = |stamps: &StampsItem| since.is_none_or(|since| stamps.is_after(since, now));
+        let changed = self.changed.iter().filter(|(_, stamps)| is_new(stamps));
         self.touched.clear();
-        self.touched.extend(&self.changed);
+        self.touched.extend(changed.map(|(entity, _)| entity));
         let gone = &mut self.gone;
         self.touched.extend(gone.0.read());
         self.touched.extend(gone.1.read());
@@ -99,6 +109,14 @@ impl Companions<'_, '_> {
         self.touched.extend(gone.6.read());
         self.touched.extend(gone.7.read());
         self.touched.extend(gone.8.read());
+    }
+
+    /// Whether some part of an element changed since the last tick, or after the tick of the last [look](Self::look).
+    pub(super) fn is_new(&self, parts: &PartsItem) -> bool {
+        match *self.since {
+            Some(since) => parts.is_changed_after(since, self.ticks.this_run()),
+            None => parts.is_changed(),
+        }
     }
 
     /// How an element is to be tuned once its ends are known, if it is.

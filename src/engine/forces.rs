@@ -114,6 +114,25 @@ impl SpringLoad {
         }
     }
 
+    /// The shares of user and elements as they were, and what stands in the body's component for them.
+    pub(super) fn again(
+        [user, elements]: [ExternalForce; 2],
+        slot: usize,
+        raised_iterations: bool,
+    ) -> (Self, ExternalForce) {
+        let load = Self {
+            elements,
+            user,
+            slot,
+            raised_iterations,
+        };
+        (load, sum(&elements, &user))
+    }
+
+    pub(super) fn raised_iterations(&self) -> bool {
+        self.raised_iterations
+    }
+
     /// Takes in what the user wrote into a component that changed since the last step; says whether
     /// that is new.
     fn read_user(&mut self, now: &ExternalForce) -> bool {

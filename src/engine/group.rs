@@ -138,6 +138,19 @@ impl Groups {
         }
     }
 
+    /// Puts all components, and elements and bodies within each, into another order: by these places of theirs.
+    pub(super) fn arrange(&mut self, elements: &[u32], bodies: &[u32], rows: &[ElementRow]) {
+        for group in &mut self.list {
+            let members = &mut self.elements[group.elements.clone()];
+            group.inside = members.iter().any(|e| rows[*e].inside.is_some());
+            members.sort_by_key(|e| elements[*e]);
+            self.bodies[group.bodies.clone()].sort_by_key(|b| bodies[*b]);
+        }
+        let Self { bodies: all, .. } = self;
+        self.list
+            .sort_by_key(|group| all[group.bodies.clone()].first().map(|b| bodies[*b]));
+    }
+
     /// Gives every group that needs one its assembly: the one that it had, if it was there before.
     pub(super) fn assign_assemblies(
         &mut self,

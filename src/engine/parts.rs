@@ -5,6 +5,7 @@ use crate::element::{
     Anchors, AwaitsEnds, Damper, Spring, SpringDamper, TorsionDamper, TorsionSpring,
     TorsionSpringDamper,
 };
+use bevy::ecs::change_detection::Tick;
 use bevy::ecs::query::QueryData;
 use bevy::prelude::*;
 
@@ -120,6 +121,21 @@ impl PartsItem<'_, '_> {
             || changed(&self.torsion_spring)
             || changed(&self.torsion_damper)
             || changed(&self.torsion_pair)
+    }
+
+    /// Whether that was after some tick.
+    pub(super) fn is_changed_after(&self, since: Tick, now: Tick) -> bool {
+        let after = |changed: Option<Tick>| changed.is_some_and(|at| at.is_newer_than(since, now));
+        fn at<T: Component>(part: &Option<Ref<T>>) -> Option<Tick> {
+            part.as_ref().map(Ref::last_changed)
+        }
+        after(at(&self.pair))
+            || after(at(&self.spring))
+            || after(at(&self.damper))
+            || after(at(&self.anchors))
+            || after(at(&self.torsion_spring))
+            || after(at(&self.torsion_damper))
+            || after(at(&self.torsion_pair))
     }
 
     /// Reads whichever component is there.

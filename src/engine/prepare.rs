@@ -31,10 +31,16 @@ pub(crate) fn prepare(
     let scene = &mut *scene;
     let mut same = !watch.saw_change(scene);
     same &= !std::mem::take(&mut scene.stale);
-    companions.look();
+    companions.look(scene.since.take());
     // What comes and goes is seen by the watch; this is for whatever else may take elements away.
     same &= elements.iter().len() == scene.elements.len();
-    same = same && refresh(scene, &elements, &changed, &companions, &finder.ends);
+    let is_new = |entity: &Entity| {
+        let parts = elements.get(*entity);
+        parts.is_ok_and(|parts| companions.is_new(&parts))
+    };
+    let changed = changed.iter().filter(is_new);
+    let changed = changed.chain(std::mem::take(&mut scene.pending));
+    same = same && refresh(scene, &elements, changed, &companions, &finder.ends);
     let modified = &watch.mass_modified;
     let Scene {
         elements: rows,
@@ -87,7 +93,7 @@ pub(crate) fn prepare(
 fn refresh(
     scene: &mut Scene,
     elements: &Query<Parts, Acts>,
-    changed: &Query<Entity, ChangedParts>,
+    changed: impl Iterator<Item = Entity>,
     companions: &Companions,
     ends: &Ends,
 ) -> bool {
@@ -111,7 +117,7 @@ fn refresh(
     if !stepped.is_empty() {
         *shifted = false;
     }
-    for entity in changed.iter().chain(companions.touched.iter().copied()) {
+    for entity in changed.chain(companions.touched.iter().copied()) {
         // Anchors and companions can stand where no element is.
         let Ok(parts) = elements.get(entity) else {
             continue;

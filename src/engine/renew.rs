@@ -83,7 +83,7 @@ impl Scene {
                 row.change(|row| row.companion = companion);
                 Ok(found)
             });
-            row.changed |= parts.is_changed() || companions.touched.contains(&entity);
+            row.changed |= companions.is_new(&parts) || companions.touched.contains(&entity);
             row.trouble.set_lasting(found.as_ref().err().copied());
             report(row, commands);
             if row.changed {
@@ -139,6 +139,13 @@ impl Scene {
             .iter()
             .any(|row| row.trouble.lasting().is_none() && row.moves() == 0);
         self.groups.find(&self.elements, &self.bodies);
+        self.number_groups();
+        scratch.clear();
+        self.scratch = scratch;
+    }
+
+    /// Tells bodies of their components, and gives these what they are solved in.
+    pub(super) fn number_groups(&mut self) {
         self.handles.clear();
         for (g, group) in self.groups.list().iter().enumerate() {
             for (slot, b) in self.groups.members(group).bodies.iter().enumerate() {
@@ -149,8 +156,6 @@ impl Scene {
         }
         self.groups
             .assign_assemblies(&mut self.assemblies, &self.elements, &self.bodies);
-        scratch.clear();
-        self.scratch = scratch;
     }
 
     /// Brings the row of an element to its place, after all those before it; says whether it is a new one.

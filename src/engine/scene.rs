@@ -6,6 +6,7 @@ use super::group::Groups;
 use super::held::Inside;
 use super::rows::{BodyRow, ElementRow, Raised, Sweeps};
 use super::still::Still;
+use bevy::ecs::change_detection::Tick;
 use bevy::ecs::entity::{EntityHashMap, EntityHashSet};
 use bevy::platform::collections::HashMap;
 use bevy::prelude::*;
@@ -60,6 +61,10 @@ pub struct Scene {
     pub(super) unloaded: Vec<(Entity, RigidBodyHandle, Raised)>,
     /// What contexts have been told besides.
     pub(super) sweeps: EntityHashMap<Sweeps>,
+    /// The rows are those of a snapshot, put there at that tick: what changed before is none of theirs.
+    pub(super) since: Option<Tick>,
+    /// Elements whose components are others than a snapshot says.
+    pub(super) pending: Vec<Entity>,
 }
 
 impl Scene {

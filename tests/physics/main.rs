@@ -39,6 +39,7 @@ mod quarter_car;
 mod recommend;
 mod repeatability;
 mod sleeping;
+mod snapshot;
 mod spinning_pair;
 mod stability;
 mod static_sag;

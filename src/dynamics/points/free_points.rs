@@ -30,6 +30,19 @@ pub(crate) struct Flight {
 }
 
 impl Points {
+    /// What iterations of the next solve start from.
+    pub(in crate::dynamics) fn solution(&self) -> &[DVec3] {
+        &self.solver.solution
+    }
+
+    /// Has iterations start there, if that is a place.
+    pub(in crate::dynamics) fn start_from(&mut self, solution: &[DVec3]) {
+        if solution.iter().all(|x| x.is_finite()) {
+            self.solver.solution.clear();
+            self.solver.solution.extend_from_slice(solution);
+        }
+    }
+
     /// Readies what has been taken in for its step.
     pub(in crate::dynamics) fn begin(&mut self, budget: u32) {
         self.budget = budget;

@@ -27,6 +27,7 @@ const KEPT: f64 = 0.5;
 
 /// What is still to be done about kinks.
 #[derive(Clone, Copy, Debug, Default)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Kinks {
     /// For how long steps have to be fine, s.
     fine: f64,

@@ -5,6 +5,7 @@
 //! the symplectic Euler rule with an implicit damper.
 
 use crate::dynamics::pieces::MOST;
+use crate::engine::kept::KeptJoint;
 use bevy::math::{Quat, Vec3};
 use bevy_rapier3d::rapier::dynamics::{
     GenericJoint, GenericJointBuilder, ImpulseJoint, ImpulseJointHandle, ImpulseJointSet,
@@ -22,6 +23,7 @@ pub(in crate::engine) fn is_ours(joint: &ImpulseJoint) -> bool {
 
 /// What a joint acts along.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(in crate::engine) enum Along {
     /// From anchor to anchor.
     Distance,
@@ -33,6 +35,7 @@ pub(in crate::engine) enum Along {
 
 /// One joint, in numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(in crate::engine) struct SoftJoint {
     pub bodies: [RigidBodyHandle; 2],
     pub anchors: [Vec3; 2],
@@ -187,6 +190,35 @@ fn update(set: &mut ImpulseJointSet, known: &mut Known, wanted: &Option<SoftJoin
 }
 
 impl Joints {
+    /// Each of them, and which one it is.
+    pub(in crate::engine) fn kept(&self) -> impl Iterator<Item = KeptJoint> {
+        let places = self.all().enumerate();
+        places.filter_map(|(place, known)| {
+            let (handle, joint) = (*known)?;
+            let place = place as u8;
+            Some(KeptJoint {
+                place,
+                handle,
+                joint,
+            })
+        })
+    }
+
+    /// As they were.
+    pub(in crate::engine) fn of(kept: &[KeptJoint]) -> Self {
+        let mut joints = Self::default();
+        for known in kept {
+            let place = match known.place.checked_sub(1) {
+                None => Some(&mut joints.damper),
+                Some(spring) => joints.springs.get_mut(usize::from(spring)),
+            };
+            if let Some(place) = place {
+                *place = Some((known.handle, known.joint));
+            }
+        }
+        joints
+    }
+
     fn all(&self) -> impl Iterator<Item = &Known> {
         [&self.damper].into_iter().chain(&self.springs)
     }

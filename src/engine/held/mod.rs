@@ -42,6 +42,7 @@ pub(super) struct Inside {
 
 /// What joints and contacts have left of an element's inverse mass.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Leeway {
     /// 1/kg.
     pub left: f64,

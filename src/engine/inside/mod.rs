@@ -17,5 +17,5 @@ mod touch;
 mod write;
 
 pub(super) use linkage::{Holding, inverse_mass, locks};
-pub(super) use step::View;
+pub(super) use step::{View, add_up};
 pub(super) use write::{Engine as EngineParts, Solver};

@@ -188,7 +188,7 @@ impl Scene {
 }
 
 /// Of each body the stiffness of all its elements.
-fn add_up(elements: &[ElementRow], bodies: &mut [BodyRow]) {
+pub(in crate::engine) fn add_up(elements: &[ElementRow], bodies: &mut [BodyRow]) {
     for row in bodies.iter_mut() {
         row.stiffness = 0.0;
     }

@@ -19,6 +19,7 @@ pub(in crate::engine) struct Share {
 
 /// A body at rest: for how long, and where it has been so.
 #[derive(Clone, Copy, Debug, Default)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(in crate::engine) struct Rest {
     pub position: Vec3,
     pub rotation: Quat,

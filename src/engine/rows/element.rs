@@ -34,6 +34,7 @@ impl Held {
 
 /// Since the element began to act, J.
 #[derive(Clone, Copy, Debug, Default)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(in crate::engine) struct EnergyLedger {
     /// Turned into heat.
     pub dissipated: f64,
@@ -102,11 +103,13 @@ impl ElementRow {
 
 /// What an element remembers from step to step.
 #[derive(Clone, Copy, Debug, Default)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[repr(C)]
 pub(in crate::engine) struct Memory {
     /// Last well-defined direction from end A to end B.
     pub direction: Option<DVec3>,
     /// The last coefficients, and how exact they were.
+    #[cfg_attr(feature = "serialize", serde(skip))]
     pub memo: Memo,
     /// Last length or twist.
     pub length: f64,

@@ -6,7 +6,7 @@ mod marks;
 mod raised;
 
 pub(super) use body::{BodyRow, Rest, Share};
-pub(super) use element::{ElementRow, Held};
+pub(super) use element::{ElementRow, EnergyLedger, Held, Memory};
 pub(super) use marks::{mix, pull_mark, turning_mark};
 pub(super) use raised::{Raised, Sweeps};
 

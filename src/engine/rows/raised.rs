@@ -4,6 +4,7 @@ use bevy_rapier3d::rapier::dynamics::RigidBody as RapierBody;
 
 /// Sweeps over all joints and contacts in a substep that a context has been told, and what stood there before.
 #[derive(Clone, Copy, Debug, Default)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(in crate::engine) struct Sweeps(Option<Replaced<usize>>);
 
 impl Sweeps {
@@ -15,12 +16,14 @@ impl Sweeps {
 
 /// Such orders, and what stood there before.
 #[derive(Clone, Copy, Debug, Default)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(in crate::engine) struct Raised {
     iterations: Option<Replaced<usize>>,
     prediction: Option<Replaced<f32>>,
 }
 
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 struct Replaced<T> {
     ours: T,
     users: T,

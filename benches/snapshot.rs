@@ -1,0 +1,55 @@
+#![allow(missing_docs, reason = "criterion writes a public function")]
+//! What a snapshot takes, and how large it is.
+//!
+//! `cargo bench -p benches --bench snapshot` prints bytes for each spring, and times: to take a snapshot, to put it back, and
+//! the same of Rapier's side, each for so many springs.
+
+use benches::{Link, Scene};
+use bevy_coilover::{CoiloverSnapshot, RapierSnapshot};
+use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use std::hint::black_box;
+
+fn snapshots(c: &mut Criterion) {
+    let scenes = [
+        (Scene::Isolated, 1_000),
+        (Scene::Isolated, 10_000),
+        (Scene::Lattice, 1_000),
+        (Scene::Rolling, 250),
+    ];
+    for (scene, count) in scenes {
+        let mut app = scene.app(count, Link::Ours, 1);
+        for _ in 0..60 {
+            app.update();
+        }
+        let springs = scene.springs(count);
+        let mut group = c.benchmark_group(format!("snapshot/{scene:?}"));
+        group.sample_size(20);
+        group.throughput(Throughput::Elements(u64::from(springs)));
+        let kept = CoiloverSnapshot::take(app.world());
+        let each = kept.bytes() / springs.max(1) as usize;
+        println!("snapshot/{scene:?}: {springs} springs, {each} bytes for each");
+        group.bench_function(BenchmarkId::new("take", springs), |b| {
+            b.iter(|| black_box(CoiloverSnapshot::take(app.world())));
+        });
+        group.bench_function(BenchmarkId::new("restore", springs), |b| {
+            b.iter(|| black_box(kept.restore(app.world_mut())));
+        });
+        group.bench_function(BenchmarkId::new("clone", springs), |b| {
+            b.iter(|| black_box(kept.clone()));
+        });
+        let kept = RapierSnapshot::take(app.world());
+        group.bench_function(BenchmarkId::new("take of Rapier", springs), |b| {
+            b.iter(|| black_box(RapierSnapshot::take(app.world())));
+        });
+        group.bench_function(BenchmarkId::new("restore of Rapier", springs), |b| {
+            b.iter(|| black_box(kept.restore(app.world_mut())));
+        });
+        group.bench_function(BenchmarkId::new("frame", springs), |b| {
+            b.iter(|| app.update());
+        });
+        group.finish();
+    }
+}
+
+criterion_group!(benches, snapshots);
+criterion_main!(benches);

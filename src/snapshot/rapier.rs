@@ -1,0 +1,268 @@
+//! Rapier's side.
+
+use super::SnapshotError;
+use crate::compat::{self, SoftBodies};
+use bevy::ecs::entity::{EntityHashSet, EntityMapper, MapEntities};
+use bevy::prelude::*;
+use bevy_rapier3d::plugin::systems::writeback_rigid_bodies;
+use bevy_rapier3d::prelude::*;
+use bevy_rapier3d::rapier::dynamics::{
+    CCDSolver, ImpulseJointHandle, ImpulseJointSet, IntegrationParameters, IslandManager,
+    MultibodyJointHandle, MultibodyJointSet, RigidBodyHandle, RigidBodySet,
+};
+use bevy_rapier3d::rapier::geometry::{BroadPhaseBvh, ColliderHandle, ColliderSet, NarrowPhase};
+use bevy_rapier3d::rapier::pipeline::PhysicsPipeline;
+use std::collections::HashMap;
+
+/// All that Rapier remembers from one tick to the next, in all contexts.
+///
+/// `bevy_rapier3d` has most of it in components that are public and `Clone`, but not `RapierContextSimulation`, and not which
+/// entity has which handle. So this takes the parts one by one, and leaves the handles of a world as they are: a body,
+/// collider or joint must still have the handle that it had. It has, as long as it is not despawned meanwhile; what came later
+/// has to be despawned before this is put back. Rather than despawn a body that may come back, give it `RigidBodyDisabled`
+/// until that is sure. In another world handles are the same if all was spawned there in the same order, and nothing despawned
+/// before.
+///
+/// It puts back `Transform`, `Velocity` and `Sleeping` of bodies too, as Rapier writes them after a step. It holds no events
+/// and no components of the game's, such as `ExternalForce` of bodies without springs, which is to be written with
+/// `bypass_change_detection`: Rapier wakes a body whose force is written.
+#[derive(Clone)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+pub struct RapierSnapshot(Vec<Context>);
+
+/// One context.
+#[derive(Clone)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+struct Context {
+    entity: Entity,
+    /// Seconds.
+    lag: f32,
+    bodies: RigidBodySet,
+    soft_bodies: SoftBodies,
+    colliders: ColliderSet,
+    impulse_joints: ImpulseJointSet,
+    multibody_joints: MultibodyJointSet,
+    islands: IslandManager,
+    broad_phase: BroadPhaseBvh,
+    narrow_phase: NarrowPhase,
+    ccd_solver: CCDSolver,
+    parameters: IntegrationParameters,
+    handles: Handles,
+}
+
+/// Which entity has which handle.
+#[derive(Clone, Default)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+struct Handles {
+    bodies: Vec<(Entity, RigidBodyHandle)>,
+    colliders: Vec<(Entity, ColliderHandle)>,
+    impulse_joints: Vec<(Entity, ImpulseJointHandle)>,
+    multibody_joints: Vec<(Entity, MultibodyJointHandle)>,
+}
+
+/// What of a world's context is written.
+type Parts = (
+    &'static mut RapierContextSimulation,
+    &'static mut RapierRigidBodySet,
+    &'static mut RapierContextColliders,
+    &'static mut RapierContextJoints,
+    &'static mut SimulationToRenderTime,
+);
+
+type PartsItem<'a> = (
+    Mut<'a, RapierContextSimulation>,
+    Mut<'a, RapierRigidBodySet>,
+    Mut<'a, RapierContextColliders>,
+    Mut<'a, RapierContextJoints>,
+    Mut<'a, SimulationToRenderTime>,
+);
+
+impl RapierSnapshot {
+    /// Takes one. It is empty where there is no `RapierPhysicsPlugin`.
+    pub fn take(world: &World) -> Self {
+        let Some(mut contexts) = world.try_query::<(
+            Entity,
+            &RapierContextSimulation,
+            &RapierRigidBodySet,
+            &RapierContextColliders,
+            &RapierContextJoints,
+            &SimulationToRenderTime,
+        )>() else {
+            return Self(Vec::new());
+        };
+        let contexts = contexts.iter(world);
+        let mut all: Vec<_> = contexts
+            .map(
+                |(entity, simulation, set, colliders, joints, lag)| Context {
+                    entity,
+                    lag: lag.diff,
+                    bodies: set.bodies.clone(),
+                    soft_bodies: compat::soft_bodies(set),
+                    colliders: colliders.colliders.clone(),
+                    impulse_joints: joints.impulse_joints.clone(),
+                    multibody_joints: joints.multibody_joints.clone(),
+                    islands: simulation.islands.clone(),
+                    broad_phase: simulation.broad_phase.clone(),
+                    narrow_phase: simulation.narrow_phase.clone(),
+                    ccd_solver: simulation.ccd_solver.clone(),
+                    parameters: simulation.integration_parameters,
+                    handles: Handles {
+                        bodies: sorted(set.entity2body()),
+                        colliders: sorted(colliders.entity2collider()),
+                        impulse_joints: sorted(joints.entity2impulse_joint()),
+                        multibody_joints: sorted(joints.entity2multibody_joint()),
+                    },
+                },
+            )
+            .collect();
+        all.sort_by_key(|context| context.entity);
+        Self(all)
+    }
+
+    /// Has Rapier go on from there. If it does not fit the world, nothing is changed.
+    pub fn restore(&self, world: &mut World) -> Result<(), SnapshotError> {
+        if !world.contains_resource::<TimestepMode>() {
+            return Err(SnapshotError::NoPlugin);
+        }
+        let mut contexts = world.query::<Parts>();
+        let places = self.places(world);
+        for (context, place) in self.0.iter().zip(&places) {
+            if contexts.get(world, *place).is_err() {
+                return Err(SnapshotError::NoContext(*place));
+            }
+            context.handles.check(*place, world)?;
+        }
+        for (context, place) in self.0.iter().zip(&places) {
+            if let Ok(parts) = contexts.get_mut(world, *place) {
+                context.put(parts);
+            }
+        }
+        // Also notes what it has written, so that nothing of it is taken for the game's.
+        let written = world.run_system_cached(writeback_rigid_bodies);
+        written.map_err(|_| SnapshotError::NoPlugin)
+    }
+
+    /// The contexts of a world that these are: the only one is the only one.
+    fn places(&self, world: &mut World) -> Vec<Entity> {
+        let mut there = world.query_filtered::<Entity, With<RapierContextSimulation>>();
+        let mut there = there.iter(world);
+        match (&self.0[..], there.next(), there.next()) {
+            ([_], Some(only), None) => vec![only],
+            _ => self.0.iter().map(|context| context.entity).collect(),
+        }
+    }
+}
+
+impl Context {
+    fn put(&self, parts: PartsItem) {
+        let (mut simulation, mut set, mut colliders, mut joints, mut lag) = parts;
+        lag.diff = self.lag;
+        set.bodies.clone_from(&self.bodies);
+        compat::put_soft_bodies(&mut set, &self.soft_bodies);
+        colliders.colliders.clone_from(&self.colliders);
+        joints.impulse_joints.clone_from(&self.impulse_joints);
+        joints.multibody_joints.clone_from(&self.multibody_joints);
+        simulation.islands.clone_from(&self.islands);
+        simulation.broad_phase.clone_from(&self.broad_phase);
+        simulation.narrow_phase.clone_from(&self.narrow_phase);
+        simulation.ccd_solver.clone_from(&self.ccd_solver);
+        simulation.integration_parameters = self.parameters;
+        // It knows joints by the count of their changes, and that has gone back.
+        simulation.pipeline = PhysicsPipeline::new();
+    }
+}
+
+impl Handles {
+    /// Whether a context of a world calls the same entities the same.
+    fn check(&self, context: Entity, world: &World) -> Result<(), SnapshotError> {
+        use SnapshotError::{NoBody, NoCollider, NoContext, NoJoint};
+        let bodies = |e| world.get::<RapierRigidBodyHandle>(e).map(|h| h.0);
+        let colliders = |e| world.get::<RapierColliderHandle>(e).map(|h| h.0);
+        let joints = |e| world.get::<RapierImpulseJointHandle>(e).map(|h| h.0);
+        let multibody_joints = |e| world.get::<RapierMultibodyJointHandle>(e).map(|h| h.0);
+        let missing = NoContext(context);
+        let set = world.get::<RapierRigidBodySet>(context).ok_or(missing)?;
+        let all_colliders = world
+            .get::<RapierContextColliders>(context)
+            .ok_or(missing)?;
+        let all_joints = world.get::<RapierContextJoints>(context).ok_or(missing)?;
+        fit(&self.bodies, set.entity2body(), bodies, NoBody)?;
+        let known = all_colliders.entity2collider();
+        fit(&self.colliders, known, colliders, NoCollider)?;
+        let known = all_joints.entity2impulse_joint();
+        fit(&self.impulse_joints, known, joints, NoJoint)?;
+        let known = all_joints.entity2multibody_joint();
+        fit(&self.multibody_joints, known, multibody_joints, NoJoint)
+    }
+}
+
+/// Whether entities have the handles that they had, and no other entity has one. What is despawned may still be known.
+fn fit<H: Copy + PartialEq>(
+    then: &[(Entity, H)],
+    known: &HashMap<Entity, H>,
+    now: impl Fn(Entity) -> Option<H>,
+    missing: fn(Entity) -> SnapshotError,
+) -> Result<(), SnapshotError> {
+    let mut seen = EntityHashSet::default();
+    for (entity, handle) in then {
+        if !seen.insert(*entity) {
+            return Err(SnapshotError::Twice(*entity));
+        }
+        match now(*entity) {
+            None => return Err(missing(*entity)),
+            Some(now) if now != *handle => return Err(SnapshotError::OtherHandle(*entity)),
+            Some(_) => {}
+        }
+    }
+    let mut later = known.keys().filter(|entity| !seen.contains(*entity));
+    match later.find(|entity| now(**entity).is_some()) {
+        Some(entity) => Err(SnapshotError::Unknown(*entity)),
+        None => Ok(()),
+    }
+}
+
+/// A map in the order of its entities, so that the same world gives the same snapshot.
+fn sorted<H: Copy>(map: &HashMap<Entity, H>) -> Vec<(Entity, H)> {
+    let mut all: Vec<_> = map
+        .iter()
+        .map(|(entity, handle)| (*entity, *handle))
+        .collect();
+    all.sort_unstable_by_key(|(entity, _)| *entity);
+    all
+}
+
+impl MapEntities for RapierSnapshot {
+    fn map_entities<M: EntityMapper>(&mut self, mapper: &mut M) {
+        for context in &mut self.0 {
+            context.entity = mapper.get_mapped(context.entity);
+            let handles = &mut context.handles;
+            for (entity, handle) in &mut handles.bodies {
+                // A mutable look marks the body as changed.
+                if let Some(name) = rename(entity, mapper)
+                    && let Some(body) = context.bodies.get_mut(*handle)
+                {
+                    body.user_data = name;
+                }
+            }
+            for (entity, handle) in &mut handles.colliders {
+                if let Some(name) = rename(entity, mapper)
+                    && let Some(collider) = context.colliders.get_mut(*handle)
+                {
+                    collider.user_data = name;
+                }
+            }
+            for (entity, _) in &mut handles.impulse_joints {
+                rename(entity, mapper);
+            }
+            for (entity, _) in &mut handles.multibody_joints {
+                rename(entity, mapper);
+            }
+        }
+    }
+}
+
+/// Maps an entity; gives what stands for it in Rapier if that is another now.
+fn rename<M: EntityMapper>(entity: &mut Entity, mapper: &mut M) -> Option<u128> {
+    let before = std::mem::replace(entity, mapper.get_mapped(*entity));
+    (before != *entity).then(|| u128::from(entity.to_bits()))
+}

@@ -1,0 +1,72 @@
+//! Back to an earlier tick in the same app.
+
+use super::film::*;
+use super::scenes::*;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+/// Ticks until the snapshot, and from there.
+const BEFORE: usize = 200;
+const AFTER: usize = 300;
+
+/// The same future twice, from a snapshot at such a tick.
+fn go_back(name: &str, film: &mut Film, before: usize) {
+    film.run(before);
+    let then = Both::take(film);
+    let at = film.tick;
+    let first = film.watch(AFTER);
+    assert!(film.is_sound(), "{name}");
+    for _ in 0..2 {
+        then.restore(film);
+        film.tick = at;
+        film.rewind();
+        let second = film.watch(AFTER);
+        assert_same(name, &first, &second);
+    }
+}
+
+#[test]
+fn what_sleeps_goes_on_sleeping_and_wakes_when_it_did() {
+    for (name, plugin, scene) in sleepers() {
+        for before in [150, 450, 640] {
+            let mut film = scene(plugin);
+            go_back(&format!("{name}, {before}"), &mut film, before);
+        }
+        let mut film = scene(plugin);
+        film.run(450);
+        assert!(film.asleep() > 0, "{name}");
+    }
+}
+
+#[test]
+fn a_scene_goes_back_to_its_first_ticks() {
+    // What breaks meanwhile is for the game to spawn again: see `changed`.
+    let whole = |(name, ..): &(String, _, _)| !name.starts_with("breaking");
+    for (name, plugin, scene) in all().into_iter().filter(whole) {
+        for before in [1, 2, 3] {
+            let mut film = scene(plugin);
+            film.run(before);
+            let then = Both::take(&film);
+            let first = film.watch(40);
+            then.restore(&mut film);
+            film.tick = before;
+            film.rewind();
+            assert_same(&format!("{name}, {before}"), &first, &film.watch(40));
+        }
+    }
+}
+
+#[test]
+fn a_scene_that_goes_back_has_the_same_future() {
+    let mut failures = Vec::new();
+    for (name, plugin, scene) in all() {
+        let run = catch_unwind(AssertUnwindSafe(|| {
+            let mut film = scene(plugin);
+            go_back(&name, &mut film, BEFORE);
+        }));
+        if let Err(failure) = run {
+            let text = failure.downcast_ref::<String>().cloned();
+            failures.push(text.unwrap_or_else(|| name.clone()));
+        }
+    }
+    assert!(failures.is_empty(), "{failures:#?}");
+}

@@ -1,0 +1,95 @@
+//! Into another app, where everything has another id.
+
+use super::film::*;
+use super::scenes::*;
+use bevy::ecs::entity::{EntityHashMap, MapEntities};
+use bevy::prelude::*;
+use bevy_coilover::prelude::*;
+use bevy_rapier3d::prelude::*;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+const BEFORE: usize = 200;
+const AFTER: usize = 300;
+
+/// The same scene in an app of its own, a tick old.
+fn elsewhere(scene: Play, plugin: CoiloverPlugin) -> Film {
+    STRANGERS.set(7);
+    let mut film = scene(plugin);
+    STRANGERS.set(0);
+    film.run(1);
+    film
+}
+
+fn names(from: &Film, to: &Film) -> EntityHashMap<Entity> {
+    let pairs = from.cast.iter().copied().zip(to.cast.iter().copied());
+    pairs.collect()
+}
+
+fn go_on_elsewhere(name: &str, plugin: CoiloverPlugin, scene: Play) {
+    let mut film = scene(plugin);
+    film.run(BEFORE);
+    let (mut then, props) = (Both::take(&film), Props::take(&film));
+    let mut other = elsewhere(scene, plugin);
+    let mut names = names(&film, &other);
+    assert!(names.iter().all(|(a, b)| a != b), "{name}");
+    then.engine.map_entities(&mut names);
+    then.springs.map_entities(&mut names);
+    props.restore(&mut other, &names);
+    then.restore(&mut other);
+    other.tick = film.tick;
+    let (first, second) = (film.watch(AFTER), other.watch(AFTER));
+    assert_same(name, &first, &second);
+}
+
+#[test]
+fn a_scene_goes_on_in_another_app_as_in_its_own() {
+    let mut failures = Vec::new();
+    for (name, plugin, scene) in all() {
+        let run = catch_unwind(AssertUnwindSafe(|| go_on_elsewhere(&name, plugin, scene)));
+        if let Err(failure) = run {
+            let text = failure.downcast_ref::<String>().cloned();
+            failures.push(text.unwrap_or_else(|| name.clone()));
+        }
+    }
+    assert!(failures.is_empty(), "{failures:#?}");
+}
+
+/// A scene that is only moved to where it was, with what springs remember: nearly the same, and no harm.
+#[test]
+fn without_rapiers_side_a_scene_goes_on_nearly_as_it_did() {
+    let (_, plugin, scene) = all()
+        .into_iter()
+        .find(|(name, ..)| name == "hinges, plain")
+        .expect("the scene is there");
+    let mut film = scene(plugin);
+    film.run(BEFORE);
+    let then = CoiloverSnapshot::take(film.lab.app.world());
+    let bodies: Vec<_> = film
+        .cast
+        .iter()
+        .map(|e| film.lab.app.world().get::<Transform>(*e).copied())
+        .collect();
+    film.run(20);
+    for (entity, place) in film.cast.clone().into_iter().zip(bodies) {
+        if let (Some(place), Some(mut now)) = (place, film.lab.app.world_mut().get_mut(entity)) {
+            *now = place;
+        }
+    }
+    let world = film.lab.app.world_mut();
+    let engine = then.restore(world);
+    let without = then.without_engine().restore(world);
+    println!("{engine:?}, {without:?}");
+    assert_eq!(without, Ok(()));
+    film.run(AFTER);
+    assert!(film.is_sound());
+    // It makes its joints anew, and takes out those that were there.
+    let joints = |film: &mut Film| {
+        let world = film.lab.app.world_mut();
+        let mut sets = world.query::<&RapierContextJoints>();
+        let joints = sets.single(world).expect("one context");
+        joints.impulse_joints.len()
+    };
+    let mut plain = scene(plugin);
+    plain.run(BEFORE + AFTER);
+    assert_eq!(joints(&mut film), joints(&mut plain));
+}

@@ -1,0 +1,188 @@
+//! Back, where elements and bodies have come and gone meanwhile.
+
+use super::film::*;
+use super::scenes::*;
+use crate::harness::*;
+use bevy::ecs::entity::{EntityHashMap, MapEntities};
+use bevy::ecs::entity_disabling::Disabled;
+use bevy::prelude::*;
+use bevy_coilover::prelude::*;
+use bevy_rapier3d::prelude::*;
+
+const BEFORE: usize = 200;
+const AFTER: usize = 300;
+
+/// A scene of these, 200 ticks old.
+fn played(name: &str) -> Film {
+    let (_, plugin, scene) = all()
+        .into_iter()
+        .find(|(known, ..)| known == name)
+        .expect("the scene is there");
+    let mut film = scene(plugin);
+    film.run(BEFORE);
+    film
+}
+
+/// Everything there is, by name.
+const NAMES: [&str; 5] = [
+    "lone, plain",
+    "chain, plain",
+    "lattice, tolerance",
+    "cloth, plain",
+    "hinges, plain",
+];
+
+#[test]
+fn elements_that_were_despawned_are_spawned_again_and_go_on() {
+    for name in NAMES {
+        let mut film = played(name);
+        let then = Both::take(&film);
+        let first = film.watch(AFTER);
+        then.restore(&mut film);
+        film.run(50);
+        let world = film.lab.app.world_mut();
+        let mut all = world.query::<(Entity, &SpringDamper, Option<&Anchors>)>();
+        let gone: Vec<_> = all
+            .iter(world)
+            .step_by(3)
+            .map(|(entity, element, anchors)| (entity, *element, anchors.copied()))
+            .collect();
+        assert!(!gone.is_empty());
+        for (entity, ..) in &gone {
+            world.despawn(*entity);
+        }
+        film.run(50);
+        let mut then = then.clone();
+        let mut new = EntityHashMap::default();
+        for (entity, element, anchors) in gone {
+            let again = film.lab.spawn((element, anchors.unwrap_or_default()));
+            new.insert(entity, again);
+            for known in &mut film.cast {
+                if *known == entity {
+                    *known = again;
+                }
+            }
+        }
+        then.springs.map_entities(&mut new);
+        then.restore(&mut film);
+        assert_same(name, &first, &film.watch(AFTER));
+    }
+}
+
+#[test]
+fn what_came_later_and_is_despawned_leaves_nothing() {
+    for name in NAMES {
+        let mut film = played(name);
+        let then = Both::take(&film);
+        let first = film.watch(AFTER);
+        then.restore(&mut film);
+        film.run(20);
+        let more = film.lab.spawn((
+            brick(1.0, Vec3::splat(0.1), Vec3::new(0.1, 4.0, 0.2)),
+            Collider::ball(0.2),
+        ));
+        let body = film.cast[film.cast.len() / 2];
+        let ends = film.lab.app.world().get::<RigidBody>(body);
+        let end = if ends.is_some() {
+            body
+        } else {
+            film.lab.point(Vec3::Y)
+        };
+        let spring = film
+            .lab
+            .spawn(SpringDamper::new(end, more).with_stiffness(300.0));
+        film.run(80);
+        for entity in [more, spring] {
+            film.lab.app.world_mut().despawn(entity);
+        }
+        then.restore(&mut film);
+        assert_same(name, &first, &film.watch(AFTER));
+    }
+}
+
+#[test]
+fn a_thread_that_broke_since_is_whole_again() {
+    let mut film = played("lone, plain");
+    let then = Both::take(&film);
+    let first = film.watch(AFTER);
+    then.restore(&mut film);
+    let element = film.cast[2];
+    film.insert(element, Breakable::at_force(0.01).disabling());
+    film.run(30);
+    let world = film.lab.app.world_mut();
+    assert!(world.get::<Disabled>(element).is_some(), "it broke");
+    world.entity_mut(element).remove::<(Disabled, Breakable)>();
+    then.restore(&mut film);
+    assert_same("broken", &first, &film.watch(AFTER));
+}
+
+#[test]
+fn components_that_are_only_written_anew_change_nothing() {
+    for name in [
+        "feet, plain",
+        "lattice, plain",
+        "laws, plain",
+        "lone, tolerance",
+    ] {
+        let mut film = played(name);
+        film.run(300);
+        let then = Both::take(&film);
+        let first = film.watch(AFTER);
+        let world = film.lab.app.world_mut();
+        let mut elements = world.query::<(&mut SpringDamper, Option<&mut Anchors>)>();
+        for (mut element, anchors) in elements.iter_mut(world) {
+            element.set_changed();
+            if let Some(mut anchors) = anchors {
+                anchors.set_changed();
+            }
+        }
+        let mut beside = world.query::<(Option<&mut Preload>, Option<&mut SpringAction>)>();
+        for (preload, action) in beside.iter_mut(world) {
+            if let Some(mut preload) = preload {
+                preload.set_changed();
+            }
+            if let Some(mut action) = action {
+                action.set_changed();
+            }
+        }
+        let mut velocities = world.query::<&mut Velocity>();
+        for mut velocity in velocities.iter_mut(world) {
+            velocity.set_changed();
+        }
+        then.restore(&mut film);
+        assert_same(name, &first, &film.watch(AFTER));
+    }
+}
+
+#[test]
+fn a_number_that_was_changed_just_before_the_snapshot_acts_after_it() {
+    let mut film = played("feet, plain");
+    film.run(300);
+    let world = film.lab.app.world_mut();
+    let mut elements = world.query::<&mut SpringDamper>();
+    for mut element in elements.iter_mut(world) {
+        element.stiffness *= 1.5;
+    }
+    let then = Both::take(&film);
+    let first = film.watch(AFTER);
+    then.restore(&mut film);
+    assert_same("changed", &first, &film.watch(AFTER));
+}
+
+#[test]
+fn a_snapshot_serves_many_times_and_from_every_tick() {
+    let mut film = played("feet, plain");
+    let takes: Vec<_> = (0..40)
+        .map(|_| {
+            film.run(8);
+            (Both::take(&film), film.bits())
+        })
+        .collect();
+    for (i, (then, _)) in takes.iter().enumerate().rev() {
+        then.restore(&mut film);
+        for (_, later) in &takes[i + 1..(i + 3).min(takes.len())] {
+            film.run(8);
+            assert_same("feet", std::slice::from_ref(later), &[film.bits()]);
+        }
+    }
+}

@@ -1,0 +1,184 @@
+//! A snapshot that does not fit says so, and changes nothing.
+
+use super::film::*;
+use super::scenes::*;
+use bevy::ecs::entity::{EntityHashMap, MapEntities};
+use bevy::prelude::*;
+use bevy_coilover::prelude::*;
+use bevy_rapier3d::prelude::*;
+
+/// A car on the road: everything that springs can have in Rapier.
+fn played() -> Film {
+    let (_, plugin, scene) = all()
+        .into_iter()
+        .find(|(name, ..)| name == "car, plain")
+        .expect("the scene is there");
+    let mut film = scene(plugin);
+    film.run(60);
+    film
+}
+
+fn springs(film: &mut Film, snapshot: &CoiloverSnapshot) -> Result<(), SnapshotError> {
+    snapshot.restore(film.lab.app.world_mut())
+}
+
+fn engine(film: &mut Film, snapshot: &RapierSnapshot) -> Result<(), SnapshotError> {
+    snapshot.restore(film.lab.app.world_mut())
+}
+
+fn element(film: &mut Film) -> Entity {
+    let world = film.lab.app.world_mut();
+    let mut elements = world.query_filtered::<Entity, With<SpringDamper>>();
+    elements.iter(world).next().expect("an element")
+}
+
+#[test]
+fn a_world_without_the_plugin_takes_nothing() {
+    let film = played();
+    let then = Both::take(&film);
+    let mut world = World::new();
+    assert_eq!(
+        then.springs.restore(&mut world),
+        Err(SnapshotError::NoPlugin)
+    );
+    assert_eq!(
+        then.engine.restore(&mut world),
+        Err(SnapshotError::NoPlugin)
+    );
+    let none = CoiloverSnapshot::take(&world);
+    assert_eq!(none.entities().count(), 0);
+}
+
+#[test]
+fn an_element_or_a_body_that_is_gone_is_named() {
+    let mut film = played();
+    let then = Both::take(&film);
+    let element = element(&mut film);
+    film.lab.app.world_mut().despawn(element);
+    assert_eq!(
+        springs(&mut film, &then.springs),
+        Err(SnapshotError::NoElement(element))
+    );
+    film.run(5);
+    assert_eq!(
+        springs(&mut film, &then.springs),
+        Err(SnapshotError::NoElement(element))
+    );
+    let chassis = film.cast[1];
+    film.lab.app.world_mut().despawn(chassis);
+    assert_eq!(
+        engine(&mut film, &then.engine),
+        Err(SnapshotError::NoBody(chassis))
+    );
+    film.run(5);
+    assert_eq!(
+        engine(&mut film, &then.engine),
+        Err(SnapshotError::NoBody(chassis))
+    );
+}
+
+#[test]
+fn a_body_that_came_later_has_to_go_first() {
+    let mut film = played();
+    let then = Both::take(&film);
+    let more = film.lab.body(1.0, Vec3::Y * 9.0);
+    film.run(1);
+    assert_eq!(
+        engine(&mut film, &then.engine),
+        Err(SnapshotError::Unknown(more))
+    );
+    film.lab.app.world_mut().despawn(more);
+    assert_eq!(engine(&mut film, &then.engine), Ok(()));
+}
+
+#[test]
+fn two_names_for_one_are_told() {
+    let mut film = played();
+    let mut then = Both::take(&film);
+    let [a, b] = [film.cast[1], film.cast[2]];
+    let mut both = EntityHashMap::default();
+    both.insert(a, b);
+    then.springs.map_entities(&mut both);
+    then.engine.map_entities(&mut both);
+    assert_eq!(
+        springs(&mut film, &then.springs),
+        Err(SnapshotError::Twice(b))
+    );
+    let told = engine(&mut film, &then.engine);
+    assert!(matches!(
+        told,
+        Err(SnapshotError::Twice(_) | SnapshotError::OtherHandle(_))
+    ));
+}
+
+#[test]
+fn what_does_not_fit_leaves_the_scene_as_it_was() {
+    let (mut film, mut same) = (played(), played());
+    let then = Both::take(&film);
+    film.run(40);
+    same.run(40);
+    // The car has left the ground of these joints.
+    let hop = |film: &mut Film| {
+        let chassis = film.cast[1];
+        let world = film.lab.app.world_mut();
+        let mut elements = world.query_filtered::<Entity, With<SpringDamper>>();
+        let element = elements.iter(world).next().expect("an element");
+        world.despawn(element);
+        film.lab.get_mut::<Velocity>(chassis).linear.y += 1.0;
+        film.run(5);
+    };
+    hop(&mut film);
+    hop(&mut same);
+    assert!(springs(&mut film, &then.springs).is_err());
+    let mut wrong = then.clone();
+    let mut names: EntityHashMap<Entity> = EntityHashMap::default();
+    names.insert(film.cast[1], film.cast[0]);
+    wrong.engine.map_entities(&mut names);
+    assert!(engine(&mut film, &wrong.engine).is_err());
+    assert_same("car", &same.watch(100), &film.watch(100));
+}
+
+#[test]
+fn springs_alone_do_not_fit_a_rapier_that_has_gone_on() {
+    let mut film = played();
+    let then = Both::take(&film);
+    let element = element(&mut film);
+    let damper = film.lab.get::<SpringDamper>(element).damping;
+    // Other joints of ours.
+    film.lab.get_mut::<SpringDamper>(element).damping = 0.0;
+    let more = film
+        .lab
+        .spawn(SpringDamper::new(film.cast[1], film.cast[2]).with_stiffness(10.0));
+    film.run(5);
+    assert_eq!(
+        springs(&mut film, &then.springs),
+        Err(SnapshotError::OtherEngine)
+    );
+    film.lab.app.world_mut().despawn(more);
+    film.lab.get_mut::<SpringDamper>(element).damping = damper;
+    assert_eq!(engine(&mut film, &then.engine), Ok(()));
+    assert_eq!(springs(&mut film, &then.springs), Ok(()));
+}
+
+#[test]
+fn what_is_not_put_back_makes_another_future() {
+    // Or else nothing that these tests compare would depend on what springs remember.
+    for name in [
+        "torsion, plain",
+        "feet, plain",
+        "lattice, tolerance",
+        "rods, plain",
+    ] {
+        let (_, plugin, scene) = all()
+            .into_iter()
+            .find(|(known, ..)| known == name)
+            .expect("the scene is there");
+        let mut film = scene(plugin);
+        film.run(200);
+        let then = Both::take(&film);
+        let first = film.watch(100);
+        engine(&mut film, &then.engine).expect("Rapier's side fits");
+        let second = film.watch(100);
+        assert!(first != second, "{name}");
+    }
+}
