@@ -2,7 +2,6 @@
 //! trailing behind. The coilover stands on the hub. The arms of an axle turn about one line, so the torsion spring between
 //! them is what a bar is that is fixed to both: it twists when one wheel is higher than the other.
 
-use super::course::ROAD;
 use super::tyre::Tyre;
 use crate::stage::{self, Paint, Shape};
 use bevy::prelude::*;
@@ -46,6 +45,10 @@ const CAR: CollisionGroups = CollisionGroups::new(Group::GROUP_2, Group::GROUP_1
 
 #[derive(Component)]
 pub struct Chassis;
+
+/// On a coilover: the wheel that it stands on.
+#[derive(Component)]
+pub struct StandsOn(pub Entity);
 
 /// What turns with a wheel, for the eye.
 #[derive(Component)]
@@ -217,6 +220,7 @@ fn our_spring(commands: &mut Commands, chassis: Entity, wheel: Entity, corner: V
             .with_progression(PROGRESSION)
             .with_stop_damping(STOP_DAMPING),
         HoldPose::of_a().with_share(0.25),
+        StandsOn(wheel),
     ));
 }
 

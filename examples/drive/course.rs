@@ -1,8 +1,9 @@
 //! The course, along x: a washboard, waves, kerbs, the washboard again, a field to turn on, a jump, and a slope.
 //!
-//! What is not level is a mesh of triangles under a function of x, so that a ball rolls over it as over a road.
+//! What is not level is a row of convex pieces under a function of x. A mesh of triangles will not do: on its inner edges,
+//! Rapier's contacts stop a car and throw it.
 
-use crate::stage::{Paint, Shape, strip};
+use crate::stage::{Paint, Shape};
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
 use std::f32::consts::{PI, TAU};
@@ -13,6 +14,9 @@ pub const ROAD: CollisionGroups = CollisionGroups::new(Group::GROUP_1, Group::GR
 const WIDTH: f32 = 9.0;
 /// Where the road ends, m.
 const END: f32 = 640.0;
+/// Length of a convex piece, and how far it goes down, m.
+const PIECE: f32 = 0.2;
+const DEPTH: f32 = -1.0;
 /// Of the washboard, m: from crest to crest, half the height from trough to crest, and the whole.
 pub const WASH: f32 = 2.0;
 pub const WASH_HEIGHT: f32 = 0.012;
@@ -127,17 +131,27 @@ fn strip_of(
     height: fn(f32) -> f32,
     paint: Paint,
 ) {
-    let (points, _, triangles) = strip(height, length, width);
-    let collider = Collider::trimesh_with_flags(
-        points,
-        triangles,
-        // Edges between triangles are no edges of the road.
-        TriMeshFlags::FIX_INTERNAL_EDGES | TriMeshFlags::MERGE_DUPLICATE_VERTICES,
-    );
-    let Ok(collider) = collider else {
+    let pieces = (length / PIECE).round().max(1.0);
+    let step = length / pieces;
+    let half = 0.5 * width;
+    let piece = |i: u32| {
+        let [x, next] = [i, i + 1].map(|i| i as f32 * step);
+        let corners = [
+            (x, height(x)),
+            (next, height(next)),
+            (x, DEPTH),
+            (next, DEPTH),
+        ]
+        .map(|(x, y)| [-half, half].map(|z| Vec3::new(x, y, z)));
+        let hull = Collider::convex_hull(corners.as_flattened())?;
+        Some((Vec3::ZERO, Quat::IDENTITY, hull))
+    };
+    let hulls: Option<Vec<_>> = (0..pieces as u32).map(piece).collect();
+    let Some(hulls) = hulls else {
         error!("the course at {from} m has no surface");
         return;
     };
+    let collider = Collider::compound(hulls);
     commands.spawn((
         collider,
         Friction::coefficient(0.0),

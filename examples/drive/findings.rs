@@ -31,7 +31,7 @@ pub fn check(world: &mut World) -> Vec<Finding> {
         for (i, s) in log.samples.iter().enumerate() {
             if i % 10 == 0 {
                 println!(
-                    "{:6.2} {:?} {:5.2} x {:7.2} y {:5.3} z {:6.2} v {:5.2} pitch {:6.2} roll {:6.2} loads {:.0?} len {:.3?}",
+                    "{:6.2} {:?} {:5.2} x {:7.2} y {:5.3} z {:6.2} v {:5.2} pitch {:6.2} roll {:6.2} loads {:.0?} len {:.3?} hubs {:.3?}",
                     i as f32 / 60.0,
                     s.leg,
                     s.time,
@@ -42,7 +42,8 @@ pub fn check(world: &mut World) -> Vec<Finding> {
                     s.pitch.to_degrees(),
                     s.roll.to_degrees(),
                     s.loads,
-                    s.lengths
+                    s.lengths,
+                    s.hubs.map(|h| h.y)
                 );
             }
         }

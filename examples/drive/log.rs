@@ -2,7 +2,7 @@
 
 use super::car::{Chassis, ends};
 use super::driver::{Leg, Pedals, Script};
-use super::tyre::Tyre;
+use super::tyre::{Tyre, place};
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
 
@@ -65,7 +65,7 @@ pub fn write(
         hubs: [Vec3::ZERO; 4],
     };
     for (hub, tyre) in &tyres {
-        let place = usize::from(tyre.corner.x < 0.0) * 2 + usize::from(tyre.corner.z > 0.0);
+        let place = place(tyre.corner);
         let [a, b] = ends(tyre.corner);
         sample.lengths[place] = at.transform_point(a).distance(hub.transform_point(b));
         sample.loads[place] = tyre.load;

@@ -37,7 +37,7 @@ pub fn setup(app: &mut App) {
     .add_systems(
         FixedUpdate,
         (
-            (driver::read_script, keyboard::read, tyre::push)
+            (driver::read_script, keyboard::read, tyre::weigh, tyre::push)
                 .chain()
                 .before(PhysicsSet::SyncBackend),
             log::write.after(CoiloverSystems::Readout),

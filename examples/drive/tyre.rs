@@ -9,15 +9,16 @@
 //! anew as the wheel rolls, and lets go where friction ends. Rolling, its force is a stiffness times the slip; standing, it
 //! is a spring, and so a car with its brakes on does not creep.
 
-use super::car::{Chassis, RADIUS, WHEEL};
+use super::car::*;
 use super::driver::Pedals;
 use crate::stage::{self, DT};
 use bevy::prelude::*;
+use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
 
 /// Of the tread against the road, N/m and N s/m.
-const STIFFNESS: f32 = 150e3;
-const DAMPING: f32 = 4e3;
+const TREAD: f32 = 150e3;
+const TREAD_DAMPING: f32 = 4e3;
 /// On which half of the tread is laid down anew, m. With the stiffness: 60 kN for each unit of slip.
 const RELAXATION: f32 = 0.4;
 /// Of rubber on asphalt.
@@ -31,8 +32,13 @@ const POWER: f32 = 220e3;
 const TORQUE: f32 = 700.0;
 /// Of a wheel's brake in front and behind, N m.
 const BRAKES: [f32; 2] = [1_500.0, 1_000.0];
-/// A contact that presses less than this, N, is about to part.
-const TOUCH: f32 = 1.0;
+/// A contact that is wider open than this, m, is none.
+const NEAR: f32 = 2e-3;
+
+/// The number of a corner: front left, front right, rear left, rear right.
+pub fn place(corner: Vec3) -> usize {
+    usize::from(corner.x < 0.0) * 2 + usize::from(corner.z > 0.0)
+}
 
 /// On a wheel.
 #[derive(Component)]
@@ -48,6 +54,9 @@ pub struct Tyre {
     tread: Vec2,
     /// What presses it onto the road, N; 0 in the air.
     pub load: f32,
+    /// Of its coilover, m, and how fast the hub goes up, m/s, a tick ago.
+    length: f32,
+    rises: f32,
 }
 
 impl Tyre {
@@ -59,6 +68,8 @@ impl Tyre {
             angle: 0.0,
             tread: Vec2::ZERO,
             load: 0.0,
+            length: LENGTH,
+            rises: 0.0,
         }
     }
 
@@ -74,8 +85,8 @@ impl Tyre {
             self.tread = (self.tread + slides * step) / (1.0 + laid * step);
             let most = FRICTION * self.load;
             let rate = (self.tread - before) / step;
-            let force = (-STIFFNESS * self.tread - DAMPING * rate).clamp_length_max(most);
-            self.tread = self.tread.clamp_length_max(most / STIFFNESS);
+            let force = (-TREAD * self.tread - TREAD_DAMPING * rate).clamp_length_max(most);
+            self.tread = self.tread.clamp_length_max(most / TREAD);
             let free = self.spin + step / INERTIA * (engine - force.x * RADIUS);
             let held = brake * step / INERTIA;
             self.spin = free - free.clamp(-held, held);
@@ -86,28 +97,63 @@ impl Tyre {
     }
 }
 
-/// Where a wheel touches the road: the load, N, the mean normal, and the point.
-fn contact(context: &RapierContext, wheel: Entity, hub: Vec3) -> (f32, Vec3) {
-    let (mut load, mut sum) = (0.0, Vec3::ZERO);
+/// Where a wheel touches the road: the normal there; `None` in the air.
+fn touches(context: &RapierContext, wheel: Entity) -> Option<Vec3> {
+    let mut sum = Vec3::ZERO;
     for pair in context.contact_pairs_with(wheel) {
+        let own = pair.collider1() == Some(wheel);
         for manifold in pair.manifolds() {
-            // The wheel is a ball, so what touches it is on the line to its centre.
-            let own = pair.collider1() == Some(wheel);
+            // What is deeper counts for more.
+            let nearest = manifold.find_deepest_contact().map_or(NEAR, |p| p.dist());
             let normal = if own {
                 -manifold.normal()
             } else {
                 manifold.normal()
             };
-            let impulse: f32 = manifold.points().map(|p| p.impulse()).sum();
-            load += impulse / DT;
-            sum += impulse * normal;
+            sum += (NEAR - nearest).max(0.0) * normal;
         }
     }
-    let normal = sum.try_normalize().unwrap_or(Vec3::Y);
-    (load, hub - RADIUS * normal)
+    sum.try_normalize()
 }
 
-/// Reads what the last step pressed, and pushes wheels and chassis.
+/// What presses each wheel down, N: coilover, bar, weight, and that the hub goes up and down.
+pub fn weigh(
+    chassis: Query<&Transform, With<Chassis>>,
+    coilovers: Query<(&SpringReadout, &StandsOn)>,
+    mut wheels: Query<(Entity, &Transform, &Velocity, &mut Tyre)>,
+) {
+    let Ok(car) = chassis.single() else {
+        return;
+    };
+    // How high the hubs are on the chassis, in the order of `place`.
+    let mut heights = [0.0; 4];
+    for (_, at, _, tyre) in &wheels {
+        let on_car = car.rotation.inverse() * (at.translation - car.translation);
+        heights[place(tyre.corner)] = on_car.y;
+    }
+    for (wheel, at, velocity, mut tyre) in &mut wheels {
+        let [a, b] = ends(tyre.corner);
+        let length = car.transform_point(a).distance(at.transform_point(b));
+        let rate = (length - tyre.length) / DT;
+        tyre.length = length;
+        let ours = coilovers.iter().find(|(_, on)| on.0 == wheel);
+        let pushes = match ours {
+            Some((readout, _)) => -readout.force(),
+            // As Rapier's was made.
+            None => {
+                let sag = 0.25 * CHASSIS * GRAVITY;
+                sag + STIFFNESS * (LENGTH - length) - 0.5 * (BUMP + REBOUND) * rate
+            }
+        };
+        let own = place(tyre.corner);
+        let bar = BARS[own / 2] * (heights[own] - heights[own ^ 1]) / ARM.powi(2);
+        let rises = (velocity.linear.y - tyre.rises) / DT;
+        tyre.rises = velocity.linear.y;
+        tyre.load = (pushes + bar + WHEEL * (GRAVITY + rises)).max(0.0);
+    }
+}
+
+/// Pushes wheels and chassis.
 pub fn push(
     pedals: Res<Pedals>,
     context: ReadRapierContext,
@@ -124,11 +170,14 @@ pub fn push(
     }
     for (wheel, at, velocity, mut on_wheel, mut tyre) in &mut wheels {
         let hub = at.translation;
-        let (load, point) = contact(&context, wheel, hub);
-        tyre.load = if load > TOUCH { load } else { 0.0 };
+        let touched = touches(&context, wheel);
+        if touched.is_none() {
+            tyre.load = 0.0;
+        }
+        let normal = touched.unwrap_or(Vec3::Y);
+        let point = hub - RADIUS * normal;
         let front = tyre.corner.x > 0.0;
         tyre.steer = if front { pedals.steer } else { 0.0 };
-        let normal = (hub - point) / RADIUS;
         let heading = car.rotation * Quat::from_rotation_y(tyre.steer) * Vec3::X;
         let forward = heading.reject_from(normal).normalize_or_zero();
         let right = forward.cross(normal);

@@ -26,7 +26,6 @@ pub use keys::SpaceIsTaken;
 pub use living::Upright;
 pub use look::{Paint, Shape, floor};
 pub use plot::Plot;
-pub use strip::strip;
 
 use bevy::prelude::*;
 use bevy::time::TimeUpdateStrategy;
