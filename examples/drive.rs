@@ -4,7 +4,7 @@
 //! its brakes, what its wheels press on the washboard, how it lands, and whether it creeps on a slope.
 //!
 //! Opens a window where there is a display; `--screenshot FILE` and `--headless` do without. With `--rapier` it stands on
-//! Rapier's `SpringJoint`s; with `--rolling` its wheels roll on Rapier's friction alone, straight on.
+//! Rapier's `SpringJoint`s.
 
 #[path = "drive/mod.rs"]
 mod rooms;

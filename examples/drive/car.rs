@@ -61,14 +61,11 @@ pub fn corners() -> [Vec3; 4] {
 }
 
 pub fn spawn(mut commands: Commands) {
-    let (rapier, rolling) = (stage::given("--rapier"), stage::given("--rolling"));
+    let rapier = stage::given("--rapier");
     let chassis = commands.spawn(chassis()).id();
     body_work(&mut commands, chassis);
     let wheels = corners().map(|corner| {
         let wheel = commands.spawn(wheel(chassis, corner)).id();
-        if rolling {
-            commands.entity(wheel).insert(Friction::coefficient(1.0));
-        }
         wheel_looks(&mut commands, wheel, corner);
         if rapier {
             rapier_spring(&mut commands, chassis, wheel, corner);

@@ -1,12 +1,13 @@
 //! The course, along x: a washboard, waves, kerbs, the washboard again, a field to turn on, a jump, and a slope.
 //!
-//! What is not level is a row of convex pieces under a function of x. A mesh of triangles will not do: on its inner edges,
-//! Rapier's contacts stop a car and throw it.
+//! What is not level is made of few convex solids: nearly buried cylinders, and prisms whose feet are underground. Rapier
+//! stops a fast body in front of every edge that it comes near, also of an inner edge of a smooth road. A mesh of triangles
+//! or a row of small pieces stops this car, or throws it.
 
 use crate::stage::{Paint, Shape};
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
-use std::f32::consts::{PI, TAU};
+use std::f32::consts::TAU;
 
 /// What the road collides with is the car, and the car with the road.
 pub const ROAD: CollisionGroups = CollisionGroups::new(Group::GROUP_1, Group::GROUP_2);
@@ -14,12 +15,9 @@ pub const ROAD: CollisionGroups = CollisionGroups::new(Group::GROUP_1, Group::GR
 const WIDTH: f32 = 9.0;
 /// Where the road ends, m.
 const END: f32 = 640.0;
-/// Length of a convex piece, and how far it goes down, m.
-const PIECE: f32 = 0.2;
-const DEPTH: f32 = -1.0;
-/// Of the washboard, m: from crest to crest, half the height from trough to crest, and the whole.
-pub const WASH: f32 = 2.0;
-pub const WASH_HEIGHT: f32 = 0.012;
+/// Of the washboard, m: from crest to crest, its height and the whole.
+const WASH: f32 = 2.0;
+const WASH_HEIGHT: f32 = 0.02;
 const WASH_LENGTH: f32 = 40.0;
 /// Where things begin, m.
 pub const SLOW_WASH: f32 = 30.0;
@@ -34,35 +32,49 @@ const WAVE_HEIGHT: f32 = 0.16;
 const WAVE_COUNT: f32 = 5.0;
 /// Of the kerbs above the road, m.
 const KERB: f32 = 0.09;
-/// Of the jump, m.
-const JUMP_LENGTH: f32 = 14.0;
-pub const JUMP_HEIGHT: f32 = 1.4;
-/// Of the slope: its length, m, and how steep it is.
-pub const SLOPE_LENGTH: f32 = 24.0;
+/// Rises of the jump, and where each ends, m.
+const RISES: [f32; 2] = [0.08, 0.16];
+const ENDS: [f32; 2] = [6.0, 13.5];
+/// Of the slope: how steep it is at its foot and above, how high that foot and the top are, m, and the whole, m.
 pub const STEEP: f32 = 0.2;
-/// Of the top and of what leads to it, m.
-const EASE: f32 = 6.0;
+const FOOT: [f32; 2] = [0.1, 0.3];
+const TOP: f32 = 4.5;
+const SLOPE_LENGTH: f32 = 54.0;
+/// How far below the road everything goes down, m.
+const DEPTH: f32 = -1.0;
 
-fn washboard(x: f32) -> f32 {
-    WASH_HEIGHT * (1.0 - (TAU * x / WASH).cos())
+/// Height of a row of arcs, each from one foot to the next.
+fn arcs(x: f32, length: f32, height: f32) -> f32 {
+    let radius = radius(length, height);
+    let from_crest = x.rem_euclid(length) - 0.5 * length;
+    height - radius + (radius.powi(2) - from_crest.powi(2)).sqrt()
+}
+
+fn radius(length: f32, height: f32) -> f32 {
+    (0.25 * length.powi(2) + height.powi(2)) / (2.0 * height)
+}
+
+pub fn washboard(x: f32) -> f32 {
+    arcs(x, WASH, WASH_HEIGHT)
 }
 
 fn wave(x: f32) -> f32 {
-    0.5 * WAVE_HEIGHT * (1.0 - (TAU * x / WAVE).cos())
+    arcs(x, WAVE, WAVE_HEIGHT)
 }
 
 fn jump(x: f32) -> f32 {
-    JUMP_HEIGHT * (x / JUMP_LENGTH).powi(2)
+    if x < ENDS[0] {
+        RISES[0] * x
+    } else {
+        RISES[0] * ENDS[0] + RISES[1] * (x - ENDS[0])
+    }
 }
 
-/// Up and down again, with round ends.
+/// Up and down again.
 fn slope(x: f32) -> f32 {
-    let bend = |x: f32| {
-        let s = (x / EASE).clamp(0.0, 1.0);
-        STEEP * EASE * (0.5 * s - (PI * s).sin() / (2.0 * PI)) + STEEP * (x - EASE).max(0.0)
-    };
-    let side = |x| bend(x) - bend(x - SLOPE_LENGTH);
-    side(x) - side(x - SLOPE_LENGTH - EASE)
+    let from_end = x.min(SLOPE_LENGTH - x);
+    let above = FOOT[1] + STEEP * (from_end - FOOT[1] / FOOT[0]);
+    above.min(TOP).max((FOOT[0] * from_end).min(FOOT[1]))
 }
 
 pub fn spawn(mut commands: Commands) {
@@ -96,68 +108,87 @@ pub fn spawn(mut commands: Commands) {
     let whole = (0.0, WIDTH);
     let lane = 0.5 * WIDTH;
     for from in [SLOW_WASH, FAST_WASH] {
-        strip_of(
-            &mut commands,
-            from,
-            whole,
-            WASH_LENGTH,
-            washboard,
-            Paint::Sand,
-        );
+        strip(&mut commands, from, whole, WASH_LENGTH, washboard);
+        row(&mut commands, from, whole, WASH_LENGTH, (WASH, WASH_HEIGHT));
     }
     let length = WAVE_COUNT * WAVE;
     for (from, z) in [(WAVES, -0.5 * lane), (WAVES + 0.5 * WAVE, 0.5 * lane)] {
-        strip_of(&mut commands, from, (z, lane), length, wave, Paint::Sand);
+        strip(&mut commands, from, (z, lane), length, wave);
+        row(&mut commands, from, (z, lane), length, (WAVE, WAVE_HEIGHT));
     }
-    strip_of(
-        &mut commands,
-        JUMP,
-        (0.0, 6.0),
-        JUMP_LENGTH,
-        jump,
-        Paint::Sand,
-    );
-    let length = 2.0 * (SLOPE_LENGTH + EASE);
-    strip_of(&mut commands, SLOPE, whole, length, slope, Paint::Sand);
+    strip(&mut commands, JUMP, (0.0, 6.0), ENDS[1], jump);
+    for (rise, end) in RISES.into_iter().zip(ENDS) {
+        let foot = end - (jump(end) - DEPTH) / rise;
+        let corners = [(foot, DEPTH), (end, jump(end)), (end, DEPTH)];
+        solid(&mut commands, JUMP, 6.0, &corners);
+    }
+    strip(&mut commands, SLOPE, whole, SLOPE_LENGTH, slope);
+    // Where its foot ends, and where the slope above reaches the top.
+    let foot = FOOT[1] / FOOT[0];
+    let top = foot + (TOP - FOOT[1]) / STEEP;
+    for (rise, at, height) in [(FOOT[0], foot, FOOT[1]), (STEEP, top, TOP)] {
+        let begin = at - (height - DEPTH) / rise;
+        let corners = [
+            (begin, DEPTH),
+            (at, height),
+            (SLOPE_LENGTH - at, height),
+            (SLOPE_LENGTH - begin, DEPTH),
+        ];
+        solid(&mut commands, SLOPE, WIDTH, &corners);
+    }
     kerbs(&mut commands);
 }
 
-/// Something not level, along the road.
-fn strip_of(
+/// What something not level looks like.
+fn strip(
     commands: &mut Commands,
     from: f32,
     (z, width): (f32, f32),
     length: f32,
     height: fn(f32) -> f32,
-    paint: Paint,
 ) {
-    let pieces = (length / PIECE).round().max(1.0);
-    let step = length / pieces;
+    commands.spawn((
+        Transform::from_xyz(from, 0.0, z),
+        Shape::Strip(height, length, width, Paint::Sand),
+    ));
+}
+
+/// Arcs, as cylinders that are nearly buried.
+fn row(
+    commands: &mut Commands,
+    from: f32,
+    (z, width): (f32, f32),
+    whole: f32,
+    (length, height): (f32, f32),
+) {
+    let radius = radius(length, height);
+    for i in 0..(whole / length).round() as u32 {
+        let x = from + (i as f32 + 0.5) * length;
+        commands.spawn((
+            Collider::cylinder(0.5 * width, radius),
+            Friction::coefficient(0.0),
+            ROAD,
+            Transform::from_xyz(x, height - radius, z)
+                .with_rotation(Quat::from_rotation_x(TAU / 4.0)),
+        ));
+    }
+}
+
+/// A convex outline over x and y, drawn across the road. Its feet are deep in the ground, so that a wheel meets planes and
+/// never the edge where they begin.
+fn solid(commands: &mut Commands, from: f32, width: f32, outline: &[(f32, f32)]) {
     let half = 0.5 * width;
-    let piece = |i: u32| {
-        let [x, next] = [i, i + 1].map(|i| i as f32 * step);
-        let corners = [
-            (x, height(x)),
-            (next, height(next)),
-            (x, DEPTH),
-            (next, DEPTH),
-        ]
-        .map(|(x, y)| [-half, half].map(|z| Vec3::new(x, y, z)));
-        let hull = Collider::convex_hull(corners.as_flattened())?;
-        Some((Vec3::ZERO, Quat::IDENTITY, hull))
-    };
-    let hulls: Option<Vec<_>> = (0..pieces as u32).map(piece).collect();
-    let Some(hulls) = hulls else {
+    let sides = |(x, y): &(f32, f32)| [-half, half].map(|z| Vec3::new(*x, *y, z));
+    let points: Vec<Vec3> = outline.iter().flat_map(sides).collect();
+    let Some(collider) = Collider::convex_hull(&points) else {
         error!("the course at {from} m has no surface");
         return;
     };
-    let collider = Collider::compound(hulls);
     commands.spawn((
         collider,
         Friction::coefficient(0.0),
         ROAD,
-        Transform::from_xyz(from, 0.0, z),
-        Shape::Strip(height, length, width, paint),
+        Transform::from_xyz(from, 0.0, 0.0),
     ));
 }
 

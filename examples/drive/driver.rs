@@ -36,7 +36,7 @@ pub enum Leg {
 }
 
 /// m/s
-pub const SLOW: f32 = 8.0;
+pub const SLOW: f32 = 5.0;
 pub const FAST: f32 = 30.0;
 pub const CORNER_SPEED: f32 = 10.0;
 const JUMP_SPEED: f32 = 16.0;
@@ -47,7 +47,7 @@ const BRAKE: f32 = 0.42;
 /// Speed at which that ends, m/s.
 const BRAKED: f32 = 10.0;
 /// On the slope before it stops, m.
-const CLIMB: f32 = 15.0;
+const CLIMB: f32 = 12.0;
 /// Share of the throttle for each m/s that is missing.
 const PEDAL: f32 = 0.5;
 

@@ -5,7 +5,7 @@ use super::course;
 use super::driver::{CIRCLE, CORNER_SPEED, FAST, Leg, SLOW};
 use super::log::{Log, Sample};
 use super::tyre::load_at_rest;
-use crate::stage::Finding;
+use crate::stage::{DT, Finding};
 use bevy::prelude::*;
 use std::f32::consts::TAU;
 
@@ -13,6 +13,13 @@ use std::f32::consts::TAU;
 fn mean(values: impl Iterator<Item = f32>) -> f32 {
     let (sum, count) = values.fold((0.0, 0.0), |(sum, count), v| (sum + v, count + 1.0));
     sum / count
+}
+
+/// Standard deviation.
+fn spread(values: impl Iterator<Item = f32>) -> f32 {
+    let values: Vec<f32> = values.collect();
+    let middle = mean(values.iter().copied());
+    mean(values.iter().map(|v| (v - middle).powi(2))).sqrt()
 }
 
 fn most(values: impl Iterator<Item = f32>) -> f32 {
@@ -26,27 +33,6 @@ pub fn check(world: &mut World) -> Vec<Finding> {
     let log = world.resource::<Log>();
     if log.by_hand {
         return vec![];
-    }
-    if std::env::args().any(|word| word == "--log") {
-        for (i, s) in log.samples.iter().enumerate() {
-            if i % 10 == 0 {
-                println!(
-                    "{:6.2} {:?} {:5.2} x {:7.2} y {:5.3} z {:6.2} v {:5.2} pitch {:6.2} roll {:6.2} loads {:.0?} len {:.3?} hubs {:.3?}",
-                    i as f32 / 60.0,
-                    s.leg,
-                    s.time,
-                    s.at.x,
-                    s.at.y,
-                    s.at.z,
-                    s.velocity.length(),
-                    s.pitch.to_degrees(),
-                    s.roll.to_degrees(),
-                    s.loads,
-                    s.lengths,
-                    s.hubs.map(|h| h.y)
-                );
-            }
-        }
     }
     let mut out = vec![];
     out.extend(standing(log));
@@ -64,23 +50,41 @@ fn standing(log: &Log) -> Option<Finding> {
     Some(Finding::close("ride height", last.at.y, HEIGHT, "m", 2e-3))
 }
 
-/// What the load of a wheel varies by: the chassis is slow, so spring, damper and the wheel's mass follow the road.
+/// How the load of a wheel varies. The chassis is slow and stays where it is, so the hub goes up and down as the road does,
+/// and spring, damper and the wheel's mass say with what force.
 fn washboard(log: &Log) -> Vec<Finding> {
-    let on = |s: &&Sample| (course::SLOW_WASH + 12.0..course::SLOW_WASH + 36.0).contains(&s.at.x);
+    let on = |s: &&Sample| (course::SLOW_WASH + 14.0..course::SLOW_WASH + 37.0).contains(&s.at.x);
     let samples: Vec<_> = log.of(Leg::SlowWash).filter(on).collect();
-    let rest = load_at_rest(CHASSIS, GRAVITY);
-    let loads = || samples.iter().flat_map(|s| s.loads);
-    let middle = mean(loads());
-    let spread = mean(loads().map(|l| (l - middle).powi(2))).sqrt();
+    let loads = (0..4).flat_map(|i| samples.iter().map(move |s| s.loads[i]));
+    let theory = (0..4).flat_map(|i| {
+        let height = |s: &Sample| course::washboard(s.hubs[i].x - course::SLOW_WASH);
+        let load = move |w: &[&Sample]| {
+            let [a, b, c] = [height(w[0]), height(w[1]), height(w[2])];
+            let rate = (c - b) / DT;
+            let damping = if rate > 0.0 { BUMP } else { REBOUND };
+            let rises = (a - 2.0 * b + c) / DT.powi(2);
+            STIFFNESS * c + damping * rate + WHEEL * rises
+        };
+        samples.windows(3).map(load).collect::<Vec<_>>()
+    });
     let speed = mean(samples.iter().map(|s| s.velocity.x));
-    let rate = TAU * speed / course::WASH;
-    let damping = 0.5 * (BUMP + REBOUND);
-    let stiff = STIFFNESS - WHEEL * rate.powi(2);
-    let theory = course::WASH_HEIGHT * stiff.hypot(damping * rate) / 2.0_f32.sqrt();
+    let rest = load_at_rest(CHASSIS, GRAVITY);
     vec![
         Finding::close("speed on the washboard", speed, SLOW, "m/s", 0.1),
-        Finding::close("  mean load of a wheel", middle, rest, "N", 0.05),
-        Finding::close("  variation of the load", spread, theory, "N", 0.15),
+        Finding::close(
+            "  mean load of a wheel",
+            mean(loads.clone()),
+            rest,
+            "N",
+            0.05,
+        ),
+        Finding::close(
+            "  variation of the load",
+            spread(loads),
+            spread(theory),
+            "N",
+            0.25,
+        ),
     ]
 }
 
@@ -178,11 +182,12 @@ fn jump(log: &Log) -> Vec<Finding> {
         .rfind(|s| s.at.x < course::SLOPE - 6.0)
         .map_or(f32::NAN, |s| (s.at.y - HEIGHT).abs());
     vec![
-        Finding::between("height of the jump", height, 1.9, 2.6, "m"),
+        Finding::between("height of the jump", height, 1.8, 2.6, "m"),
         Finding::between("  shortest coilover", shortest, 0.2, 0.4, "m"),
         Finding::between("  longest coilover", longest, 0.5, 0.68, "m"),
         Finding::between("  greatest load over that at rest", load, 2.0, 25.0, ""),
-        Finding::between("  most lean", lean.to_degrees(), 0.0, 20.0, "degrees"),
+        // Its front leaves the ramp first, and so it dips its nose.
+        Finding::between("  most lean", lean.to_degrees(), 0.0, 30.0, "degrees"),
         Finding::small("  off its ride height afterwards", settled, 1e-2, "m"),
     ]
 }

@@ -89,7 +89,7 @@ impl Arguments {
                 // Read by the scenes that have something to plot.
                 "--plot" => drop(path()?),
                 // Read by the scenes that can do something otherwise.
-                "--rapier" | "--rolling" => {}
+                "--rapier" => {}
                 "--film" => out.film = Some(Film::Last(path()?)),
                 _ => return Err(format!("unknown argument {word}")),
             }
