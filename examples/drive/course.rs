@@ -78,7 +78,7 @@ fn slope(x: f32) -> f32 {
 }
 
 pub fn spawn(mut commands: Commands) {
-    let size = Vec3::new(900.0, 1.0, 240.0);
+    let size = Vec3::new(1_600.0, 1.0, 1_200.0);
     commands.spawn((
         Collider::cuboid(0.5 * size.x, 0.5 * size.y, 0.5 * size.z),
         Friction::coefficient(0.0),
