@@ -9,6 +9,10 @@ pub const SENTENCE: &str = "drag a body to pull it, drag beside it to look aroun
 /// Least and greatest speed of the clock.
 const SPEEDS: (f32, f32) = (1.0 / 32.0, 4.0);
 
+/// Inserted by a scene in which the space bar does something else; P pauses there.
+#[derive(Resource)]
+pub struct SpaceIsTaken;
+
 pub fn add(app: &mut App, stage: &Stage) {
     println!("{}: {SENTENCE}", stage.title);
     let title = stage.title;
@@ -24,6 +28,7 @@ pub fn add(app: &mut App, stage: &Stage) {
 
 fn press(
     keys: Res<ButtonInput<KeyCode>>,
+    taken: Option<Res<SpaceIsTaken>>,
     mut again: ResMut<Again>,
     mut clock: ResMut<Time<Virtual>>,
     mut fixed: ResMut<Time<Fixed>>,
@@ -33,7 +38,12 @@ fn press(
         // Seen at once, even while the clock stands.
         step(&clock, &mut fixed);
     }
-    if keys.just_pressed(KeyCode::Space) {
+    let pause = if taken.is_some() {
+        KeyCode::KeyP
+    } else {
+        KeyCode::Space
+    };
+    if keys.just_pressed(pause) {
         clock.toggle();
     }
     if keys.just_pressed(KeyCode::Period) {

@@ -1,6 +1,7 @@
 //! Light, ground, camera, and simple solids for bodies.
 
 use super::again::Stays;
+use super::strip::strip_mesh;
 use bevy::camera::RenderTarget;
 use bevy::core_pipeline::tonemapping::Tonemapping;
 use bevy::light::CascadeShadowConfigBuilder;
@@ -16,6 +17,8 @@ pub enum Shape {
     Cylinder(f32, f32, Paint),
     /// Radius, and height without the round ends, about Y.
     Capsule(f32, f32, Paint),
+    /// Height over x, length along x, and width, as [`super::strip`] has it.
+    Strip(fn(f32) -> f32, f32, f32, Paint),
 }
 
 impl Shape {
@@ -26,6 +29,8 @@ impl Shape {
             Shape::Ball(radius, _) => Vec3::splat(radius),
             Shape::Cylinder(radius, height, _) => Vec3::new(radius, 0.5 * height, radius),
             Shape::Capsule(radius, height, _) => Vec3::new(radius, 0.5 * height + radius, radius),
+            // Nothing that a hand could take.
+            Shape::Strip(..) => Vec3::ZERO,
         }
     }
 }
@@ -36,6 +41,10 @@ pub enum Paint {
     Ivory,
     Blue,
     Floor,
+    Grass,
+    Asphalt,
+    Sand,
+    Red,
 }
 
 impl Paint {
@@ -45,6 +54,10 @@ impl Paint {
             Paint::Ivory => (Color::srgb(0.86, 0.83, 0.76), 0.6, 0.0),
             Paint::Blue => (Color::srgb(0.16, 0.30, 0.44), 0.5, 0.1),
             Paint::Floor => (Color::srgb(0.36, 0.38, 0.40), 0.95, 0.0),
+            Paint::Grass => (Color::srgb(0.33, 0.41, 0.29), 1.0, 0.0),
+            Paint::Asphalt => (Color::srgb(0.25, 0.26, 0.28), 0.95, 0.0),
+            Paint::Sand => (Color::srgb(0.55, 0.51, 0.44), 0.95, 0.0),
+            Paint::Red => (Color::srgb(0.62, 0.15, 0.12), 0.6, 0.0),
         };
         StandardMaterial {
             base_color: color,
@@ -130,6 +143,9 @@ fn show_shapes(
                 paint,
             ),
             Shape::Capsule(radius, height, paint) => (Capsule3d::new(radius, height).into(), paint),
+            Shape::Strip(height, length, width, paint) => {
+                (strip_mesh(height, length, width), paint)
+            }
         };
         commands.entity(entity).insert((
             Mesh3d(meshes.add(mesh)),

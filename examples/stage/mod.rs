@@ -18,9 +18,11 @@ mod offscreen;
 mod orbit;
 mod plot;
 mod progress;
+mod strip;
 
 pub use again::{Again, Begin, fresh, tick};
 pub use check::{Finding, Track, tracks};
+pub use keys::SpaceIsTaken;
 pub use living::Upright;
 pub use look::{Paint, Shape, floor};
 pub use plot::Plot;
@@ -86,6 +88,8 @@ impl Arguments {
                 "--frames" => out.film = Some(Film::Frames(path()?)),
                 // Read by the scenes that have something to plot.
                 "--plot" => drop(path()?),
+                // Read by the scenes that can do something otherwise.
+                "--rapier" => {}
                 "--film" => out.film = Some(Film::Last(path()?)),
                 _ => return Err(format!("unknown argument {word}")),
             }
@@ -99,6 +103,11 @@ pub fn plot_path() -> Option<PathBuf> {
     let words: Vec<_> = std::env::args().collect();
     let at = words.iter().position(|word| word == "--plot")?;
     words.get(at + 1).map(PathBuf::from)
+}
+
+/// Whether the command line has this word.
+pub fn given(word: &str) -> bool {
+    std::env::args().any(|other| other == word)
 }
 
 /// Runs an example as the machine and the command line allow.

@@ -7,7 +7,7 @@
 use image::{RgbImage, imageops};
 use pictures::{command, root};
 
-const SCENES: [&str; 15] = [
+const SCENES: [&str; 16] = [
     "linear_spring",
     "nonlinear_spring",
     "spring_3d",
@@ -20,6 +20,7 @@ const SCENES: [&str; 15] = [
     "free_fall",
     "natural_frequency",
     "suspension",
+    "drive",
     "tensegrity",
     "newtons_chain",
     "showcase",

@@ -1,0 +1,47 @@
+//! The rooms of the example: the course, the car with its tyres, who drives it, and what is measured.
+
+mod camera;
+mod car;
+mod course;
+mod driver;
+mod findings;
+mod keyboard;
+mod log;
+mod tyre;
+
+pub use camera::EYE;
+pub use findings::check;
+
+use crate::stage::{self, Begin};
+use bevy::prelude::*;
+use bevy_coilover::prelude::*;
+use bevy_rapier3d::prelude::*;
+
+/// Seconds that the script takes.
+pub const SECONDS: f32 = 78.0;
+/// Second of the picture: in the air.
+pub const PICTURE: f32 = 56.2;
+
+pub fn setup(app: &mut App) {
+    app.insert_resource(stage::SpaceIsTaken);
+    app.add_systems(
+        Begin,
+        (
+            stage::fresh::<driver::Pedals>,
+            stage::fresh::<driver::Script>,
+            stage::fresh::<log::Log>,
+            course::spawn,
+            car::spawn,
+        ),
+    )
+    .add_systems(
+        FixedUpdate,
+        (
+            (driver::read_script, keyboard::read, tyre::weigh, tyre::push)
+                .chain()
+                .before(PhysicsSet::SyncBackend),
+            log::write.after(CoiloverSystems::Readout),
+        ),
+    )
+    .add_systems(Update, (car::turn_wheels, camera::follow));
+}
