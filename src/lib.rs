@@ -19,6 +19,8 @@ mod recommend;
 mod settings;
 #[cfg(feature = "visual")]
 mod visual;
+#[cfg(feature = "workbench")]
+mod workbench;
 
 pub use diagnostics::CoiloverDiagnosticsPlugin;
 pub use element::{
@@ -40,6 +42,8 @@ pub use visual::{
     HelixError, HelixMeshBuilder, RoundWire, RoundWireMaterial, ShowSpringGizmos, SpringGizmos,
     SpringSkin, Telescope, TorsionCoil, WoundCoil, coilover,
 };
+#[cfg(feature = "workbench")]
+pub use workbench::{CoiloverWorkbench, CoiloverWorkbenchPlugin};
 
 use bevy::app::{PluginGroup, PluginGroupBuilder};
 
@@ -189,4 +193,6 @@ pub mod prelude {
         RoundWire, RoundWireMaterial, ShowSpringGizmos, SpringGizmos, SpringSkin, Telescope,
         TorsionCoil, WoundCoil, coilover,
     };
+    #[cfg(feature = "workbench")]
+    pub use crate::{CoiloverWorkbench, CoiloverWorkbenchPlugin};
 }
