@@ -86,7 +86,7 @@ pub(super) fn show(
             let on_screen = end.at.and_then(|at| camera.world_to_viewport(eye, at).ok());
             if let Some(at) = on_screen {
                 let text = format!("{letter}: {}", end.name);
-                let at = pos2(at.x + 8.0, at.y);
+                let at = pos2(at.x + 14.0, at.y);
                 let font = FontId::proportional(13.0);
                 // A shadow, to be read before any background.
                 let shadow = at + bevy_egui::egui::vec2(1.0, 1.0);

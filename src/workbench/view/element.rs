@@ -16,11 +16,14 @@ pub(super) fn show(ui: &mut Ui, bench: &mut Bench) {
         ui.label("Choose an element in the list, or click it in the scene.");
         return;
     };
-    let mut draft = subject.now.clone();
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         ui.add_space(2.0);
         ui.label(RichText::new(&subject.title).heading());
-        ends(ui, &draft, &subject.facts);
+        ends(ui, &subject.now, &subject.facts);
+        exports(ui, bench, &subject.title, &subject.now);
+        // Possibly as it was reset just now.
+        let reset = bench.subject.as_ref().map(|subject| subject.now.clone());
+        let mut draft = reset.unwrap_or(subject.now.clone());
         ui.separator();
         for sentence in verdict(&subject.now, &subject.facts) {
             ui.label(RichText::new(sentence.text).color(color(ui, sentence.tone)));
@@ -30,20 +33,18 @@ pub(super) fn show(ui: &mut Ui, bench: &mut Bench) {
             numbers(ui, &mut draft, &subject.facts);
         });
         // Each change has its own name, so that one is not undone with another.
-        changed(bench, &mut draft, "a number");
-        ui.separator();
-        companions::show(ui, &mut draft, subject.facts.custom);
-        changed(bench, &mut draft, "a companion");
+        changed(bench, &draft, "a number");
         ui.separator();
         if let Some(sample) = bench.sample() {
             readout(ui, &sample.readout, draft.part.is_torsion());
         }
         ui.separator();
-        exports(ui, bench, &subject.title, &draft);
+        companions::show(ui, &mut draft, subject.facts.custom);
+        changed(bench, &draft, "a companion");
     });
 }
 
-fn changed(bench: &mut Bench, draft: &mut Snapshot, what: &'static str) {
+fn changed(bench: &mut Bench, draft: &Snapshot, what: &'static str) {
     bench.edit(what, draft.clone());
 }
 
@@ -234,10 +235,9 @@ fn exports(ui: &mut Ui, bench: &mut Bench, title: &str, draft: &Snapshot) {
         }
     });
     ui.horizontal(|ui| {
-        ui.label("Preset");
         let name = TextEdit::singleline(&mut bench.preset_name)
-            .hint_text("name")
-            .desired_width(90.0);
+            .hint_text("preset name")
+            .desired_width(120.0);
         ui.add(name);
         let named = !bench.preset_name.trim().is_empty();
         if ui.add_enabled(named, Button::new("Save")).clicked() {

@@ -6,7 +6,7 @@ use crate::workbench::model::rows::Order;
 use bevy_egui::egui::{Align, Layout, RichText, ScrollArea, Sense, TextEdit, Ui, UiBuilder};
 
 /// Width of a column of numbers.
-const NUMBER: f32 = 52.0;
+const NUMBER: f32 = 58.0;
 
 pub(super) fn show(ui: &mut Ui, bench: &mut Bench) {
     ui.add_space(2.0);

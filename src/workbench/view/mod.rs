@@ -24,7 +24,7 @@ pub(crate) fn show(ui: &mut Ui, bench: &mut Bench) {
         .resizable(true)
         .show(ui, |ui| plots::show(ui, bench));
     Panel::left("coilover_workbench_list")
-        .default_size(270.0)
+        .default_size(285.0)
         .resizable(true)
         .show(ui, |ui| list::show(ui, bench));
     Panel::right("coilover_workbench_element")

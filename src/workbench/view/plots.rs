@@ -2,14 +2,19 @@
 
 use super::field::brief;
 use crate::workbench::bench::{Ask, Bench, Plots};
-use crate::workbench::model::record::{Quantity, SECONDS, Sample};
-use bevy_egui::egui::{Color32, Slider, Ui, Vec2, Vec2b};
-use egui_plot::{Corner, HoverPosition, Legend, Line, Plot, PlotPoint, PlotPoints, Points, VLine};
+use crate::workbench::model::record::{Quantity, SECONDS};
+use bevy_egui::egui::{Color32, RichText, Slider, Ui, Vec2, Vec2b};
+use egui_plot::{HoverPosition, Line, Plot, PlotPoints, Points, VLine};
 
 const SPRING: Color32 = Color32::from_rgb(90, 170, 255);
 const DAMPER: Color32 = Color32::from_rgb(255, 150, 60);
 const LAW: Color32 = Color32::from_gray(150);
 const NOW: Color32 = Color32::from_rgb(240, 230, 90);
+
+const PLAIN: Color32 = Color32::from_gray(190);
+
+/// Most points that are drawn of what was measured.
+const MEASURED: usize = 600;
 
 /// Points of a law's curve.
 const POINTS: u32 = 200;
@@ -61,16 +66,36 @@ fn controls(ui: &mut Ui, bench: &mut Bench) {
     }
 }
 
-/// A place for one of several plots beside each other.
-fn plot<'a>(ui: &Ui, name: &str, count: usize) -> Plot<'a> {
+/// Several plots beside each other, each below its title: words in the colours of their curves.
+fn row(
+    ui: &mut Ui,
+    titles: &[Vec<(&str, Color32)>],
+    mut plot: impl FnMut(&mut Ui, usize, Plot<'static>),
+) {
     let spacing = ui.spacing().item_spacing.x;
-    let width = (ui.available_width() - spacing * (count - 1) as f32) / count as f32;
-    Plot::new(name.to_owned())
-        .width(width.max(60.0))
-        .height(ui.available_height().max(60.0))
-        .allow_scroll(false)
-        .set_margin_fraction(Vec2::new(0.0, 0.08))
-        .y_axis_min_width(38.0)
+    let gaps = spacing * (titles.len() - 1) as f32;
+    let width = ((ui.available_width() - gaps) / titles.len() as f32).max(60.0);
+    let size = Vec2::new(width, ui.available_height());
+    ui.horizontal_top(|ui| {
+        for (i, title) in titles.iter().enumerate() {
+            ui.allocate_ui(size, |ui| {
+                ui.vertical(|ui| {
+                    ui.horizontal(|ui| {
+                        for (text, color) in title {
+                            ui.label(RichText::new(*text).color(*color));
+                        }
+                    });
+                    let place = Plot::new(("coilover_plot", i, titles.len()))
+                        .width(width)
+                        .height(ui.available_height().max(60.0))
+                        .allow_scroll(false)
+                        .set_margin_fraction(Vec2::new(0.0, 0.08))
+                        .y_axis_min_width(38.0);
+                    plot(ui, i, place);
+                });
+            });
+        }
+    });
 }
 
 fn over_time(ui: &mut Ui, bench: &Bench) {
@@ -78,75 +103,56 @@ fn over_time(ui: &mut Ui, bench: &Bench) {
         .subject
         .as_ref()
         .is_some_and(|subject| subject.now.part.is_torsion());
-    let units = if torsion {
+    let names = if torsion {
         ["angle, rad", "rate, rad/s", "moment, N m", "energy, J"]
     } else {
         ["length, m", "rate, m/s", "force, N", "energy, J"]
     };
-    let groups: [(&str, &[(Quantity, Color32)]); 4] = [
-        (units[0], &[(Quantity::Length, SPRING)]),
-        (units[1], &[(Quantity::Rate, DAMPER)]),
-        (
-            units[2],
-            &[
-                (Quantity::SpringForce, SPRING),
-                (Quantity::DamperForce, DAMPER),
-            ],
-        ),
-        (
-            units[3],
-            &[(Quantity::Stored, SPRING), (Quantity::Dissipated, DAMPER)],
-        ),
+    let groups: [&[(Quantity, Color32)]; 4] = [
+        &[(Quantity::Length, SPRING)],
+        &[(Quantity::Rate, DAMPER)],
+        &[
+            (Quantity::SpringForce, SPRING),
+            (Quantity::DamperForce, DAMPER),
+        ],
+        &[(Quantity::Stored, SPRING), (Quantity::Dissipated, DAMPER)],
     ];
+    let titles = [0, 1, 2, 3].map(|i: usize| match groups[i] {
+        [(_, color)] => vec![(names[i], *color)],
+        several => {
+            let each = several.iter().map(|(q, color)| (q.name(), *color));
+            std::iter::once((names[i], PLAIN)).chain(each).collect()
+        }
+    });
     let Some([first, last]) = bench.record.span() else {
         return;
     };
-    let widths = plot_width(ui, groups.len());
-    ui.horizontal(|ui| {
-        for (name, quantities) in groups {
-            // Times are counted from the present, so that their labels do not run.
-            let title = name.to_owned();
-            let mut plot = plot(ui, name, 1)
-                .width(widths)
-                .link_axis("coilover_time", Vec2b::new(true, false))
-                .include_x(first - last)
-                .include_x(0.0)
-                .label_formatter(move |at| {
-                    let at = match at {
-                        HoverPosition::NearDataPoint { position, .. }
-                        | HoverPosition::Elsewhere { position } => position,
-                    };
-                    Some(format!("{} s\n{}: {}", brief(at.x), title, brief(at.y)))
-                });
-            plot = plot.legend(legend());
-            plot.show(ui, |ui| {
-                for (quantity, color) in quantities {
-                    let mut points = bench.record.curve(*quantity, 400);
-                    points.iter_mut().for_each(|point| point[0] -= last);
-                    let label = if quantities.len() == 1 {
-                        name
-                    } else {
-                        quantity.name()
-                    };
-                    ui.line(Line::new(label, PlotPoints::from(points)).color(*color));
-                }
-                if let Some(time) = bench.scrub {
-                    ui.vline(VLine::new("", time - last).color(NOW));
-                }
+    row(ui, &titles, |ui, i, plot| {
+        // Times are counted from the present, so that their labels do not run.
+        let title = names[i].to_owned();
+        let plot = plot
+            .link_axis("coilover_time", Vec2b::new(true, false))
+            .include_x(first - last)
+            .include_x(0.0)
+            .label_formatter(move |at| {
+                let at = match at {
+                    HoverPosition::NearDataPoint { position, .. }
+                    | HoverPosition::Elsewhere { position } => position,
+                };
+                Some(format!("{} s\n{}: {}", brief(at.x), title, brief(at.y)))
             });
-        }
+        plot.show(ui, |ui| {
+            for (quantity, color) in groups[i] {
+                let mut points = bench.record.curve(*quantity, 400);
+                points.iter_mut().for_each(|point| point[0] -= last);
+                let line = Line::new(quantity.name(), PlotPoints::from(points));
+                ui.line(line.color(*color));
+            }
+            if let Some(time) = bench.scrub {
+                ui.vline(VLine::new("", time - last).color(NOW));
+            }
+        });
     });
-}
-
-fn legend() -> Legend {
-    Legend::default()
-        .position(Corner::LeftTop)
-        .background_alpha(0.5)
-}
-
-fn plot_width(ui: &Ui, count: usize) -> f32 {
-    let spacing = ui.spacing().item_spacing.x;
-    (ui.available_width() - spacing * (count - 1) as f32) / count as f32
 }
 
 /// Where points lie, with some room about them.
@@ -171,14 +177,10 @@ fn laws(ui: &mut Ui, bench: &Bench) {
     let Some(subject) = &bench.subject else {
         return;
     };
-    let torsion = subject.now.part.is_torsion();
     let curve = subject.facts.curve.as_ref();
     let now = bench.sample();
-    let length = |sample: &Sample| Quantity::Length.of(sample);
-    let rate = |sample: &Sample| Quantity::Rate.of(sample);
-    let at = now.as_ref().map_or(0.0, length);
-    let width = plot_width(ui, 2);
-    let names = if torsion {
+    let at = now.as_ref().map_or(0.0, |now| Quantity::Length.of(now));
+    let names = if subject.now.part.is_torsion() {
         [
             "moment of the spring, N m, over the angle, rad",
             "moment of the damper, N m, over its rate, rad/s",
@@ -189,45 +191,31 @@ fn laws(ui: &mut Ui, bench: &Bench) {
             "force of the damper, N, over the rate, m/s",
         ]
     };
-    ui.horizontal(|ui| {
-        let force = |sample: &Sample| Quantity::SpringForce.of(sample);
-        let measured = |x: &dyn Fn(&Sample) -> f64, y: &dyn Fn(&Sample) -> f64| -> Vec<PlotPoint> {
-            let each = bench.record.iter().count().div_ceil(600).max(1);
+    let axes = [
+        (Quantity::Length, Quantity::SpringForce, SPRING),
+        (Quantity::Rate, Quantity::DamperForce, DAMPER),
+    ];
+    let law = "law";
+    let titles = [0, 1].map(|i: usize| vec![(names[i], axes[i].2), (law, LAW)]);
+    row(ui, &titles, |ui, i, plot| {
+        let (x, y, color) = axes[i];
+        plot.show(ui, |ui| {
+            if let (Some(curve), Some(range)) = (curve, range(bench.record.iter().map(|s| x.of(s))))
+            {
+                let line = law_curve(range, |value| match x {
+                    Quantity::Rate => curve.damper(at, value),
+                    _ => curve.spring(value),
+                });
+                ui.line(Line::new(law, line).color(LAW).width(2.5));
+            }
+            let each = bench.record.iter().count().div_ceil(MEASURED).max(1);
             let samples = bench.record.iter().step_by(each);
-            samples.map(|s| PlotPoint::new(x(s), y(s))).collect()
-        };
-        let series = |points: Vec<PlotPoint>| PlotPoints::Owned(points);
-        plot(ui, names[0], 1)
-            .width(width)
-            .legend(legend())
-            .show(ui, |ui| {
-                if let (Some(curve), Some(range)) = (curve, range(bench.record.iter().map(length)))
-                {
-                    let line = law_curve(range, |x| curve.spring(x));
-                    ui.line(Line::new("law", line).color(LAW).width(2.5));
-                }
-                let points = series(measured(&length, &force));
-                ui.points(Points::new(names[0], points).radius(1.8).color(SPRING));
-                if let Some(now) = &now {
-                    let here = vec![[length(now), force(now)]];
-                    ui.points(Points::new("now", here).radius(4.5).color(NOW));
-                }
-            });
-        let force = |sample: &Sample| Quantity::DamperForce.of(sample);
-        plot(ui, names[1], 1)
-            .width(width)
-            .legend(legend())
-            .show(ui, |ui| {
-                if let (Some(curve), Some(range)) = (curve, range(bench.record.iter().map(rate))) {
-                    let line = law_curve(range, |x| curve.damper(at, x));
-                    ui.line(Line::new("law", line).color(LAW).width(2.5));
-                }
-                let points = series(measured(&rate, &force));
-                ui.points(Points::new(names[1], points).radius(1.8).color(DAMPER));
-                if let Some(now) = &now {
-                    let here = vec![[rate(now), force(now)]];
-                    ui.points(Points::new("now", here).radius(4.5).color(NOW));
-                }
-            });
+            let points: PlotPoints = samples.map(|s| [x.of(s), y.of(s)]).collect();
+            ui.points(Points::new("measured", points).radius(1.8).color(color));
+            if let Some(now) = &now {
+                let here = vec![[x.of(now), y.of(now)]];
+                ui.points(Points::new("now", here).radius(4.5).color(NOW));
+            }
+        });
     });
 }
