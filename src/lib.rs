@@ -159,6 +159,10 @@ pub mod guide {
     pub mod multiplayer {}
 
     #[doc = include_str!("../docs/guide/on_docs_rs.md")]
+    #[doc = include_str!("../docs/guide/workbench.md")]
+    pub mod workbench {}
+
+    #[doc = include_str!("../docs/guide/on_docs_rs.md")]
     #[doc = include_str!("../docs/guide/troubleshooting.md")]
     pub mod troubleshooting {}
 

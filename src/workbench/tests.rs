@@ -213,7 +213,7 @@ fn a_preset_is_saved_and_loaded() {
     person.click("Bell spring");
     person.run(2);
     person.click("Load");
-    person.click("soft");
+    person.click_last("soft");
     person.run(3);
     let bell = person
         .app
@@ -231,4 +231,49 @@ fn nothing_is_read_while_it_is_closed() {
     let bench = person.app.world().resource::<Bench>();
     assert_eq!(bench.rows.total(), 0);
     assert!(!person.app.is_plugin_added::<CoiloverWorkbenchPlugin>() || bench.subject.is_none());
+}
+
+/// Prints what the panel costs with ten thousand springs: `cargo test --features workbench --lib ten_thousand -- --ignored
+/// --nocapture`.
+#[test]
+#[ignore = "it measures and asserts nothing"]
+fn ten_thousand_springs() {
+    use std::time::Instant;
+    let mut person = Person::new();
+    for i in 0..10_000 {
+        person.hang("Weight", 0.1 * i as f32, 50.0);
+    }
+    // The clock stands, so that no physics is measured.
+    person
+        .app
+        .world_mut()
+        .resource_mut::<Time<Virtual>>()
+        .pause();
+    let frames = 200;
+    let frame = |person: &mut Person| {
+        person.run(30);
+        let mut times = Vec::new();
+        for _ in 0..frames {
+            let start = Instant::now();
+            person.app.update();
+            times.push(start.elapsed().as_secs_f64() * 1e3);
+        }
+        times.sort_by(f64::total_cmp);
+        [
+            times[frames / 2],
+            times[frames * 95 / 100],
+            times[frames - 1],
+        ]
+    };
+    let closed = frame(&mut person);
+    person.key(KeyCode::F9);
+    let open = frame(&mut person);
+    person.click("force");
+    let sorted = frame(&mut person);
+    person.click("Weight spring");
+    let chosen = frame(&mut person);
+    println!("frames of ten thousand springs, median, 95th of a hundred and longest, ms:");
+    println!(
+        "closed {closed:.2?}, open {open:.2?}, sorted by force {sorted:.2?}, one chosen {chosen:.2?}"
+    );
 }

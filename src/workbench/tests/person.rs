@@ -14,7 +14,7 @@ use bevy_egui::egui::{self, Shape};
 use bevy_egui::{EguiFullOutput, EguiPostUpdateSet};
 use bevy_rapier3d::prelude::*;
 
-const SIZE: UVec2 = UVec2::new(1280, 720);
+const SIZE: UVec2 = UVec2::new(1280, 1200);
 const EYE: Vec3 = Vec3::new(0.0, 1.0, 8.0);
 
 /// Texts that are on the screen, and where.
@@ -35,8 +35,15 @@ fn read(outputs: Query<&EguiFullOutput>, mut seen: ResMut<Seen>) {
         match shape {
             Shape::Text(text) => {
                 let rect = text.visual_bounding_rect().intersect(clip);
-                if rect.is_positive() {
-                    out.push((text.galley.text().to_owned(), rect));
+                let text = text.galley.text();
+                match out.last_mut() {
+                    // A unit belongs to its number.
+                    Some((number, place)) if text.starts_with(' ') => {
+                        number.push_str(text);
+                        *place = place.union(rect);
+                    }
+                    _ if rect.is_positive() => out.push((text.to_owned(), rect)),
+                    _ => {}
                 }
             }
             Shape::Vec(shapes) => shapes.iter().for_each(|shape| find(shape, clip, out)),
@@ -113,43 +120,46 @@ impl Person {
             projection,
             Transform::from_translation(EYE),
         ));
-        let mut hang = |name: &'static str, x: f32, stiffness: f32| {
-            let world = app.world_mut();
-            let hook = (
-                Name::new("Hook"),
-                RigidBody::Fixed,
-                Transform::from_xyz(x, 2.0, 0.0),
-            );
-            let hook = world.spawn(hook).id();
-            let body = world
-                .spawn((
-                    Name::new(name),
-                    RigidBody::Dynamic,
-                    AdditionalMassProperties::Mass(2.0),
-                    Transform::from_xyz(x, 1.0, 0.0),
-                ))
-                .id();
-            let spring = SpringDamper::new(hook, body)
-                .with_stiffness(stiffness)
-                .with_damping(1.5);
-            let name = Name::new(format!("{name} spring"));
-            world.spawn((name, spring)).id()
-        };
-        let lamp = hang("Lamp", 0.0, 80.0);
-        let bell = hang("Bell", 1.0, 500.0);
         let mut windows = app
             .world_mut()
             .query_filtered::<Entity, With<PrimaryWindow>>();
         let window = windows.single(app.world()).expect("a window");
         app.finish();
         app.cleanup();
-        Self {
+        let mut person = Self {
             app,
             window,
-            lamp,
-            bell,
+            lamp: window,
+            bell: window,
             pointer: Vec2::ZERO,
-        }
+        };
+        person.lamp = person.hang("Lamp", 0.0, 80.0);
+        person.bell = person.hang("Bell", 1.0, 500.0);
+        person
+    }
+
+    /// A weight of 2 kg on a spring of 1 m, so far to the side.
+    pub fn hang(&mut self, name: &'static str, x: f32, stiffness: f32) -> Entity {
+        let world = self.app.world_mut();
+        let hook = (
+            Name::new("Hook"),
+            RigidBody::Fixed,
+            Transform::from_xyz(x, 2.0, 0.0),
+        );
+        let hook = world.spawn(hook).id();
+        let body = world
+            .spawn((
+                Name::new(name),
+                RigidBody::Dynamic,
+                AdditionalMassProperties::Mass(2.0),
+                Transform::from_xyz(x, 1.0, 0.0),
+            ))
+            .id();
+        let spring = SpringDamper::new(hook, body)
+            .with_stiffness(stiffness)
+            .with_damping(1.5);
+        let name = Name::new(format!("{name} spring"));
+        world.spawn((name, spring)).id()
     }
 
     /// With the workbench open.
@@ -243,6 +253,14 @@ impl Person {
 
     pub fn click(&mut self, text: &str) {
         self.click_at(self.find(text));
+    }
+
+    /// Clicks what was drawn last of several equal texts: a menu before what lies behind it.
+    pub fn click_last(&mut self, text: &str) {
+        let seen = &self.app.world().resource::<Seen>().0;
+        let last = seen.iter().rfind(|(seen, _)| seen == text);
+        let at = last.map(|(_, rect)| rect.center()).expect(text);
+        self.click_at(Vec2::new(at.x, at.y));
     }
 
     /// Drags a text so many pixels to the right.
