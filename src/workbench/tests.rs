@@ -2,9 +2,9 @@
 
 mod person;
 
+use super::CoiloverWorkbench;
 use super::bench::{Bench, Plots};
 use super::model::record::Quantity;
-use super::{CoiloverWorkbench, CoiloverWorkbenchPlugin};
 use crate::prelude::*;
 use bevy::prelude::*;
 use person::Person;
@@ -230,7 +230,7 @@ fn nothing_is_read_while_it_is_closed() {
     person.run(10);
     let bench = person.app.world().resource::<Bench>();
     assert_eq!(bench.rows.total(), 0);
-    assert!(!person.app.is_plugin_added::<CoiloverWorkbenchPlugin>() || bench.subject.is_none());
+    assert!(bench.subject.is_none() && bench.record.span().is_none());
 }
 
 /// Prints what the panel costs with ten thousand springs: `cargo test --features workbench --lib ten_thousand -- --ignored
@@ -249,7 +249,7 @@ fn ten_thousand_springs() {
         .world_mut()
         .resource_mut::<Time<Virtual>>()
         .pause();
-    let frames = 200;
+    let frames = 400;
     let frame = |person: &mut Person| {
         person.run(30);
         let mut times = Vec::new();
@@ -259,11 +259,7 @@ fn ten_thousand_springs() {
             times.push(start.elapsed().as_secs_f64() * 1e3);
         }
         times.sort_by(f64::total_cmp);
-        [
-            times[frames / 2],
-            times[frames * 95 / 100],
-            times[frames - 1],
-        ]
+        [times[0], times[frames / 10], times[frames / 2]]
     };
     let closed = frame(&mut person);
     person.key(KeyCode::F9);
@@ -272,7 +268,7 @@ fn ten_thousand_springs() {
     let sorted = frame(&mut person);
     person.click("Weight spring");
     let chosen = frame(&mut person);
-    println!("frames of ten thousand springs, median, 95th of a hundred and longest, ms:");
+    println!("frames of ten thousand springs, shortest, tenth of a hundred and median, ms:");
     println!(
         "closed {closed:.2?}, open {open:.2?}, sorted by force {sorted:.2?}, one chosen {chosen:.2?}"
     );

@@ -2,6 +2,7 @@
 
 use super::companions;
 use super::field::{Drag, brief, line, number, vector};
+use crate::element::SpringLaw;
 use crate::readout::SpringReadout;
 use crate::workbench::bench::{Ask, Bench};
 use crate::workbench::model::facts::{EndKind, Facts};
@@ -81,10 +82,18 @@ fn numbers(ui: &mut Ui, draft: &mut Snapshot, facts: &Facts) {
     } else {
         [" N/m", " N s/m", " m"]
     };
-    if let Some(value) = draft.part.stiffness_mut() {
-        line(ui, "stiffness", value, stiffness, Drag::Share);
+    // A law with coefficients of its own has no use for the element's.
+    let used = match draft.spring_law {
+        None | Some(SpringLaw::Linear) => Some(stiffness),
+        Some(SpringLaw::Cubic) if torsion => Some(" N m/rad³"),
+        Some(SpringLaw::Cubic) => Some(" N/m³"),
+        Some(SpringLaw::Polynomial { .. } | SpringLaw::Table(_)) => None,
+    };
+    if let (Some(value), Some(unit)) = (draft.part.stiffness_mut(), used) {
+        line(ui, "stiffness", value, unit, Drag::Share);
     }
-    if let Some(value) = draft.part.damping_mut() {
+    let linear = draft.damper_is_linear();
+    if let Some(value) = draft.part.damping_mut().filter(|_| linear) {
         line(ui, "damping", value, damping, Drag::Share);
     }
     if let Some(rest) = draft.part.rest_mut() {
