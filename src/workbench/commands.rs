@@ -51,7 +51,7 @@ pub(super) fn obey(world: &mut World) {
             }
             Ask::Picture => {
                 let file = free(&folder, &title, "png");
-                Some(said(picture(world, &file).map(|()| file)))
+                Some(said(picture(world, file.clone()).map(|()| file)))
             }
             Ask::Save(name, text) => {
                 let file = preset(&folder, &name);
@@ -101,11 +101,11 @@ fn copy(text: String, what: &str) -> String {
     }
 }
 
-fn picture(world: &mut World, file: &Path) -> std::io::Result<()> {
-    make_folder(file)?;
+fn picture(world: &mut World, file: PathBuf) -> std::io::Result<()> {
+    make_folder(&file)?;
     world
         .spawn(Screenshot::primary_window())
-        .observe(save_to_disk(file.to_owned()));
+        .observe(save_to_disk(file));
     Ok(())
 }
 

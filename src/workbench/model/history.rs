@@ -83,7 +83,7 @@ mod tests {
     use crate::workbench::model::snapshot::Part;
 
     fn of(stiffness: f32) -> Snapshot {
-        let [a, b] = [1, 2].map(Entity::from_raw_u32).map(Option::unwrap);
+        let [a, b] = [1, 2].map(|i| Entity::from_raw_u32(i).expect("a number of an entity"));
         Snapshot::new(Part::Spring(Spring::new(a, b).with_stiffness(stiffness)))
     }
 

@@ -140,7 +140,7 @@ mod tests {
                 .into_iter()
                 .zip(1..)
                 .map(|(name, i)| {
-                    let entity = Entity::from_raw_u32(i).unwrap();
+                    let entity = Entity::from_raw_u32(i).expect("a number of an entity");
                     let mut row = Row::new(entity, name.into());
                     row.force = -(i as f32);
                     row

@@ -155,7 +155,7 @@ fn generated_code_compiles_and_spawns_the_same() {
     ];
     world.flush();
     for (entity, (name, sample)) in spawned.into_iter().zip(samples()) {
-        let read = Snapshot::read(world.entity(entity).into());
+        let read = Snapshot::read(world.entity(entity));
         assert_eq!(read, Some(sample), "{name}");
     }
 }

@@ -279,7 +279,7 @@ mod tests {
     #[test]
     fn what_is_written_is_read() {
         let (mut world, entity) = world();
-        let mut snapshot = Snapshot::read(world.entity(entity).into()).expect("an element");
+        let mut snapshot = Snapshot::read(world.entity(entity)).expect("an element");
         assert_eq!(snapshot.part.stiffness(), Some(80.0));
         assert_eq!(snapshot.preload, Some(Preload(5.0)));
         if let Some(damping) = snapshot.part.damping_mut() {
@@ -289,7 +289,7 @@ mod tests {
         snapshot.action = Some(SpringAction::Pull);
         snapshot.write(&mut world.entity_mut(entity));
         assert_eq!(
-            Snapshot::read(world.entity(entity).into()).as_ref(),
+            Snapshot::read(world.entity(entity)).as_ref(),
             Some(&snapshot)
         );
         assert!(!world.entity(entity).contains::<Preload>());
@@ -300,7 +300,7 @@ mod tests {
         let (mut world, entity) = world();
         world.increment_change_tick();
         let before = world.change_tick();
-        let snapshot = Snapshot::read(world.entity(entity).into()).expect("an element");
+        let snapshot = Snapshot::read(world.entity(entity)).expect("an element");
         snapshot.write(&mut world.entity_mut(entity));
         let ticks = world.entity(entity).get_change_ticks::<SpringDamper>();
         assert!(ticks.is_some_and(|ticks| !ticks.is_changed(before, world.read_change_tick())));
@@ -309,7 +309,7 @@ mod tests {
     #[test]
     fn an_edit_leaves_what_the_game_has_changed() {
         let (world, entity) = world();
-        let before = Snapshot::read(world.entity(entity).into()).expect("an element");
+        let before = Snapshot::read(world.entity(entity)).expect("an element");
         let mut after = before.clone();
         if let Some(stiffness) = after.part.stiffness_mut() {
             *stiffness = 90.0;

@@ -98,7 +98,8 @@ fn method(facts: &Facts) -> Option<Sentence> {
 /// Whether its vibration is followed.
 fn resolved(facts: &Facts) -> Option<Sentence> {
     let readout = &facts.readout;
-    if readout.method == SpringMethod::None || !(readout.omega_dt > 0.0) {
+    if readout.method == SpringMethod::None || readout.omega_dt.is_nan() || readout.omega_dt <= 0.0
+    {
         return None;
     }
     let omega_dt = readout.omega_dt;
@@ -249,7 +250,7 @@ mod tests {
     use bevy::prelude::Entity;
 
     fn scene() -> (Snapshot, Facts) {
-        let [a, b] = [Entity::from_raw_u32(1), Entity::from_raw_u32(2)].map(Option::unwrap);
+        let [a, b] = [1, 2].map(|i| Entity::from_raw_u32(i).expect("a number of an entity"));
         let pair = SpringDamper::new(a, b)
             .with_stiffness(500.0)
             .with_damping(5.0);

@@ -139,7 +139,7 @@ fn figures(ui: &mut Ui, draft: &mut Snapshot, facts: &Facts) {
     let (Some(load), Some(stiffness)) = (facts.load_of(draft), draft.part.stiffness()) else {
         return;
     };
-    if !(stiffness > 0.0) {
+    if stiffness.is_nan() || stiffness <= 0.0 {
         return;
     }
     let torsion = draft.part.is_torsion();
