@@ -20,6 +20,8 @@ mod settings;
 mod snapshot;
 #[cfg(feature = "visual")]
 mod visual;
+#[cfg(feature = "workbench")]
+mod workbench;
 
 pub use diagnostics::CoiloverDiagnosticsPlugin;
 pub use element::{
@@ -42,6 +44,8 @@ pub use visual::{
     HelixError, HelixMeshBuilder, RoundWire, RoundWireMaterial, ShowSpringGizmos, SpringGizmos,
     SpringSkin, Telescope, TorsionCoil, WoundCoil, coilover,
 };
+#[cfg(feature = "workbench")]
+pub use workbench::{CoiloverWorkbench, CoiloverWorkbenchPlugin};
 
 use bevy::app::{PluginGroup, PluginGroupBuilder};
 
@@ -157,6 +161,10 @@ pub mod guide {
     pub mod multiplayer {}
 
     #[doc = include_str!("../docs/guide/on_docs_rs.md")]
+    #[doc = include_str!("../docs/guide/workbench.md")]
+    pub mod workbench {}
+
+    #[doc = include_str!("../docs/guide/on_docs_rs.md")]
     #[doc = include_str!("../docs/guide/troubleshooting.md")]
     pub mod troubleshooting {}
 
@@ -192,4 +200,6 @@ pub mod prelude {
         RoundWire, RoundWireMaterial, ShowSpringGizmos, SpringGizmos, SpringSkin, Telescope,
         TorsionCoil, WoundCoil, coilover,
     };
+    #[cfg(feature = "workbench")]
+    pub use crate::{CoiloverWorkbench, CoiloverWorkbenchPlugin};
 }

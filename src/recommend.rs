@@ -44,15 +44,34 @@ pub fn recommend(stiffness: f32, damping: f32, mass: f32, dt: f32, tolerance: f3
         return 1;
     }
     let k = if sound(k) { k } else { 0.0 };
-    let ratio = if sound(c) && k > 0.0 {
-        (c / (2.0 * (k * m).sqrt())).min(1.0)
+    let accurate = dt * (swing(k, c, m) / tolerance).sqrt();
+    let resolved = dt * (k / m).sqrt() / RESOLVED;
+    accurate.max(resolved).ceil().clamp(1.0, MOST) as u32
+}
+
+/// Error per second and square of the micro-step, m/s³, of a mass on a spring that swings.
+fn swing(k: f64, c: f64, m: f64) -> f64 {
+    let ratio = c / (2.0 * (k * m).sqrt());
+    let ratio = if ratio.is_finite() && ratio > 0.0 {
+        ratio.min(1.0)
     } else {
         0.0
     };
-    let swing = GRAVITY.powf(1.5) / (24.0 * LENGTH.sqrt()) * (1.0 + 5.0 * ratio * ratio);
-    let accurate = dt * (swing / tolerance).sqrt();
-    let resolved = dt * (k / m).sqrt() / RESOLVED;
-    accurate.max(resolved).ceil().clamp(1.0, MOST) as u32
+    GRAVITY.powf(1.5) / (24.0 * LENGTH.sqrt()) * (1.0 + 5.0 * ratio * ratio)
+}
+
+/// The error of position, m per second of motion, that so many micro-steps add: [`recommend`] the other way round.
+#[cfg(feature = "workbench")]
+pub(crate) fn error_per_second(
+    stiffness: f32,
+    damping: f32,
+    mass: f32,
+    dt: f32,
+    microsteps: u32,
+) -> f32 {
+    let [k, c, m, dt] = [stiffness, damping, mass, dt].map(f64::from);
+    let step = dt / f64::from(microsteps.max(1));
+    (swing(k.max(0.0), c, m) * step * step) as f32
 }
 
 #[cfg(test)]

@@ -131,17 +131,27 @@ impl Companions<'_, '_> {
 
     /// What stands beside an element, as its law.
     pub(super) fn of(&self, entity: Entity, p: &Parameters) -> Result<Companion, Fault> {
+        match self.all.get(entity) {
+            Ok(beside) => beside.companion(p),
+            Err(_) => {
+                let guide = p.guide();
+                p.check_rest(guide)?;
+                Ok(Companion { law: None, guide })
+            }
+        }
+    }
+}
+
+impl BesideItem<'_, '_> {
+    /// What stands beside an element, as its law.
+    pub(super) fn companion(&self, p: &Parameters) -> Result<Companion, Fault> {
         let mut guide = p.guide();
-        let Ok(beside) = self.all.get(entity) else {
-            p.check_rest(guide)?;
-            return Ok(Companion { law: None, guide });
-        };
-        if let Some(limit) = beside.breakable
+        if let Some(limit) = self.breakable
             && (limit.force.is_nan() || limit.length.is_nan())
         {
             return Err(Fault::new("Breakable", "is NaN"));
         }
-        if let Some(axis) = beside.axis {
+        if let Some(axis) = self.axis {
             if guide != Guide::Centres {
                 return Err(Fault::new("SpringAxis", "stands on a torsion element"));
             }
@@ -151,16 +161,14 @@ impl Companions<'_, '_> {
             };
         }
         p.check_rest(guide)?;
-        let law = if beside.is_linear() {
+        let law = if self.is_linear() {
             None
         } else {
-            Some(Arc::new(Law::new(beside.recipe(p, guide)?)))
+            Some(Arc::new(Law::new(self.recipe(p, guide)?)))
         };
         Ok(Companion { law, guide })
     }
-}
 
-impl BesideItem<'_, '_> {
     /// Nothing but an axis, if at all.
     pub(super) fn is_linear(&self) -> bool {
         matches!(self.spring, None | Some(SpringLaw::Linear))

@@ -18,6 +18,8 @@ mod body;
 mod breaking;
 mod check;
 mod companions;
+#[cfg(feature = "workbench")]
+mod curve;
 mod element;
 mod ends;
 mod energy;
@@ -54,11 +56,17 @@ mod watch;
 
 pub(crate) use anchoring::anchor;
 pub(crate) use breaking::break_overloaded;
+#[cfg(feature = "workbench")]
+pub(crate) use companions::Beside;
+#[cfg(feature = "workbench")]
+pub(crate) use curve::Curve;
 pub use forces::SpringLoad;
 pub(crate) use forces::read_users;
 pub(crate) use kept::Kept;
 pub(crate) use measure::measure;
 pub(crate) use named_ends::find_named_ends;
+#[cfg(feature = "workbench")]
+pub(crate) use parts::{IsElement, Parts};
 pub(crate) use prepare::prepare;
 pub(crate) use scene::{Scene, mark};
 pub(crate) use setup::{Watched, check_schedule, check_timestep, in_place};

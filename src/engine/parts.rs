@@ -138,6 +138,12 @@ impl PartsItem<'_, '_> {
             || after(at(&self.torsion_pair))
     }
 
+    /// Both ends, of a sound element.
+    #[cfg(feature = "workbench")]
+    pub(crate) fn ends(&self) -> Option<[Entity; 2]> {
+        self.parameters().ok().map(|p| p.ends)
+    }
+
     /// Reads whichever component is there.
     pub(super) fn parameters(&self) -> Result<Parameters, Fault> {
         let anchors = self.anchors.as_deref().copied().unwrap_or_default();

@@ -1,0 +1,23 @@
+//! Edits reach the world, before a tick.
+
+use super::bench::Bench;
+use super::model::snapshot::Snapshot;
+use bevy::prelude::*;
+
+pub(super) fn has_edits(bench: Res<Bench>) -> bool {
+    !bench.pending.is_empty()
+}
+
+/// Carries over what was edited, and nothing else.
+pub(super) fn apply(world: &mut World) {
+    let edits = std::mem::take(&mut world.resource_mut::<Bench>().pending);
+    for (entity, from, to) in edits {
+        let Ok(mut element) = world.get_entity_mut(entity) else {
+            continue;
+        };
+        if let Some(mut now) = Snapshot::read(element.as_readonly()) {
+            now.carry(&from, &to);
+            now.write(&mut element);
+        }
+    }
+}

@@ -1,0 +1,183 @@
+//! The state between model and view: what is shown, and what the view asks for.
+
+use super::model::facts::Subject;
+use super::model::history::{Edit, History};
+use super::model::preset;
+use super::model::record::{Record, Sample};
+use super::model::rows::Rows;
+use super::model::snapshot::Snapshot;
+use bevy::prelude::*;
+
+/// What the view cannot do itself.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Ask {
+    Pause(bool),
+    Step,
+    Speed(f32),
+    /// Text for the clipboard, and what it is.
+    Copy(String, &'static str),
+    /// A table of the record, into a file.
+    Csv(String),
+    Picture,
+    /// A preset under a name.
+    Save(String, String),
+    Load(String),
+}
+
+/// Which plots are shown.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum Plots {
+    #[default]
+    Time,
+    Law,
+}
+
+/// How the game's clock runs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Clock {
+    pub paused: bool,
+    pub speed: f32,
+}
+
+impl Default for Clock {
+    fn default() -> Self {
+        Self {
+            paused: false,
+            speed: 1.0,
+        }
+    }
+}
+
+/// Everything that the view shows.
+#[derive(Resource, Default)]
+pub(crate) struct Bench {
+    pub rows: Rows,
+    pub selected: Option<Entity>,
+    pub subject: Option<Subject>,
+    pub history: History,
+    pub record: Record,
+    pub clock: Clock,
+    /// The time of the record that is looked at; none for the present.
+    pub scrub: Option<f64>,
+    pub plots: Plots,
+    /// Name under which the next preset is saved, and those that there are.
+    pub preset_name: String,
+    pub presets: Vec<String>,
+    /// What the last command came to.
+    pub message: Option<String>,
+    pub asks: Vec<Ask>,
+    /// Changes that wait for the next tick: what differs between the two is carried over.
+    pub pending: Vec<(Entity, Snapshot, Snapshot)>,
+}
+
+impl Bench {
+    /// Chooses an element, or none.
+    pub fn select(&mut self, entity: Option<Entity>) {
+        if self.selected != entity {
+            self.selected = entity;
+            self.subject = None;
+            self.record.clear();
+            self.scrub = None;
+            self.history.close();
+        }
+    }
+
+    /// Changes the chosen element.
+    pub fn edit(&mut self, what: &'static str, after: Snapshot) {
+        let Some(subject) = &self.subject else {
+            return;
+        };
+        if subject.now == after {
+            return;
+        }
+        let (entity, before) = (subject.entity, subject.now.clone());
+        self.carry(entity, before.clone(), after.clone());
+        self.history.note(Edit {
+            entity,
+            what,
+            before,
+            after,
+        });
+    }
+
+    /// Takes the last edit back.
+    pub fn undo(&mut self) {
+        if let Some(edit) = self.history.undo() {
+            self.message = Some(format!("{} is as before", edit.what));
+            self.carry(edit.entity, edit.after, edit.before);
+        }
+    }
+
+    /// Does the edit again that was taken back last.
+    pub fn redo(&mut self) {
+        if let Some(edit) = self.history.redo() {
+            self.message = Some(format!("{} is changed again", edit.what));
+            self.carry(edit.entity, edit.before, edit.after);
+        }
+    }
+
+    /// The chosen element as it was before its first edit.
+    pub fn reset(&mut self) {
+        let Some(subject) = &self.subject else {
+            return;
+        };
+        if let Some(original) = self.history.original(subject.entity).cloned() {
+            self.history.close();
+            self.edit("all numbers", original);
+            self.history.close();
+        }
+    }
+
+    /// Puts a preset into the chosen element.
+    pub fn load(&mut self, name: &str, text: &str) {
+        let Some(subject) = &self.subject else {
+            return;
+        };
+        match preset::apply(text, &subject.now) {
+            Ok(after) => {
+                self.history.close();
+                self.edit("all numbers", after);
+                self.history.close();
+                self.message = Some(format!("loaded {name}"));
+            }
+            Err(wrong) => self.message = Some(format!("{name}: {wrong}")),
+        }
+    }
+
+    fn carry(&mut self, entity: Entity, from: Snapshot, to: Snapshot) {
+        if let Some(subject) = &mut self.subject
+            && subject.entity == entity
+        {
+            subject.now.carry(&from, &to);
+        }
+        // A drag makes one change a frame; while the game is paused they would pile up.
+        if let Some((last, _, until)) = self.pending.last_mut()
+            && *last == entity
+            && *until == from
+        {
+            *until = to;
+        } else {
+            self.pending.push((entity, from, to));
+        }
+    }
+
+    /// An element as it is once all that waits is done.
+    pub fn with_pending(&self, entity: Entity, mut snapshot: Snapshot) -> Snapshot {
+        for (of, from, to) in &self.pending {
+            if *of == entity {
+                snapshot.carry(from, to);
+            }
+        }
+        snapshot
+    }
+
+    /// The sample that is looked at.
+    pub fn sample(&self) -> Option<Sample> {
+        if let Some(time) = self.scrub {
+            return self.record.at(time).copied();
+        }
+        let readout = self.subject.as_ref()?.facts.readout;
+        let time = self.record.span().map_or(0.0, |[_, last]| last);
+        Some(Sample { time, readout })
+    }
+}

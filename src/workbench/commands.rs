@@ -1,0 +1,184 @@
+//! What the view asks for and cannot do itself: the clock, the clipboard, files.
+
+use super::CoiloverWorkbench;
+use super::bench::{Ask, Bench};
+use bevy::prelude::*;
+use bevy::render::view::screenshot::{Screenshot, save_to_disk};
+use std::cell::RefCell;
+use std::path::{Path, PathBuf};
+
+thread_local! {
+    /// What was copied is there as long as this is.
+    static CLIPBOARD: RefCell<Option<arboard::Clipboard>> = const { RefCell::new(None) };
+}
+
+/// Does all that was asked for in this frame.
+pub(super) fn obey(world: &mut World) {
+    let mut bench = world.resource_mut::<Bench>();
+    let asks = std::mem::take(&mut bench.asks);
+    let title = bench.subject.as_ref().map(|subject| subject.title.clone());
+    let title = file_name(&title.unwrap_or_default());
+    if asks.is_empty() {
+        return;
+    }
+    let folder = world.resource::<CoiloverWorkbench>().folder.clone();
+    for ask in asks {
+        let said = match ask {
+            Ask::Pause(pause) => {
+                if let Some(mut clock) = world.get_resource_mut::<Time<Virtual>>() {
+                    if pause {
+                        clock.pause();
+                    } else {
+                        clock.unpause();
+                    }
+                }
+                None
+            }
+            Ask::Step => {
+                step(world);
+                None
+            }
+            Ask::Speed(speed) => {
+                if let Some(mut clock) = world.get_resource_mut::<Time<Virtual>>() {
+                    clock.set_relative_speed(speed);
+                }
+                None
+            }
+            Ask::Copy(text, what) => Some(copy(text, what)),
+            Ask::Csv(text) => {
+                let file = free(&folder, &title, "csv");
+                Some(said(write(&file, &text).map(|()| file)))
+            }
+            Ask::Picture => {
+                let file = free(&folder, &title, "png");
+                Some(said(picture(world, file.clone()).map(|()| file)))
+            }
+            Ask::Save(name, text) => {
+                let file = preset(&folder, &name);
+                Some(said(write(&file, &text).map(|()| file)))
+            }
+            Ask::Load(name) => match std::fs::read_to_string(preset(&folder, &name)) {
+                Ok(text) => {
+                    world.resource_mut::<Bench>().load(&name, &text);
+                    None
+                }
+                Err(wrong) => Some(format!("{name}: {wrong}")),
+            },
+        };
+        let mut bench = world.resource_mut::<Bench>();
+        if said.is_some() {
+            bench.message = said;
+        }
+        bench.presets = presets(&folder);
+    }
+}
+
+/// One tick more, and then it stands.
+fn step(world: &mut World) {
+    if let Some(mut clock) = world.get_resource_mut::<Time<Virtual>>() {
+        clock.pause();
+    }
+    if let Some(mut fixed) = world.get_resource_mut::<Time<Fixed>>() {
+        let missing = fixed.timestep().saturating_sub(fixed.overstep());
+        fixed.accumulate_overstep(missing);
+    }
+}
+
+fn copy(text: String, what: &str) -> String {
+    let done = CLIPBOARD.with(|clipboard| {
+        let mut clipboard = clipboard.try_borrow_mut().map_err(|e| e.to_string())?;
+        if clipboard.is_none() {
+            *clipboard = Some(arboard::Clipboard::new().map_err(|e| e.to_string())?);
+        }
+        match clipboard.as_mut() {
+            Some(clipboard) => clipboard.set_text(text).map_err(|e| e.to_string()),
+            None => Ok(()),
+        }
+    });
+    match done {
+        Ok(()) => format!("copied as {what}"),
+        Err(wrong) => format!("not copied: {wrong}"),
+    }
+}
+
+fn picture(world: &mut World, file: PathBuf) -> std::io::Result<()> {
+    make_folder(&file)?;
+    world
+        .spawn(Screenshot::primary_window())
+        .observe(save_to_disk(file));
+    Ok(())
+}
+
+fn write(file: &Path, text: &str) -> std::io::Result<()> {
+    make_folder(file)?;
+    std::fs::write(file, text)
+}
+
+fn make_folder(file: &Path) -> std::io::Result<()> {
+    file.parent().map_or(Ok(()), std::fs::create_dir_all)
+}
+
+fn said(done: std::io::Result<PathBuf>) -> String {
+    match done {
+        Ok(file) => format!("saved {}", file.display()),
+        Err(wrong) => format!("not saved: {wrong}"),
+    }
+}
+
+/// A title as a name that every system of files takes.
+fn file_name(title: &str) -> String {
+    let fits = |c: char| c.is_alphanumeric() || c == '-' || c == '_';
+    let name: String = title
+        .chars()
+        .map(|c| if fits(c) { c } else { '_' })
+        .take(60)
+        .collect();
+    if name.is_empty() {
+        "element".into()
+    } else {
+        name
+    }
+}
+
+/// The first name that is free.
+fn free(folder: &Path, name: &str, ending: &str) -> PathBuf {
+    let file = |i: u32| folder.join(format!("{name}_{i}.{ending}"));
+    (1..10_000)
+        .map(file)
+        .find(|file| !file.exists())
+        .unwrap_or_else(|| file(10_000))
+}
+
+fn preset(folder: &Path, name: &str) -> PathBuf {
+    folder
+        .join("presets")
+        .join(format!("{}.json", file_name(name)))
+}
+
+/// Those that there are, by name.
+pub(super) fn presets(folder: &Path) -> Vec<String> {
+    let files = std::fs::read_dir(folder.join("presets"));
+    let name = |entry: std::io::Result<std::fs::DirEntry>| {
+        let path = entry.ok()?.path();
+        let is_preset = path.extension().is_some_and(|ending| ending == "json");
+        let name = path.file_stem()?.to_str()?.to_owned();
+        is_preset.then_some(name)
+    };
+    let mut names: Vec<_> = files.into_iter().flatten().filter_map(name).collect();
+    names.sort();
+    names
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_names_of_files() {
+        assert_eq!(file_name("../a b/ü"), "___a_b_ü");
+        assert_eq!(file_name(""), "element");
+        let folder = Path::new("there_is_no_such_folder");
+        assert_eq!(free(folder, "a", "csv"), folder.join("a_1.csv"));
+        assert!(presets(folder).is_empty());
+    }
+}

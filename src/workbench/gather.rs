@@ -1,0 +1,206 @@
+//! What the world has, for the view.
+
+use super::CoiloverWorkbench;
+use super::bench::{Bench, Clock};
+use super::model::facts::{End, EndKind, Facts, Stepping, Subject};
+use super::model::record::Sample;
+use super::model::rows::Row;
+use super::model::snapshot::Snapshot;
+use crate::element::{CustomDampingLaw, CustomSpringLaw, SpringFault};
+use crate::engine::{Beside, Curve, IsElement, Parts};
+use crate::readout::SpringReadout;
+use crate::settings::CoiloverSettings;
+use bevy::ecs::system::{SystemParam, SystemState};
+use bevy::prelude::*;
+use bevy_rapier3d::prelude::{RapierConfiguration, RigidBody, Sleeping, TimestepMode};
+
+/// Frames in which each number of the list has its turn once.
+const FRAMES: usize = 8;
+
+/// Seconds between two sortings of the list, and between two looks at names.
+const SORT: f32 = 0.25;
+
+/// What is read of the world.
+#[derive(SystemParam)]
+pub(super) struct Look<'w, 's> {
+    readouts: Query<'w, 's, (Entity, &'static SpringReadout), IsElement>,
+    new: Query<'w, 's, (), (IsElement, Added<SpringReadout>)>,
+    renamed: Query<'w, 's, (), Changed<Name>>,
+    names: Query<'w, 's, &'static Name>,
+    laws: Query<'w, 's, (Parts, Beside)>,
+    faults: Query<'w, 's, &'static SpringFault>,
+    custom: Query<'w, 's, (Has<CustomSpringLaw>, Has<CustomDampingLaw>)>,
+    bodies: Query<'w, 's, (&'static RigidBody, Option<&'static Sleeping>)>,
+    parents: Query<'w, 's, &'static ChildOf>,
+    globals: Query<'w, 's, &'static GlobalTransform>,
+    configurations: Query<'w, 's, &'static RapierConfiguration>,
+    settings: Option<Res<'w, CoiloverSettings>>,
+    timestep: Option<Res<'w, TimestepMode>>,
+    clock: Option<Res<'w, Time<Virtual>>>,
+    real: Res<'w, Time<Real>>,
+}
+
+/// When the list was last looked at.
+#[derive(Default)]
+pub(super) struct Looked {
+    at: Option<f32>,
+    stale: bool,
+}
+
+/// Reads all that is shown in this frame.
+pub(super) fn gather(world: &mut World, state: &mut SystemState<Look>, mut looked: Local<Looked>) {
+    world.resource_scope(|world, mut bench: Mut<Bench>| {
+        let bench = &mut *bench;
+        bench.select(world.resource::<CoiloverWorkbench>().selected);
+        let chosen = bench.selected.and_then(|entity| {
+            let snapshot = Snapshot::read(world.get_entity(entity).ok()?)?;
+            Some((entity, snapshot))
+        });
+        if chosen.is_none() && bench.selected.is_some() {
+            bench.select(None);
+            world.resource_mut::<CoiloverWorkbench>().selected = None;
+            bench.message = Some("the element is gone".into());
+        }
+        let Ok(look) = state.get_mut(world) else {
+            return;
+        };
+        look.list(bench, &mut looked);
+        if let Some(clock) = &look.clock {
+            bench.clock = Clock {
+                paused: clock.is_paused(),
+                speed: clock.relative_speed(),
+            };
+        }
+        bench.subject = chosen.map(|(entity, snapshot)| {
+            let now = bench.with_pending(entity, snapshot);
+            Subject {
+                entity,
+                title: look.label(entity),
+                facts: look.facts(entity, &now),
+                now,
+            }
+        });
+    });
+}
+
+impl Look<'_, '_> {
+    /// Keeps the list.
+    fn list(&self, bench: &mut Bench, looked: &mut Looked) {
+        let rows = &mut bench.rows;
+        looked.stale |= self.readouts.iter().len() != rows.total()
+            || !self.new.is_empty()
+            || !self.renamed.is_empty();
+        let now = self.real.elapsed_secs();
+        let due = looked.at.is_none_or(|at| now - at >= SORT);
+        if due && looked.stale {
+            looked.stale = false;
+            let new = self.readouts.iter().map(|(entity, readout)| {
+                let mut row = Row::new(entity, self.label(entity));
+                row.read(readout);
+                row
+            });
+            rows.replace(new.collect());
+        }
+        for row in rows.due(FRAMES) {
+            if let Ok((_, readout)) = self.readouts.get(row.entity) {
+                row.read(readout);
+            }
+        }
+        if due {
+            looked.at = Some(now);
+            rows.arrange();
+        }
+    }
+
+    /// Its name, or those of its ends.
+    fn label(&self, element: Entity) -> String {
+        if let Ok(name) = self.names.get(element) {
+            return name.as_str().into();
+        }
+        let ends = self
+            .laws
+            .get(element)
+            .ok()
+            .and_then(|(parts, _)| parts.ends());
+        let named = ends.map(|ends| ends.map(|end| self.named(end)));
+        match named {
+            Some([Some(a), Some(b)]) => format!("{a} – {b}"),
+            Some([Some(one), None] | [None, Some(one)]) => format!("{one} – {element}"),
+            _ => format!("{element}"),
+        }
+    }
+
+    /// The name of an entity, or of the nearest one above it that has one.
+    fn named(&self, entity: Entity) -> Option<&str> {
+        let up = std::iter::once(entity).chain(self.parents.iter_ancestors(entity));
+        let mut names = up.filter_map(|entity| self.names.get(entity).ok());
+        names.next().map(Name::as_str)
+    }
+
+    fn facts(&self, entity: Entity, now: &Snapshot) -> Facts {
+        let readout = self.readouts.get(entity).map(|(_, readout)| *readout);
+        let custom = self.custom.get(entity).unwrap_or_default();
+        let ends = now.part.ends();
+        let anchors = now.anchors.unwrap_or_default();
+        let dt = match self.timestep.as_deref() {
+            Some(TimestepMode::Fixed { dt, .. } | TimestepMode::Interpolated { dt, .. }) => *dt,
+            Some(TimestepMode::Variable { max_dt, .. }) => *max_dt,
+            None => 1.0 / 60.0,
+        };
+        let settings = self.settings.as_deref();
+        let gravity = self.configurations.iter().next();
+        Facts {
+            readout: readout.unwrap_or_default(),
+            fault: self
+                .faults
+                .get(entity)
+                .ok()
+                .map(|fault| format!("It does not act: {} {}.", fault.field, fault.reason)),
+            ends: [self.end(ends[0], anchors.a), self.end(ends[1], anchors.b)],
+            gravity: gravity.map_or(0.0, |configuration| configuration.gravity.length()),
+            stepping: Stepping {
+                dt,
+                microsteps: settings.map_or(1, |settings| settings.microsteps.max(1)),
+                tolerance: settings.and_then(|settings| settings.tolerance),
+            },
+            custom: [custom.0, custom.1],
+            curve: Curve::of(&self.laws, entity),
+        }
+    }
+
+    fn end(&self, entity: Entity, anchor: Vec3) -> End {
+        let Ok(at) = self.globals.get(entity) else {
+            return End {
+                name: format!("{entity}"),
+                ..End::default()
+            };
+        };
+        let mut up = std::iter::once(entity).chain(self.parents.iter_ancestors(entity));
+        let body = up.find_map(|entity| self.bodies.get(entity).ok());
+        let kind = match body {
+            None => EndKind::Point,
+            Some((RigidBody::Dynamic, _)) => EndKind::Dynamic,
+            Some((RigidBody::Fixed, _)) => EndKind::Fixed,
+            Some(_) => EndKind::Kinematic,
+        };
+        let asleep = body.and_then(|(_, sleeping)| sleeping);
+        let name = self.named(entity);
+        End {
+            name: name.map_or_else(|| format!("{entity}"), Into::into),
+            kind,
+            asleep: asleep.is_some_and(|sleeping| sleeping.sleeping),
+            at: Some(at.transform_point(anchor)).filter(|at| at.is_finite()),
+        }
+    }
+}
+
+/// Keeps what the chosen element did in a tick.
+pub(super) fn record(mut bench: ResMut<Bench>, readouts: Query<&SpringReadout>, time: Res<Time>) {
+    let selected = bench.selected;
+    if let Some(readout) = selected.and_then(|entity| readouts.get(entity).ok()) {
+        bench.record.add(Sample {
+            time: time.elapsed_secs_f64(),
+            readout: *readout,
+        });
+    }
+}

@@ -1,0 +1,129 @@
+//! The workbench: a panel over a running game that shows, plots and edits its springs.
+//!
+//! - [`model`] is plain data: an element's numbers, what was edited, what is recorded, and what follows from it.
+//! - [`bench`] holds it between the frames; [`view`] draws it with egui and knows no world.
+//! - [`gather`] reads the world, [`apply`] changes it, [`commands`] does what the view asks for, [`scene`] draws and picks
+//!   in the scene.
+
+mod apply;
+mod bench;
+mod commands;
+mod gather;
+mod model;
+mod scene;
+#[cfg(test)]
+mod tests;
+mod view;
+
+use crate::plugin::CoiloverSystems;
+use crate::settings::CoiloverSettings;
+use bench::Bench;
+use bevy::input::InputSystems;
+use bevy::prelude::*;
+use bevy_egui::{
+    EguiGlobalSettings, EguiPlugin, EguiPostUpdateSet, EguiPreUpdateSet, EguiPrimaryContextPass,
+};
+use std::path::PathBuf;
+
+/// Adds the workbench: F9 opens and closes it. See [`CoiloverWorkbench`] for its settings.
+///
+/// It needs [`CoiloverPlugin`](crate::CoiloverPlugin), a window and a camera. Where the app has an `EguiPlugin` of its own,
+/// add that first. While the workbench is closed, none of its systems runs.
+///
+/// ```no_run
+/// # use bevy::prelude::*;
+/// # use bevy_coilover::prelude::*;
+/// # let mut app = App::new();
+/// app.add_plugins((DefaultPlugins, CoiloverPlugins, CoiloverWorkbenchPlugin));
+/// ```
+#[derive(Clone, Copy, Debug, Default)]
+pub struct CoiloverWorkbenchPlugin;
+
+/// Settings and state of the workbench.
+#[derive(Resource, Clone, Debug, PartialEq)]
+pub struct CoiloverWorkbench {
+    /// Whether it is shown.
+    pub open: bool,
+    /// The key that opens and closes it; `None` for no key.
+    pub key: Option<KeyCode>,
+    /// The element that is shown.
+    pub selected: Option<Entity>,
+    /// Where presets, tables and pictures go; made when the first is saved.
+    pub folder: PathBuf,
+}
+
+impl Default for CoiloverWorkbench {
+    fn default() -> Self {
+        Self {
+            open: false,
+            key: Some(KeyCode::F9),
+            selected: None,
+            folder: "workbench".into(),
+        }
+    }
+}
+
+impl Plugin for CoiloverWorkbenchPlugin {
+    fn build(&self, app: &mut App) {
+        if !app.is_plugin_added::<EguiPlugin>() {
+            app.add_plugins(EguiPlugin::default());
+            // What is done to a panel is not done to the game below.
+            if let Some(mut settings) = app.world_mut().get_resource_mut::<EguiGlobalSettings>() {
+                settings.enable_absorb_bevy_input_system = true;
+            }
+        }
+        app.init_resource::<CoiloverWorkbench>()
+            .init_resource::<Bench>()
+            .add_systems(
+                PreUpdate,
+                toggle
+                    .after(InputSystems)
+                    .before(EguiPreUpdateSet::ProcessInput),
+            )
+            .add_systems(Update, scene::pick.run_if(is_open))
+            .add_systems(
+                PostUpdate,
+                gather::gather
+                    .run_if(is_open)
+                    .after(TransformSystems::Propagate)
+                    .before(EguiPostUpdateSet::EndPass),
+            )
+            .add_systems(EguiPrimaryContextPass, scene::show.run_if(is_open))
+            .add_systems(Last, commands::obey.run_if(is_open));
+        scene::add_gizmos(app);
+    }
+
+    fn finish(&self, app: &mut App) {
+        let Some(settings) = app.world().get_resource::<CoiloverSettings>() else {
+            log::error!(
+                "bevy_coilover: CoiloverWorkbenchPlugin needs CoiloverPlugin; add CoiloverPlugins"
+            );
+            return;
+        };
+        let schedule = settings.schedule;
+        app.add_systems(
+            schedule,
+            (
+                // Edits wait for a tick, so that the engine hears of what is removed; also of those made just before
+                // the workbench was closed.
+                apply::apply
+                    .run_if(apply::has_edits)
+                    .before(CoiloverSystems::Prepare)
+                    .before(bevy_rapier3d::prelude::PhysicsSet::SyncBackend),
+                gather::record
+                    .run_if(is_open)
+                    .after(CoiloverSystems::Readout),
+            ),
+        );
+    }
+}
+
+fn is_open(workbench: Res<CoiloverWorkbench>) -> bool {
+    workbench.open
+}
+
+fn toggle(keys: Res<ButtonInput<KeyCode>>, mut workbench: ResMut<CoiloverWorkbench>) {
+    if workbench.key.is_some_and(|key| keys.just_pressed(key)) {
+        workbench.open = !workbench.open;
+    }
+}

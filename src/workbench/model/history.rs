@@ -1,0 +1,124 @@
+//! What was edited, to take it back.
+
+use super::snapshot::Snapshot;
+use bevy::prelude::Entity;
+
+/// Most edits that are kept.
+const MOST: usize = 200;
+
+/// One change of one element.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Edit {
+    pub entity: Entity,
+    pub what: &'static str,
+    pub before: Snapshot,
+    pub after: Snapshot,
+}
+
+/// Edits done and taken back.
+#[derive(Debug, Default)]
+pub(crate) struct History {
+    done: Vec<Edit>,
+    undone: Vec<Edit>,
+    /// The last edit still goes on: a number that is being dragged.
+    open: bool,
+}
+
+impl History {
+    /// Notes an edit. While a drag goes on, its many small changes are one edit.
+    pub fn note(&mut self, edit: Edit) {
+        self.undone.clear();
+        if self.open
+            && let Some(last) = self.done.last_mut()
+            && last.entity == edit.entity
+            && last.what == edit.what
+        {
+            last.after = edit.after;
+            return;
+        }
+        if self.done.len() == MOST {
+            self.done.remove(0);
+        }
+        self.done.push(edit);
+        self.open = true;
+    }
+
+    /// The next change is another edit.
+    pub fn close(&mut self) {
+        self.open = false;
+    }
+
+    /// The edit to be taken back.
+    pub fn undo(&mut self) -> Option<Edit> {
+        self.open = false;
+        let edit = self.done.pop()?;
+        self.undone.push(edit.clone());
+        Some(edit)
+    }
+
+    /// The edit to be done again.
+    pub fn redo(&mut self) -> Option<Edit> {
+        self.open = false;
+        let edit = self.undone.pop()?;
+        self.done.push(edit.clone());
+        Some(edit)
+    }
+
+    /// What the next undo and the next redo are about.
+    pub fn next(&self) -> [Option<&'static str>; 2] {
+        [&self.done, &self.undone].map(|edits| edits.last().map(|edit| edit.what))
+    }
+
+    /// The element as it was before its first edit that is kept.
+    pub fn original(&self, entity: Entity) -> Option<&Snapshot> {
+        let mine = |edit: &&Edit| edit.entity == entity;
+        self.done.iter().find(mine).map(|edit| &edit.before)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::element::Spring;
+    use crate::workbench::model::snapshot::Part;
+
+    fn of(stiffness: f32) -> Snapshot {
+        let [a, b] = [1, 2].map(|i| Entity::from_raw_u32(i).expect("a number of an entity"));
+        Snapshot::new(Part::Spring(Spring::new(a, b).with_stiffness(stiffness)))
+    }
+
+    fn edit(before: f32, after: f32) -> Edit {
+        Edit {
+            entity: Entity::PLACEHOLDER,
+            what: "stiffness",
+            before: of(before),
+            after: of(after),
+        }
+    }
+
+    #[test]
+    fn a_drag_is_one_edit() {
+        let mut history = History::default();
+        history.note(edit(1.0, 2.0));
+        history.note(edit(2.0, 3.0));
+        history.close();
+        history.note(edit(3.0, 4.0));
+        assert_eq!(history.original(Entity::PLACEHOLDER), Some(&of(1.0)));
+        assert_eq!(history.undo(), Some(edit(3.0, 4.0)));
+        assert_eq!(history.undo(), Some(edit(1.0, 3.0)));
+        assert_eq!(history.undo(), None);
+        assert_eq!(history.redo(), Some(edit(1.0, 3.0)));
+        history.note(edit(3.0, 9.0));
+        assert_eq!(history.next(), [Some("stiffness"), None]);
+    }
+
+    #[test]
+    fn it_does_not_grow_for_ever() {
+        let mut history = History::default();
+        for i in 0..1_000 {
+            history.note(edit(i as f32, i as f32 + 1.0));
+            history.close();
+        }
+        assert_eq!(std::iter::from_fn(|| history.undo()).count(), MOST);
+    }
+}

@@ -1,0 +1,13 @@
+//! What the workbench knows, without a window: plain data and functions of it.
+
+pub(crate) mod code;
+pub(crate) mod facts;
+pub(crate) mod figures;
+pub(crate) mod history;
+pub(crate) mod preset;
+pub(crate) mod record;
+pub(crate) mod rows;
+#[cfg(test)]
+mod samples;
+pub(crate) mod snapshot;
+pub(crate) mod verdict;

@@ -1,0 +1,325 @@
+//! All numbers of one element, as they can be edited.
+
+use crate::element::*;
+use bevy::prelude::*;
+
+/// The component that makes an entity an element.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Part {
+    Spring(Spring),
+    Damper(Damper),
+    SpringDamper(SpringDamper),
+    TorsionSpring(TorsionSpring),
+    TorsionDamper(TorsionDamper),
+    TorsionSpringDamper(TorsionSpringDamper),
+}
+
+/// An element and what stands beside it.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Snapshot {
+    pub part: Part,
+    pub anchors: Option<Anchors>,
+    pub spring_law: Option<SpringLaw>,
+    pub damping_law: Option<DampingLaw>,
+    pub action: Option<SpringAction>,
+    pub travel: Option<SpringTravel>,
+    pub axis: Option<SpringAxis>,
+    pub preload: Option<Preload>,
+    pub max_force: Option<MaxForce>,
+    pub breakable: Option<Breakable>,
+}
+
+/// Does the same with each companion.
+macro_rules! each_companion {
+    ($action:ident) => {
+        $action!(anchors);
+        $action!(spring_law);
+        $action!(damping_law);
+        $action!(action);
+        $action!(travel);
+        $action!(axis);
+        $action!(preload);
+        $action!(max_force);
+        $action!(breakable);
+    };
+}
+
+/// Does the same with each component that can make an element.
+macro_rules! each_part {
+    ($part:expr, $name:ident => $value:expr) => {
+        match $part {
+            Part::Spring($name) => $value,
+            Part::Damper($name) => $value,
+            Part::SpringDamper($name) => $value,
+            Part::TorsionSpring($name) => $value,
+            Part::TorsionDamper($name) => $value,
+            Part::TorsionSpringDamper($name) => $value,
+        }
+    };
+}
+
+impl Part {
+    fn read(entity: EntityRef) -> Option<Self> {
+        let part = entity.get().copied().map(Self::SpringDamper);
+        let part = part.or_else(|| entity.get().copied().map(Self::Spring));
+        let part = part.or_else(|| entity.get().copied().map(Self::Damper));
+        let part = part.or_else(|| entity.get().copied().map(Self::TorsionSpringDamper));
+        let part = part.or_else(|| entity.get().copied().map(Self::TorsionSpring));
+        part.or_else(|| entity.get().copied().map(Self::TorsionDamper))
+    }
+
+    /// As the component is called.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Spring(_) => "Spring",
+            Self::Damper(_) => "Damper",
+            Self::SpringDamper(_) => "SpringDamper",
+            Self::TorsionSpring(_) => "TorsionSpring",
+            Self::TorsionDamper(_) => "TorsionDamper",
+            Self::TorsionSpringDamper(_) => "TorsionSpringDamper",
+        }
+    }
+
+    pub fn ends(&self) -> [Entity; 2] {
+        each_part!(self, part => [part.body_a, part.body_b])
+    }
+
+    pub fn is_torsion(&self) -> bool {
+        self.twist().is_some()
+    }
+
+    /// Axis of a torsion element, in body A's frame.
+    pub fn twist(&self) -> Option<Vec3> {
+        match self {
+            Self::TorsionSpring(part) => Some(part.axis),
+            Self::TorsionDamper(part) => Some(part.axis),
+            Self::TorsionSpringDamper(part) => Some(part.axis),
+            _ => None,
+        }
+    }
+
+    pub fn twist_mut(&mut self) -> Option<&mut Vec3> {
+        match self {
+            Self::TorsionSpring(part) => Some(&mut part.axis),
+            Self::TorsionDamper(part) => Some(&mut part.axis),
+            Self::TorsionSpringDamper(part) => Some(&mut part.axis),
+            _ => None,
+        }
+    }
+
+    /// N/m, of what has a spring.
+    pub fn stiffness_mut(&mut self) -> Option<&mut f32> {
+        match self {
+            Self::Spring(part) => Some(&mut part.stiffness),
+            Self::SpringDamper(part) => Some(&mut part.stiffness),
+            Self::TorsionSpring(part) => Some(&mut part.stiffness),
+            Self::TorsionSpringDamper(part) => Some(&mut part.stiffness),
+            Self::Damper(_) | Self::TorsionDamper(_) => None,
+        }
+    }
+
+    /// N s/m, of what has a damper.
+    pub fn damping_mut(&mut self) -> Option<&mut f32> {
+        match self {
+            Self::Damper(part) => Some(&mut part.damping),
+            Self::SpringDamper(part) => Some(&mut part.damping),
+            Self::TorsionDamper(part) => Some(&mut part.damping),
+            Self::TorsionSpringDamper(part) => Some(&mut part.damping),
+            Self::Spring(_) | Self::TorsionSpring(_) => None,
+        }
+    }
+
+    /// Length or angle without force, of what has a spring.
+    pub fn rest_mut(&mut self) -> Option<&mut Option<f32>> {
+        match self {
+            Self::Spring(part) => Some(&mut part.rest_length),
+            Self::SpringDamper(part) => Some(&mut part.rest_length),
+            Self::TorsionSpring(part) => Some(&mut part.rest_angle),
+            Self::TorsionSpringDamper(part) => Some(&mut part.rest_angle),
+            Self::Damper(_) | Self::TorsionDamper(_) => None,
+        }
+    }
+
+    pub fn stiffness(mut self) -> Option<f32> {
+        self.stiffness_mut().copied()
+    }
+
+    pub fn damping(mut self) -> Option<f32> {
+        self.damping_mut().copied()
+    }
+
+    pub fn rest(mut self) -> Option<f32> {
+        self.rest_mut().copied().flatten()
+    }
+
+    /// Takes over which numbers differ between two others.
+    fn carry(&mut self, from: &Self, to: &Self) {
+        if from.stiffness() != to.stiffness()
+            && let (Some(mine), Some(value)) = (self.stiffness_mut(), to.stiffness())
+        {
+            *mine = value;
+        }
+        if from.damping() != to.damping()
+            && let (Some(mine), Some(value)) = (self.damping_mut(), to.damping())
+        {
+            *mine = value;
+        }
+        if from.rest() != to.rest()
+            && let Some(mine) = self.rest_mut()
+        {
+            *mine = to.rest();
+        }
+        if from.twist() != to.twist()
+            && let (Some(mine), Some(value)) = (self.twist_mut(), to.twist())
+        {
+            *mine = value;
+        }
+    }
+}
+
+impl Snapshot {
+    /// Of an element without companions.
+    pub fn new(part: Part) -> Self {
+        Self {
+            part,
+            anchors: None,
+            spring_law: None,
+            damping_law: None,
+            action: None,
+            travel: None,
+            axis: None,
+            preload: None,
+            max_force: None,
+            breakable: None,
+        }
+    }
+
+    /// As an entity has it; none where it is no element.
+    pub fn read(entity: EntityRef) -> Option<Self> {
+        let mut snapshot = Self::new(Part::read(entity)?);
+        macro_rules! read {
+            ($field:ident) => {
+                snapshot.$field = entity.get().cloned();
+            };
+        }
+        each_companion!(read);
+        Some(snapshot)
+    }
+
+    /// Changes an entity where it is different.
+    pub fn write(&self, entity: &mut EntityWorldMut) {
+        fn part<T: Component<Mutability = bevy::ecs::component::Mutable> + PartialEq>(
+            value: T,
+            entity: &mut EntityWorldMut,
+        ) {
+            if let Some(mut part) = entity.get_mut::<T>() {
+                part.set_if_neq(value);
+            }
+        }
+        fn beside<T: Component + PartialEq + Clone>(
+            value: &Option<T>,
+            entity: &mut EntityWorldMut,
+        ) {
+            match value {
+                Some(value) if entity.get() != Some(value) => {
+                    entity.insert(value.clone());
+                }
+                None if entity.contains::<T>() => {
+                    entity.remove::<T>();
+                }
+                _ => {}
+            }
+        }
+        each_part!(self.part, value => part(value, entity));
+        macro_rules! write {
+            ($field:ident) => {
+                beside(&self.$field, entity);
+            };
+        }
+        each_companion!(write);
+    }
+
+    /// Takes over what differs between two others, and leaves the rest as it is: what the game has changed meanwhile
+    /// is not lost.
+    pub fn carry(&mut self, from: &Self, to: &Self) {
+        self.part.carry(&from.part, &to.part);
+        macro_rules! carry {
+            ($field:ident) => {
+                if from.$field != to.$field {
+                    self.$field.clone_from(&to.$field);
+                }
+            };
+        }
+        each_companion!(carry);
+    }
+
+    /// Whether the force of its spring is the stiffness times the stretch, up to clamps and stops.
+    pub fn spring_is_linear(&self) -> bool {
+        matches!(self.spring_law, None | Some(SpringLaw::Linear))
+    }
+
+    /// Whether the force of its damper is the damping times the rate.
+    pub fn damper_is_linear(&self) -> bool {
+        matches!(self.damping_law, None | Some(DampingLaw::Linear))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn world() -> (World, Entity) {
+        let mut world = World::new();
+        let [a, b] = [world.spawn_empty().id(), world.spawn_empty().id()];
+        let pair = SpringDamper::new(a, b).with_stiffness(80.0);
+        let entity = world.spawn((pair, Preload(5.0))).id();
+        (world, entity)
+    }
+
+    #[test]
+    fn what_is_written_is_read() {
+        let (mut world, entity) = world();
+        let mut snapshot = Snapshot::read(world.entity(entity)).expect("an element");
+        assert_eq!(snapshot.part.stiffness(), Some(80.0));
+        assert_eq!(snapshot.preload, Some(Preload(5.0)));
+        if let Some(damping) = snapshot.part.damping_mut() {
+            *damping = 3.0;
+        }
+        snapshot.preload = None;
+        snapshot.action = Some(SpringAction::Pull);
+        snapshot.write(&mut world.entity_mut(entity));
+        assert_eq!(
+            Snapshot::read(world.entity(entity)).as_ref(),
+            Some(&snapshot)
+        );
+        assert!(!world.entity(entity).contains::<Preload>());
+    }
+
+    #[test]
+    fn what_is_equal_is_not_touched() {
+        let (mut world, entity) = world();
+        world.increment_change_tick();
+        let before = world.change_tick();
+        let snapshot = Snapshot::read(world.entity(entity)).expect("an element");
+        snapshot.write(&mut world.entity_mut(entity));
+        let ticks = world.entity(entity).get_change_ticks::<SpringDamper>();
+        assert!(ticks.is_some_and(|ticks| !ticks.is_changed(before, world.read_change_tick())));
+    }
+
+    #[test]
+    fn an_edit_leaves_what_the_game_has_changed() {
+        let (world, entity) = world();
+        let before = Snapshot::read(world.entity(entity)).expect("an element");
+        let mut after = before.clone();
+        if let Some(stiffness) = after.part.stiffness_mut() {
+            *stiffness = 90.0;
+        }
+        let mut now = after.clone();
+        if let Some(rest) = now.part.rest_mut() {
+            *rest = Some(1.5);
+        }
+        now.carry(&after, &before);
+        assert_eq!(now.part.stiffness(), Some(80.0));
+        assert_eq!(now.part.rest(), Some(1.5));
+    }
+}

@@ -1,0 +1,186 @@
+//! The panel's place in the window, and what is drawn and clicked in the scene.
+
+use super::bench::Bench;
+use super::model::snapshot::Snapshot;
+use super::{CoiloverWorkbench, commands, is_open, view};
+use crate::engine::IsElement;
+use bevy::gizmos::AppGizmoBuilder;
+use bevy::gizmos::config::{GizmoConfigGroup, GizmoConfigStore};
+use bevy::gizmos::gizmos::Gizmos;
+use bevy::prelude::*;
+use bevy::window::PrimaryWindow;
+use bevy_egui::egui::{Align2, Color32, FontId, LayerId, Ui, UiBuilder, pos2};
+use bevy_egui::input::EguiWantsInput;
+use bevy_egui::{EguiContexts, PrimaryEguiContext};
+
+/// Pixels between the pointer and an element that is still clicked.
+const NEAR: f32 = 12.0;
+
+/// Pixels by which a click may move.
+const STILL: f32 = 4.0;
+
+const COLOR: Color = Color::srgb(1.0, 0.9, 0.2);
+
+/// What marks the chosen element.
+#[derive(GizmoConfigGroup, Reflect, Clone, Debug, Default)]
+pub(super) struct Mark;
+
+/// Adds the mark, where there are gizmos.
+pub(super) fn add_gizmos(app: &mut App) {
+    if !app.world().contains_resource::<GizmoConfigStore>() {
+        return;
+    }
+    app.init_gizmo_group::<Mark>().add_systems(
+        PostUpdate,
+        mark.run_if(is_open).after(super::gather::gather),
+    );
+    let mut store = app.world_mut().resource_mut::<GizmoConfigStore>();
+    let (config, _) = store.config_mut::<Mark>();
+    // Before what is solid.
+    config.depth_bias = -1.0;
+    config.line.width = 3.0;
+}
+
+/// A line from anchor to anchor, and a ball at each.
+fn mark(
+    bench: Res<Bench>,
+    cameras: Query<&GlobalTransform, With<PrimaryEguiContext>>,
+    mut gizmos: Gizmos<Mark>,
+) {
+    let Some(subject) = &bench.subject else {
+        return;
+    };
+    let [Some(a), Some(b)] = [0, 1].map(|end: usize| subject.facts.ends[end].at) else {
+        return;
+    };
+    gizmos.line(a, b, COLOR);
+    let Some(eye) = cameras.iter().next() else {
+        return;
+    };
+    for at in [a, b] {
+        let radius = 0.008 * eye.translation().distance(at);
+        gizmos.sphere(at, radius, COLOR);
+    }
+}
+
+/// Draws the panel, and the names of the ends beside their anchors.
+pub(super) fn show(
+    mut contexts: EguiContexts,
+    mut bench: ResMut<Bench>,
+    mut workbench: ResMut<CoiloverWorkbench>,
+    cameras: Query<(&Camera, &GlobalTransform), With<PrimaryEguiContext>>,
+    mut looked: Local<bool>,
+) {
+    let Ok(context) = contexts.ctx_mut() else {
+        return;
+    };
+    if !std::mem::replace(&mut *looked, true) {
+        bench.presets = commands::presets(&workbench.folder);
+    }
+    let place = UiBuilder::new()
+        .layer_id(LayerId::background())
+        .max_rect(context.viewport_rect());
+    let mut ui = Ui::new(context.clone(), "coilover_workbench".into(), place);
+    if let (Some(subject), Some((camera, eye))) = (&bench.subject, cameras.iter().next()) {
+        for (letter, end) in ["A", "B"].into_iter().zip(&subject.facts.ends) {
+            let on_screen = end.at.and_then(|at| camera.world_to_viewport(eye, at).ok());
+            if let Some(at) = on_screen {
+                let text = format!("{letter}: {}", end.name);
+                let at = pos2(at.x + 14.0, at.y);
+                let font = FontId::proportional(13.0);
+                // A shadow, to be read before any background.
+                let shadow = at + bevy_egui::egui::vec2(1.0, 1.0);
+                let painter = ui.painter();
+                painter.text(
+                    shadow,
+                    Align2::LEFT_CENTER,
+                    &text,
+                    font.clone(),
+                    Color32::BLACK,
+                );
+                painter.text(at, Align2::LEFT_CENTER, &text, font, Color32::YELLOW);
+            }
+        }
+    }
+    view::show(&mut ui, &mut bench);
+    if workbench.selected != bench.selected {
+        workbench.selected = bench.selected;
+    }
+}
+
+/// Chooses the element that was clicked.
+pub(super) fn pick(
+    buttons: Res<ButtonInput<MouseButton>>,
+    egui: Option<Res<EguiWantsInput>>,
+    windows: Query<&Window, With<PrimaryWindow>>,
+    cameras: Query<(&Camera, &GlobalTransform), With<PrimaryEguiContext>>,
+    elements: Query<EntityRef, IsElement>,
+    globals: Query<&GlobalTransform>,
+    mut down: Local<Option<Vec2>>,
+    mut commands: Commands,
+) {
+    let pointer = windows.single().ok().and_then(Window::cursor_position);
+    if buttons.just_pressed(MouseButton::Left) {
+        let taken = egui.is_some_and(|egui| egui.wants_any_pointer_input());
+        *down = pointer.filter(|_| !taken);
+    }
+    if !buttons.just_released(MouseButton::Left) {
+        return;
+    }
+    let (Some(pointer), Some(from)) = (pointer, down.take()) else {
+        return;
+    };
+    let Some((camera, eye)) = cameras.iter().next() else {
+        return;
+    };
+    if pointer.distance(from) > STILL {
+        return;
+    }
+    let on_screen = |end: Entity, anchor: Vec3| {
+        let at = globals.get(end).ok()?.transform_point(anchor);
+        camera.world_to_viewport(eye, at).ok()
+    };
+    let distance = |element: EntityRef| {
+        let now = Snapshot::read(element)?;
+        let [a, b] = now.part.ends();
+        let anchors = now.anchors.unwrap_or_default();
+        let (a, b) = (on_screen(a, anchors.a)?, on_screen(b, anchors.b)?);
+        Some((element.id(), to_segment(pointer, a, b)))
+    };
+    let nearest = elements
+        .iter()
+        .filter_map(distance)
+        .filter(|(_, distance)| *distance < NEAR)
+        .min_by(|a, b| a.1.total_cmp(&b.1));
+    if let Some((entity, _)) = nearest {
+        commands.queue(move |world: &mut World| {
+            world.resource_mut::<CoiloverWorkbench>().selected = Some(entity);
+        });
+    }
+}
+
+/// From a point to a piece of a line.
+fn to_segment(point: Vec2, a: Vec2, b: Vec2) -> f32 {
+    let along = b - a;
+    let share = (point - a).dot(along) / along.length_squared();
+    // An element seen from its end is a point.
+    let share = if share.is_finite() {
+        share.clamp(0.0, 1.0)
+    } else {
+        0.0
+    };
+    point.distance(a + share * along)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn distance_to_a_piece_of_a_line() {
+        let (a, b) = (Vec2::ZERO, Vec2::new(10.0, 0.0));
+        assert_eq!(to_segment(Vec2::new(5.0, 3.0), a, b), 3.0);
+        assert_eq!(to_segment(Vec2::new(-4.0, 3.0), a, b), 5.0);
+        assert_eq!(to_segment(Vec2::new(3.0, 4.0), a, a), 5.0);
+    }
+}

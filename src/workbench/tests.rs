@@ -1,0 +1,275 @@
+//! The workbench as a person uses it: a game without a renderer, and a window's own events.
+
+mod person;
+
+use super::CoiloverWorkbench;
+use super::bench::{Bench, Plots};
+use super::model::record::Quantity;
+use crate::prelude::*;
+use bevy::prelude::*;
+use person::Person;
+
+#[test]
+fn it_opens_with_its_key_and_closes_again() {
+    let mut person = Person::new();
+    person.look();
+    assert!(!person.sees("Sort by"));
+    person.key(KeyCode::F9);
+    assert!(person.sees("Sort by") && person.sees("Lamp spring"));
+    person.key(KeyCode::F9);
+    assert!(!person.sees("Sort by"));
+}
+
+#[test]
+fn an_element_is_chosen_in_the_list_and_its_numbers_are_shown() {
+    let mut person = Person::at_the_bench();
+    person.click("Lamp spring");
+    assert!(person.sees("80 N/m") && person.sees("1.5 N s/m"));
+    // The verdict, the ends and what follows from the numbers.
+    assert!(person.sees("Alone on its ends"));
+    assert!(person.sees("A: Hook (fixed)") && person.sees("B: Lamp (dynamic)"));
+    // √(80/2)/2π
+    assert!(person.sees("1.00658 Hz"), "{:?}", person.texts());
+}
+
+#[test]
+fn a_number_is_dragged_and_the_drag_undone() {
+    let mut person = Person::at_the_bench();
+    person.click("Lamp spring");
+    person.drag("80 N/m", 100.0);
+    person.run(5);
+    let stiffness = person.lamp().stiffness;
+    // A hundredth for each pixel, compounded; the first few pixels make it a drag.
+    assert!(stiffness > 150.0 && stiffness < 300.0, "{stiffness} N/m");
+    assert!(!person.sees("80 N/m"));
+    person.click("Undo");
+    person.run(2);
+    assert_eq!(person.lamp().stiffness, 80.0);
+    assert!(person.sees("80 N/m"));
+    person.click("Redo");
+    person.run(2);
+    assert_eq!(person.lamp().stiffness, stiffness);
+    person.click("Reset");
+    person.run(2);
+    assert_eq!(person.lamp().stiffness, 80.0);
+}
+
+#[test]
+fn a_frequency_is_typed_and_the_stiffness_follows() {
+    let mut person = Person::at_the_bench();
+    person.click("Lamp spring");
+    person.click("1.00658 Hz");
+    person.type_text("2,5");
+    person.key(KeyCode::Enter);
+    person.run(2);
+    let expected = 2.0 * (std::f32::consts::TAU * 2.5).powi(2);
+    let stiffness = person.lamp().stiffness;
+    assert!((stiffness / expected - 1.0).abs() < 1e-4, "{stiffness} N/m");
+    // One edit, not one for each letter.
+    person.click("Undo");
+    person.run(2);
+    assert_eq!(person.lamp().stiffness, 80.0);
+}
+
+#[test]
+fn a_companion_is_added_and_taken_away_by_undo() {
+    let mut person = Person::at_the_bench();
+    person.click("Lamp spring");
+    person.click("preload");
+    person.run(2);
+    let entity = person.lamp;
+    assert_eq!(
+        person.app.world().get::<Preload>(entity),
+        Some(&Preload(0.0))
+    );
+    person.click("Undo");
+    person.run(2);
+    assert_eq!(person.app.world().get::<Preload>(entity), None);
+}
+
+#[test]
+fn the_plots_have_what_happened() {
+    let mut person = Person::at_the_bench();
+    person.click("Lamp spring");
+    person.run(120);
+    let bench = person.app.world().resource::<Bench>();
+    let curve = bench.record.curve(Quantity::Length, 400);
+    assert!(curve.len() >= 120);
+    let readout = *person
+        .app
+        .world()
+        .get::<SpringReadout>(person.lamp)
+        .expect("an element");
+    let last = curve.last().expect("a point")[1];
+    assert_eq!(last, f64::from(readout.length));
+    let [low, high] = curve.iter().fold([9.0_f64, 0.0], |[low, high], point| {
+        [low.min(point[1]), high.max(point[1])]
+    });
+    // It falls by twice its sag.
+    assert!(high - low > 0.3, "{low} to {high} m");
+    assert!(person.sees("length, m") && person.sees("energy, J"));
+    // The law's curve is the law: Hooke's.
+    let bench = person.app.world().resource::<Bench>();
+    let subject = bench.subject.as_ref().expect("chosen");
+    let curve = subject.facts.curve.as_ref().expect("a law");
+    assert!(
+        (curve.spring(f64::from(readout.length)) - f64::from(readout.spring_force)).abs() < 1e-3
+    );
+    person.click("Force laws");
+    assert_eq!(person.app.world().resource::<Bench>().plots, Plots::Law);
+    assert!(person.sees("law"), "{:?}", person.texts());
+}
+
+#[test]
+fn the_game_is_paused_and_stepped() {
+    let mut person = Person::at_the_bench();
+    person.click("Lamp spring");
+    person.click("Pause");
+    person.run(3);
+    let ticks = |person: &Person| {
+        let bench = person.app.world().resource::<Bench>();
+        bench.record.iter().count()
+    };
+    let before = ticks(&person);
+    person.run(20);
+    assert_eq!(ticks(&person), before);
+    person.click("Step");
+    person.run(20);
+    assert_eq!(ticks(&person), before + 1);
+    person.click("Run");
+    person.run(20);
+    assert!(ticks(&person) > before + 10);
+}
+
+#[test]
+fn the_list_is_searched() {
+    let mut person = Person::at_the_bench();
+    assert!(person.sees("Bell spring"));
+    person.click("Search 2 elements");
+    person.type_text("LAMP");
+    person.run(2);
+    assert!(person.sees("Lamp spring") && !person.sees("Bell spring"));
+}
+
+#[test]
+fn a_coil_is_clicked_in_the_scene() {
+    let mut person = Person::at_the_bench();
+    // Half-way between hook and lamp, which stand in the middle of the window.
+    let camera = Vec3::new(0.0, 1.0, 8.0);
+    let hook = person::project(Vec3::new(0.0, 1.5, 0.0), camera);
+    person.click_at(hook);
+    assert_eq!(
+        person.app.world().resource::<CoiloverWorkbench>().selected,
+        Some(person.lamp)
+    );
+    assert!(person.sees("80 N/m"));
+}
+
+#[test]
+fn the_record_is_scrubbed() {
+    let mut person = Person::at_the_bench();
+    person.click("Lamp spring");
+    person.run(300);
+    person.click("Pause");
+    assert!(!person.sees("Now"));
+    person.drag("0.00 s", -60.0);
+    let bench = person.app.world().resource::<Bench>();
+    let time = bench.scrub.expect("a time of the past");
+    let sample = bench.sample().expect("a sample");
+    assert!((sample.time - time).abs() < 0.02);
+    let [_, last] = bench.record.span().expect("samples");
+    assert!(time < last - 0.1, "{time} s of {last} s");
+    person.click("Now");
+    assert_eq!(person.app.world().resource::<Bench>().scrub, None);
+}
+
+#[test]
+fn what_is_chosen_and_despawned_is_gone() {
+    let mut person = Person::at_the_bench();
+    person.click("Lamp spring");
+    person.drag("80 N/m", 30.0);
+    let lamp = person.lamp;
+    person.app.world_mut().entity_mut(lamp).despawn();
+    person.run(30);
+    assert!(person.sees("the element is gone") && !person.sees("Lamp spring"));
+    person.click("Undo");
+    person.run(3);
+}
+
+#[test]
+fn a_preset_is_saved_and_loaded() {
+    let mut person = Person::at_the_bench();
+    let folder = std::env::temp_dir().join(format!("coilover_workbench_{}", std::process::id()));
+    person
+        .app
+        .world_mut()
+        .resource_mut::<CoiloverWorkbench>()
+        .folder = folder.clone();
+    person.click("Lamp spring");
+    person.click("preset name");
+    person.type_text("soft");
+    person.click("Save");
+    assert!(person.sees("saved"), "{:?}", person.texts());
+    person.click("Bell spring");
+    person.run(2);
+    person.click("Load");
+    person.click_last("soft");
+    person.run(3);
+    let bell = person
+        .app
+        .world()
+        .get::<SpringDamper>(person.bell)
+        .expect("an element");
+    assert_eq!((bell.stiffness, bell.damping), (80.0, 1.5));
+    assert!(std::fs::remove_dir_all(folder).is_ok());
+}
+
+#[test]
+fn nothing_is_read_while_it_is_closed() {
+    let mut person = Person::new();
+    person.run(10);
+    let bench = person.app.world().resource::<Bench>();
+    assert_eq!(bench.rows.total(), 0);
+    assert!(bench.subject.is_none() && bench.record.span().is_none());
+}
+
+/// Prints what the panel costs with ten thousand springs: `cargo test --features workbench --lib ten_thousand -- --ignored
+/// --nocapture`.
+#[test]
+#[ignore = "it measures and asserts nothing"]
+fn ten_thousand_springs() {
+    use std::time::Instant;
+    let mut person = Person::new();
+    for i in 0..10_000 {
+        person.hang("Weight", 0.1 * i as f32, 50.0);
+    }
+    // The clock stands, so that no physics is measured.
+    person
+        .app
+        .world_mut()
+        .resource_mut::<Time<Virtual>>()
+        .pause();
+    let frames = 400;
+    let frame = |person: &mut Person| {
+        person.run(30);
+        let mut times = Vec::new();
+        for _ in 0..frames {
+            let start = Instant::now();
+            person.app.update();
+            times.push(start.elapsed().as_secs_f64() * 1e3);
+        }
+        times.sort_by(f64::total_cmp);
+        [times[0], times[frames / 10], times[frames / 2]]
+    };
+    let closed = frame(&mut person);
+    person.key(KeyCode::F9);
+    let open = frame(&mut person);
+    person.click("force");
+    let sorted = frame(&mut person);
+    person.click("Weight spring");
+    let chosen = frame(&mut person);
+    println!("frames of ten thousand springs, shortest, tenth of a hundred and median, ms:");
+    println!(
+        "closed {closed:.2?}, open {open:.2?}, sorted by force {sorted:.2?}, one chosen {chosen:.2?}"
+    );
+}

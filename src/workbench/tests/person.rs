@@ -1,0 +1,316 @@
+//! Somebody who sees texts in a window and has mouse and keys.
+
+use crate::prelude::*;
+use crate::workbench::{CoiloverWorkbench, CoiloverWorkbenchPlugin};
+use bevy::asset::AssetPlugin;
+use bevy::camera::RenderTargetInfo;
+use bevy::input::keyboard::{Key, KeyboardInput};
+use bevy::input::mouse::MouseButtonInput;
+use bevy::input::{ButtonState, InputPlugin};
+use bevy::prelude::*;
+use bevy::time::TimeUpdateStrategy;
+use bevy::window::{ExitCondition, PrimaryWindow, WindowEvent};
+use bevy_egui::egui::{self, Shape};
+use bevy_egui::{EguiFullOutput, EguiPostUpdateSet};
+use bevy_rapier3d::prelude::*;
+
+const SIZE: UVec2 = UVec2::new(1280, 1200);
+const EYE: Vec3 = Vec3::new(0.0, 1.0, 8.0);
+
+/// Texts that are on the screen, and where.
+#[derive(Resource, Default)]
+struct Seen(Vec<(String, egui::Rect)>);
+
+pub struct Person {
+    pub app: App,
+    window: Entity,
+    pub lamp: Entity,
+    pub bell: Entity,
+    pointer: Vec2,
+}
+
+/// Reads what egui draws.
+fn read(outputs: Query<&EguiFullOutput>, mut seen: ResMut<Seen>) {
+    fn find(shape: &Shape, clip: egui::Rect, out: &mut Vec<(String, egui::Rect)>) {
+        match shape {
+            Shape::Text(text) => {
+                let rect = text.visual_bounding_rect().intersect(clip);
+                let text = text.galley.text();
+                match out.last_mut() {
+                    // A unit belongs to its number.
+                    Some((number, place)) if text.starts_with(' ') => {
+                        number.push_str(text);
+                        *place = place.union(rect);
+                    }
+                    _ if rect.is_positive() => out.push((text.to_owned(), rect)),
+                    _ => {}
+                }
+            }
+            Shape::Vec(shapes) => shapes.iter().for_each(|shape| find(shape, clip, out)),
+            _ => {}
+        }
+    }
+    seen.0.clear();
+    for output in outputs.iter().filter_map(|output| output.0.as_ref()) {
+        for shape in &output.shapes {
+            find(&shape.shape, shape.clip_rect, &mut seen.0);
+        }
+    }
+}
+
+/// Where a point is in the window.
+pub fn project(at: Vec3, eye: Vec3) -> Vec2 {
+    let projection = PerspectiveProjection {
+        aspect_ratio: SIZE.x as f32 / SIZE.y as f32,
+        ..default()
+    };
+    let to_clip = Projection::Perspective(projection).get_clip_from_view();
+    let clip = to_clip.project_point3(at - eye);
+    Vec2::new(0.5 + 0.5 * clip.x, 0.5 - 0.5 * clip.y) * SIZE.as_vec2()
+}
+
+impl Person {
+    /// In a game with two lamps on springs, the workbench closed.
+    pub fn new() -> Self {
+        let mut app = App::new();
+        app.add_plugins((
+            MinimalPlugins,
+            TransformPlugin,
+            InputPlugin,
+            WindowPlugin {
+                primary_window: Some(Window {
+                    resolution: (SIZE.x, SIZE.y).into(),
+                    ..default()
+                }),
+                exit_condition: ExitCondition::DontExit,
+                ..default()
+            },
+            AssetPlugin::default(),
+        ))
+        .init_asset::<Image>()
+        .init_asset::<bevy::shader::Shader>()
+        .add_plugins((
+            CoiloverPlugin::at_hz(60.0),
+            RapierPhysicsPlugin::<NoUserData>::default().in_fixed_schedule(),
+            CoiloverWorkbenchPlugin,
+        ))
+        .init_resource::<Seen>()
+        .add_systems(
+            PostUpdate,
+            read.after(EguiPostUpdateSet::EndPass)
+                .before(EguiPostUpdateSet::ProcessOutput),
+        );
+        let tick = app.world().resource::<Time<Fixed>>().timestep();
+        app.insert_resource(TimeUpdateStrategy::ManualDuration(tick));
+
+        let projection = PerspectiveProjection {
+            aspect_ratio: SIZE.x as f32 / SIZE.y as f32,
+            ..default()
+        };
+        let projection = Projection::Perspective(projection);
+        let mut camera = Camera::default();
+        camera.computed.clip_from_view = projection.get_clip_from_view();
+        camera.computed.target_info = Some(RenderTargetInfo {
+            physical_size: SIZE,
+            scale_factor: 1.0,
+        });
+        app.world_mut().spawn((
+            Camera3d::default(),
+            camera,
+            projection,
+            Transform::from_translation(EYE),
+        ));
+        let mut windows = app
+            .world_mut()
+            .query_filtered::<Entity, With<PrimaryWindow>>();
+        let window = windows.single(app.world()).expect("a window");
+        app.finish();
+        app.cleanup();
+        let mut person = Self {
+            app,
+            window,
+            lamp: window,
+            bell: window,
+            pointer: Vec2::ZERO,
+        };
+        person.lamp = person.hang("Lamp", 0.0, 80.0);
+        person.bell = person.hang("Bell", 1.0, 500.0);
+        person
+    }
+
+    /// A weight of 2 kg on a spring of 1 m, so far to the side.
+    pub fn hang(&mut self, name: &'static str, x: f32, stiffness: f32) -> Entity {
+        let world = self.app.world_mut();
+        let hook = (
+            Name::new("Hook"),
+            RigidBody::Fixed,
+            Transform::from_xyz(x, 2.0, 0.0),
+        );
+        let hook = world.spawn(hook).id();
+        let body = world
+            .spawn((
+                Name::new(name),
+                RigidBody::Dynamic,
+                AdditionalMassProperties::Mass(2.0),
+                Transform::from_xyz(x, 1.0, 0.0),
+            ))
+            .id();
+        let spring = SpringDamper::new(hook, body)
+            .with_stiffness(stiffness)
+            .with_damping(1.5);
+        let name = Name::new(format!("{name} spring"));
+        world.spawn((name, spring)).id()
+    }
+
+    /// With the workbench open.
+    pub fn at_the_bench() -> Self {
+        let mut person = Self::new();
+        person
+            .app
+            .world_mut()
+            .resource_mut::<CoiloverWorkbench>()
+            .open = true;
+        person.run(4);
+        person
+    }
+
+    pub fn lamp(&self) -> SpringDamper {
+        *self.app.world().get(self.lamp).expect("an element")
+    }
+
+    pub fn run(&mut self, frames: u32) {
+        for _ in 0..frames {
+            self.app.update();
+        }
+    }
+
+    pub fn look(&mut self) {
+        self.run(2);
+    }
+
+    pub fn texts(&self) -> Vec<&str> {
+        let seen = &self.app.world().resource::<Seen>().0;
+        seen.iter().map(|(text, _)| text.as_str()).collect()
+    }
+
+    pub fn sees(&self, text: &str) -> bool {
+        self.texts().iter().any(|seen| seen.contains(text))
+    }
+
+    fn place(&self, text: &str) -> Option<Vec2> {
+        let seen = &self.app.world().resource::<Seen>().0;
+        let exactly = seen.iter().find(|(seen, _)| seen == text);
+        let about = || seen.iter().find(|(seen, _)| seen.contains(text));
+        let (_, rect) = exactly.or_else(about)?;
+        let center = rect.center();
+        Some(Vec2::new(center.x, center.y))
+    }
+
+    fn find(&self, text: &str) -> Vec2 {
+        self.place(text)
+            .unwrap_or_else(|| panic!("nobody sees {text:?} among {:?}", self.texts()))
+    }
+
+    fn point_at(&mut self, at: Vec2) {
+        let delta = Some(at - self.pointer);
+        self.pointer = at;
+        let window = self.window;
+        let mut entity = self.app.world_mut().entity_mut(window);
+        if let Some(mut window) = entity.get_mut::<Window>() {
+            window.set_cursor_position(Some(at));
+        }
+        let moved = CursorMoved {
+            window,
+            position: at,
+            delta,
+        };
+        self.app.world_mut().write_message(moved.clone());
+        self.app
+            .world_mut()
+            .write_message(WindowEvent::CursorMoved(moved));
+        self.run(1);
+    }
+
+    fn button(&mut self, state: ButtonState) {
+        let input = MouseButtonInput {
+            button: MouseButton::Left,
+            state,
+            window: self.window,
+        };
+        self.app.world_mut().write_message(input);
+        self.app
+            .world_mut()
+            .write_message(WindowEvent::MouseButtonInput(input));
+        self.run(1);
+    }
+
+    pub fn click_at(&mut self, at: Vec2) {
+        self.point_at(at);
+        self.button(ButtonState::Pressed);
+        self.button(ButtonState::Released);
+        self.run(3);
+    }
+
+    pub fn click(&mut self, text: &str) {
+        self.click_at(self.find(text));
+    }
+
+    /// Clicks what was drawn last of several equal texts: a menu before what lies behind it.
+    pub fn click_last(&mut self, text: &str) {
+        let seen = &self.app.world().resource::<Seen>().0;
+        let last = seen.iter().rfind(|(seen, _)| seen == text);
+        let at = last.map(|(_, rect)| rect.center()).expect(text);
+        self.click_at(Vec2::new(at.x, at.y));
+    }
+
+    /// Drags a text so many pixels to the right.
+    pub fn drag(&mut self, text: &str, pixels: f32) {
+        let from = self.find(text);
+        self.point_at(from);
+        self.button(ButtonState::Pressed);
+        for i in 1..=10 {
+            self.point_at(from + 0.1 * i as f32 * pixels * Vec2::X);
+        }
+        self.button(ButtonState::Released);
+        self.run(3);
+    }
+
+    fn press(&mut self, key_code: KeyCode, logical_key: Key, text: Option<&str>) {
+        for state in [ButtonState::Pressed, ButtonState::Released] {
+            let input = KeyboardInput {
+                key_code,
+                logical_key: logical_key.clone(),
+                state,
+                text: text.map(Into::into),
+                repeat: false,
+                window: self.window,
+            };
+            self.app.world_mut().write_message(input.clone());
+            self.app
+                .world_mut()
+                .write_message(WindowEvent::KeyboardInput(input));
+            self.run(1);
+        }
+        self.run(2);
+    }
+
+    pub fn key(&mut self, key: KeyCode) {
+        let logical = match key {
+            KeyCode::F9 => Key::F9,
+            KeyCode::Enter => Key::Enter,
+            other => panic!("no such key: {other:?}"),
+        };
+        self.press(key, logical, None);
+    }
+
+    pub fn type_text(&mut self, text: &str) {
+        for letter in text.chars() {
+            let letter = letter.to_string();
+            self.press(
+                KeyCode::F24,
+                Key::Character(letter.as_str().into()),
+                Some(&letter),
+            );
+        }
+    }
+}

@@ -1,0 +1,274 @@
+//! The chosen element: what it is, its numbers, and what is to be said of it.
+
+use super::companions;
+use super::field::{Drag, brief, line, number, vector};
+use crate::element::SpringLaw;
+use crate::readout::SpringReadout;
+use crate::workbench::bench::{Ask, Bench};
+use crate::workbench::model::facts::{EndKind, Facts};
+use crate::workbench::model::snapshot::Snapshot;
+use crate::workbench::model::verdict::{Tone, verdict};
+use crate::workbench::model::{code, preset};
+use bevy_egui::egui::{Button, Color32, ComboBox, Grid, RichText, ScrollArea, TextEdit, Ui};
+
+pub(super) fn show(ui: &mut Ui, bench: &mut Bench) {
+    let Some(subject) = bench.subject.clone() else {
+        ui.add_space(8.0);
+        ui.label("Choose an element in the list, or click it in the scene.");
+        return;
+    };
+    ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+        ui.add_space(2.0);
+        ui.label(RichText::new(&subject.title).heading());
+        ends(ui, &subject.now, &subject.facts);
+        exports(ui, bench, &subject.title, &subject.now);
+        // Possibly as it was reset just now.
+        let reset = bench.subject.as_ref().map(|subject| subject.now.clone());
+        let mut draft = reset.unwrap_or(subject.now.clone());
+        ui.separator();
+        for sentence in verdict(&subject.now, &subject.facts) {
+            ui.label(RichText::new(sentence.text).color(color(ui, sentence.tone)));
+        }
+        ui.separator();
+        Grid::new("numbers").num_columns(2).show(ui, |ui| {
+            numbers(ui, &mut draft, &subject.facts);
+        });
+        // Each change has its own name, so that one is not undone with another.
+        changed(bench, &draft, "a number");
+        ui.separator();
+        if let Some(sample) = bench.sample() {
+            readout(ui, &sample.readout, draft.part.is_torsion());
+        }
+        ui.separator();
+        companions::show(ui, &mut draft, subject.facts.custom);
+        changed(bench, &draft, "a companion");
+    });
+}
+
+fn changed(bench: &mut Bench, draft: &Snapshot, what: &'static str) {
+    bench.edit(what, draft.clone());
+}
+
+fn color(ui: &Ui, tone: Tone) -> Color32 {
+    match tone {
+        Tone::Good => Color32::from_rgb(120, 200, 120),
+        Tone::Plain => ui.visuals().text_color(),
+        Tone::Warning => ui.visuals().warn_fg_color,
+        Tone::Bad => ui.visuals().error_fg_color,
+    }
+}
+
+/// What the element holds.
+fn ends(ui: &mut Ui, draft: &Snapshot, facts: &Facts) {
+    ui.label(RichText::new(draft.part.name()).weak());
+    for (name, end) in ["A", "B"].into_iter().zip(&facts.ends) {
+        let kind = match end.kind {
+            EndKind::Missing => "missing",
+            EndKind::Point => "no body",
+            EndKind::Fixed => "fixed",
+            EndKind::Kinematic => "kinematic",
+            EndKind::Dynamic if end.asleep => "asleep",
+            EndKind::Dynamic => "dynamic",
+        };
+        ui.label(format!("{name}: {} ({kind})", end.name));
+    }
+}
+
+/// Stiffness, damping and rest length, and what follows from them.
+fn numbers(ui: &mut Ui, draft: &mut Snapshot, facts: &Facts) {
+    let torsion = draft.part.is_torsion();
+    let [stiffness, damping, length] = if torsion {
+        [" N m/rad", " N m s/rad", " rad"]
+    } else {
+        [" N/m", " N s/m", " m"]
+    };
+    // A law with coefficients of its own has no use for the element's.
+    let used = match draft.spring_law {
+        None | Some(SpringLaw::Linear) => Some(stiffness),
+        Some(SpringLaw::Cubic) if torsion => Some(" N m/rad³"),
+        Some(SpringLaw::Cubic) => Some(" N/m³"),
+        Some(SpringLaw::Polynomial { .. } | SpringLaw::Table(_)) => None,
+    };
+    if let (Some(value), Some(unit)) = (draft.part.stiffness_mut(), used) {
+        line(ui, "stiffness", value, unit, Drag::Share);
+    }
+    let linear = draft.damper_is_linear();
+    if let Some(value) = draft.part.damping_mut().filter(|_| linear) {
+        line(ui, "damping", value, damping, Drag::Share);
+    }
+    if let Some(rest) = draft.part.rest_mut() {
+        ui.label(if torsion { "rest angle" } else { "rest length" });
+        match rest {
+            Some(value) => {
+                let drag = if torsion || draft.axis.is_some() {
+                    Drag::Even(0.002)
+                } else {
+                    Drag::Positive(0.002)
+                };
+                number(ui, value, length, drag);
+            }
+            None => {
+                ui.label("as at the first step");
+            }
+        }
+        ui.end_row();
+    }
+    figures(ui, draft, facts);
+    if let Some(axis) = draft.part.twist_mut() {
+        ui.label("axis, in A");
+        vector(ui, axis, 0.01);
+        ui.end_row();
+    } else {
+        let mut anchors = draft.anchors.unwrap_or_default();
+        for (name, point) in [
+            ("anchor on A", &mut anchors.a),
+            ("anchor on B", &mut anchors.b),
+        ] {
+            ui.label(name);
+            vector(ui, point, 0.005);
+            ui.end_row();
+        }
+        if draft.anchors.is_some() || anchors != Default::default() {
+            draft.anchors = Some(anchors);
+        }
+    }
+}
+
+/// Frequency, damping ratio, sag and critical damping. What is written there changes stiffness and damping.
+fn figures(ui: &mut Ui, draft: &mut Snapshot, facts: &Facts) {
+    let (Some(load), Some(stiffness)) = (facts.load_of(draft), draft.part.stiffness()) else {
+        return;
+    };
+    if stiffness.is_nan() || stiffness <= 0.0 {
+        return;
+    }
+    let torsion = draft.part.is_torsion();
+    let damping = draft.part.damping().filter(|_| draft.damper_is_linear());
+    let mut frequency = load.frequency(stiffness);
+    ui.label("frequency");
+    if number(ui, &mut frequency, " Hz", Drag::Share).changed() && frequency > 0.0 {
+        set(
+            draft.part.stiffness_mut(),
+            load.stiffness_for_frequency(frequency),
+        );
+    }
+    ui.end_row();
+    if let Some(damping) = damping {
+        let mut ratio = load.ratio(stiffness, damping);
+        ui.label("damping ratio");
+        if number(ui, &mut ratio, "", Drag::Positive(0.005)).changed() {
+            set(
+                draft.part.damping_mut(),
+                load.damping_for_ratio(stiffness, ratio),
+            );
+        }
+        ui.end_row();
+    }
+    if !torsion && load.gravity > 0.0 {
+        let mut sag = load.sag(stiffness);
+        ui.label("sag");
+        if number(ui, &mut sag, " m", Drag::Share).changed() && sag > 0.0 {
+            set(draft.part.stiffness_mut(), load.stiffness_for_sag(sag));
+        }
+        ui.end_row();
+    }
+    let (mass, unit) = (f64::from(load.mass), if torsion { "kg m²" } else { "kg" });
+    ui.label("effective mass");
+    ui.label(format!("{} {unit}", brief(mass)));
+    ui.end_row();
+    if damping.is_some() {
+        let critical = f64::from(load.critical(stiffness));
+        let unit = if torsion { "N m s/rad" } else { "N s/m" };
+        ui.label("critical damping");
+        ui.label(format!("{} {unit}", brief(critical)));
+        ui.end_row();
+    }
+}
+
+fn set(field: Option<&mut f32>, value: f32) {
+    if let Some(field) = field.filter(|_| value.is_finite()) {
+        *field = value;
+    }
+}
+
+/// What the last step came to, or the one that is looked at.
+fn readout(ui: &mut Ui, readout: &SpringReadout, torsion: bool) {
+    let [length, rate, force] = if torsion {
+        ["rad", "rad/s", "N m"]
+    } else {
+        ["m", "m/s", "N"]
+    };
+    let lines = [
+        ("length", readout.length, length),
+        ("rate", readout.rate, rate),
+        ("spring force", readout.spring_force, force),
+        ("damper force", readout.damper_force, force),
+        ("stored energy", readout.stored_energy, "J"),
+        ("dissipated", readout.dissipated_energy, "J"),
+        ("dissipated power", readout.dissipated_power, "W"),
+        ("work done on it", readout.work, "J"),
+    ];
+    Grid::new("readout").num_columns(4).show(ui, |ui| {
+        for pair in lines.chunks(2) {
+            for (name, value, unit) in pair {
+                ui.label(RichText::new(*name).weak());
+                ui.label(format!("{} {unit}", brief(f64::from(*value))));
+            }
+            ui.end_row();
+        }
+    });
+}
+
+/// Undo to the start, copies and presets.
+fn exports(ui: &mut Ui, bench: &mut Bench, title: &str, draft: &Snapshot) {
+    ui.horizontal(|ui| {
+        let edited = bench
+            .selected
+            .is_some_and(|entity| bench.history.original(entity).is_some());
+        let reset = ui.add_enabled(edited, Button::new("Reset"));
+        if reset
+            .on_hover_text("As it was before it was first edited")
+            .clicked()
+        {
+            bench.reset();
+        }
+        if ui.button("Copy as Rust").clicked() {
+            let text = code::rust(draft, &code::function_name(title), title);
+            bench.asks.push(Ask::Copy(text, "Rust"));
+        }
+        if ui.button("Copy as JSON").clicked() {
+            match preset::json(draft) {
+                Ok(text) => bench.asks.push(Ask::Copy(text, "JSON")),
+                Err(wrong) => bench.message = Some(wrong),
+            }
+        }
+    });
+    ui.horizontal(|ui| {
+        let name = TextEdit::singleline(&mut bench.preset_name)
+            .hint_text("preset name")
+            .desired_width(120.0);
+        ui.add(name);
+        let named = !bench.preset_name.trim().is_empty();
+        if ui.add_enabled(named, Button::new("Save")).clicked() {
+            match preset::json(draft) {
+                Ok(text) => bench
+                    .asks
+                    .push(Ask::Save(bench.preset_name.trim().into(), text)),
+                Err(wrong) => bench.message = Some(wrong),
+            }
+        }
+        ComboBox::from_id_salt("presets")
+            .selected_text("Load")
+            .width(80.0)
+            .show_ui(ui, |ui| {
+                for name in &bench.presets {
+                    if ui.selectable_label(false, name).clicked() {
+                        bench.asks.push(Ask::Load(name.clone()));
+                    }
+                }
+                if bench.presets.is_empty() {
+                    ui.label("none saved yet");
+                }
+            });
+    });
+}

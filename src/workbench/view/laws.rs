@@ -1,0 +1,152 @@
+//! Force laws of springs and dampers.
+
+use super::companions::{choice, grid};
+use super::field::{Drag, line, number};
+use crate::element::*;
+use bevy::prelude::Vec2;
+use bevy_egui::egui::Ui;
+
+/// Which law it is, whatever its numbers.
+fn is<T>(a: &Option<T>, b: &Option<T>) -> bool {
+    a.as_ref().map(std::mem::discriminant) == b.as_ref().map(std::mem::discriminant)
+}
+
+/// A choice among laws; one that is chosen anew starts with numbers near those of the element.
+fn law<T: Clone + PartialEq>(
+    ui: &mut Ui,
+    name: &str,
+    law: &mut Option<T>,
+    choices: &[(Option<T>, &str)],
+) {
+    let at = choices.iter().position(|(other, _)| is(other, law));
+    let numbers: Vec<_> = choices
+        .iter()
+        .zip(0..)
+        .map(|((_, text), i)| (i, *text))
+        .collect();
+    let mut chosen = at.unwrap_or(0);
+    ui.horizontal(|ui| {
+        ui.label(name);
+        if choice(ui, name, &mut chosen, &numbers) {
+            law.clone_from(&choices[chosen].0);
+        }
+    });
+}
+
+pub(super) fn spring(ui: &mut Ui, spring: &mut Option<SpringLaw>, stiffness: f32) {
+    let k = stiffness;
+    law(
+        ui,
+        "spring law",
+        spring,
+        &[
+            (None, "linear"),
+            (Some(SpringLaw::Cubic), "cubic"),
+            (Some(SpringLaw::polynomial(k, 0.0, 0.0)), "polynomial"),
+            (
+                Some(SpringLaw::table([(-1.0, -k), (0.0, 0.0), (1.0, k)])),
+                "table",
+            ),
+        ],
+    );
+    match spring {
+        Some(SpringLaw::Polynomial { pull, push }) => {
+            for (name, polynomial) in [("pull", pull), ("push", push)] {
+                grid(ui, name, |ui| {
+                    ui.label(name);
+                    ui.end_row();
+                    line(ui, "linear", &mut polynomial.linear, " N/m", Drag::Share);
+                    line(
+                        ui,
+                        "quadratic",
+                        &mut polynomial.quadratic,
+                        " N/m²",
+                        Drag::Share,
+                    );
+                    line(ui, "cubic", &mut polynomial.cubic, " N/m³", Drag::Share);
+                });
+            }
+        }
+        Some(SpringLaw::Table(points)) => table(ui, "spring table", points, " m"),
+        None | Some(SpringLaw::Linear | SpringLaw::Cubic) => {}
+    }
+}
+
+pub(super) fn damping(ui: &mut Ui, damping: &mut Option<DampingLaw>, coefficient: f32) {
+    let c = coefficient;
+    let quadratic = DampingLaw::Quadratic {
+        linear: c,
+        quadratic: 0.0,
+    };
+    let blow_off = DampingLaw::BlowOff {
+        damping: c,
+        knee: 1.0,
+        beyond: 0.2 * c,
+    };
+    law(
+        ui,
+        "damping law",
+        damping,
+        &[
+            (None, "linear"),
+            (Some(DampingLaw::sided(c, c)), "bump and rebound"),
+            (Some(quadratic), "quadratic"),
+            (Some(blow_off), "blow-off"),
+            (
+                Some(DampingLaw::table([(-1.0, -c), (0.0, 0.0), (1.0, c)])),
+                "table",
+            ),
+        ],
+    );
+    match damping {
+        Some(DampingLaw::Sided { bump, rebound }) => grid(ui, "sided", |ui| {
+            line(ui, "bump", bump, " N s/m", Drag::Share);
+            line(ui, "rebound", rebound, " N s/m", Drag::Share);
+        }),
+        Some(DampingLaw::Quadratic { linear, quadratic }) => grid(ui, "orifice", |ui| {
+            line(ui, "linear", linear, " N s/m", Drag::Share);
+            line(ui, "quadratic", quadratic, " N s²/m²", Drag::Share);
+        }),
+        Some(DampingLaw::BlowOff {
+            damping,
+            knee,
+            beyond,
+        }) => grid(ui, "blow-off", |ui| {
+            line(ui, "damping", damping, " N s/m", Drag::Share);
+            line(ui, "knee", knee, " m/s", Drag::Share);
+            line(ui, "beyond", beyond, " N s/m", Drag::Share);
+        }),
+        Some(DampingLaw::Table(points)) => table(ui, "damping table", points, " m/s"),
+        None | Some(DampingLaw::Linear) => {}
+    }
+}
+
+/// Points that can be moved, added and removed.
+fn table(ui: &mut Ui, name: &str, table: &mut ForceTable, unit: &str) {
+    let mut removed = None;
+    grid(ui, name, |ui| {
+        for (i, point) in table.points.iter_mut().enumerate() {
+            number(ui, &mut point.x, unit, Drag::Even(0.005));
+            number(ui, &mut point.y, " N", Drag::Even(0.5));
+            if ui
+                .small_button("−")
+                .on_hover_text("Remove this point")
+                .clicked()
+            {
+                removed = Some(i);
+            }
+            ui.end_row();
+        }
+        if ui.small_button("+").on_hover_text("Add a point").clicked() {
+            let next = match table.points[..] {
+                [.., a, b] => b + (b - a),
+                [a] => a + Vec2::ONE,
+                [] => Vec2::ZERO,
+            };
+            table.points.push(next);
+        }
+    });
+    if let Some(i) = removed {
+        table.points.remove(i);
+    }
+}

@@ -1,0 +1,109 @@
+//! What is drawn of it, with egui. Nothing here knows the world.
+
+mod companions;
+mod element;
+mod field;
+mod laws;
+mod list;
+mod plots;
+
+use super::bench::{Ask, Bench};
+use bevy_egui::egui::{self, Panel, RichText, Ui};
+
+pub(crate) use field::significant;
+
+/// Least and greatest speed of the clock.
+const SPEEDS: [f32; 7] = [1.0 / 32.0, 0.0625, 0.125, 0.25, 0.5, 1.0, 2.0];
+
+/// The whole workbench, around the middle of a window.
+pub(crate) fn show(ui: &mut Ui, bench: &mut Bench) {
+    Panel::top("coilover_workbench_bar").show(ui, |ui| bar(ui, bench));
+    Panel::bottom("coilover_workbench_plots")
+        .default_size(230.0)
+        .size_range(140.0..=500.0)
+        .resizable(true)
+        .show(ui, |ui| plots::show(ui, bench));
+    Panel::left("coilover_workbench_list")
+        .default_size(285.0)
+        .resizable(true)
+        .show(ui, |ui| list::show(ui, bench));
+    Panel::right("coilover_workbench_element")
+        .default_size(345.0)
+        .resizable(true)
+        .show(ui, |ui| element::show(ui, bench));
+    shortcuts(ui, bench);
+    // What is not being dragged or typed any more is done.
+    let at_work = ui.input(|input| input.pointer.any_down())
+        || ui.memory(|memory| memory.focused().is_some());
+    if !at_work {
+        bench.history.close();
+    }
+}
+
+fn shortcuts(ui: &Ui, bench: &mut Bench) {
+    if ui.ctx().egui_wants_keyboard_input() {
+        return;
+    }
+    use egui::{Key, KeyboardShortcut, Modifiers};
+    let again = KeyboardShortcut::new(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
+    let back = KeyboardShortcut::new(Modifiers::COMMAND, Key::Z);
+    if ui.input_mut(|input| input.consume_shortcut(&again)) {
+        bench.redo();
+    } else if ui.input_mut(|input| input.consume_shortcut(&back)) {
+        bench.undo();
+    }
+}
+
+/// Clock, undo and messages.
+fn bar(ui: &mut Ui, bench: &mut Bench) {
+    ui.horizontal(|ui| {
+        ui.label(RichText::new("Springs").strong());
+        ui.separator();
+        let paused = bench.clock.paused;
+        let pause = if paused { "Run" } else { "Pause" };
+        if ui.button(pause).clicked() {
+            bench.asks.push(Ask::Pause(!paused));
+        }
+        if ui.button("Step").on_hover_text("One tick").clicked() {
+            bench.asks.push(Ask::Step);
+        }
+        let speed = bench.clock.speed;
+        egui::ComboBox::from_id_salt("speed")
+            .width(64.0)
+            .selected_text(speed_text(speed))
+            .show_ui(ui, |ui| {
+                for choice in SPEEDS {
+                    if ui
+                        .selectable_label(speed == choice, speed_text(choice))
+                        .clicked()
+                    {
+                        bench.asks.push(Ask::Speed(choice));
+                    }
+                }
+            });
+        ui.separator();
+        let [undo, redo] = bench.history.next();
+        let button = |ui: &mut Ui, text: &str, what: Option<&str>| {
+            let button = ui.add_enabled(what.is_some(), egui::Button::new(text));
+            button.on_hover_text(what.unwrap_or_default()).clicked()
+        };
+        if button(ui, "Undo", undo) {
+            bench.undo();
+        }
+        if button(ui, "Redo", redo) {
+            bench.redo();
+        }
+        ui.separator();
+        if let Some(message) = &bench.message {
+            ui.label(message);
+        }
+    });
+}
+
+fn speed_text(speed: f32) -> String {
+    if speed < 1.0 && speed > 0.0 {
+        format!("1/{}", significant(f64::from(speed.recip())))
+    } else {
+        format!("{}×", significant(f64::from(speed)))
+    }
+}
