@@ -125,7 +125,7 @@ fn publish(options: &Options, folder: &Path, extras: &str) -> Result<(), Box<dyn
         text.push_str(&report::section(scene, rows));
     }
     text.push_str(extras);
-    text.push_str(&peers::section(folder));
+    text.push_str(&peers::section(folder, &scenes));
     text.push_str(&advice::section(&scenes));
     std::fs::write(
         options.out.join("docs/speed_vs_error.md"),

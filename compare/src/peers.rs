@@ -1,39 +1,104 @@
 //! What the scripts in `compare/peers` have found out about engines outside of this process.
 
+use crate::front::find;
+use crate::method::{Dial, Method, Setting};
+use crate::scenes::Scene;
+use crate::table::Row;
 use crate::words::digits;
+use std::collections::BTreeSet;
 use std::fmt::Write;
 use std::fs;
 use std::path::Path;
 
-/// Their table at 60 and 240 steps a second, or nothing where they have not run.
-pub fn section(folder: &Path) -> String {
+/// A line of their file.
+struct Peer {
+    /// Engine and setting.
+    name: [String; 2],
+    scene: String,
+    rate: u32,
+    /// m; none where it diverged.
+    error: Option<f64>,
+}
+
+impl Peer {
+    fn parse(line: &str) -> Option<Self> {
+        let cells: Vec<&str> = line.split(',').collect();
+        let [engine, setting, scene, rate, error, diverged, _] = cells.as_slice() else {
+            return None;
+        };
+        let error = error.parse::<f64>().ok().filter(|_| *diverged == "0");
+        Some(Self {
+            name: [engine, setting].map(|name| (*name).to_owned()),
+            scene: (*scene).to_owned(),
+            rate: rate.parse().ok()?,
+            error,
+        })
+    }
+}
+
+fn millimetres(error: Option<f64>) -> String {
+    error.map_or("diverges".into(), |error| digits(1e3 * error))
+}
+
+/// Their errors at 60 and 240 steps a second beside ours, or nothing where they have not run.
+pub fn section(folder: &Path, scenes: &[(&Scene, Vec<Row>)]) -> String {
     let Ok(csv) = fs::read_to_string(folder.join("peers.csv")) else {
         return String::new();
     };
+    let peers: Vec<Peer> = csv.lines().skip(1).filter_map(Peer::parse).collect();
+    let told: BTreeSet<&str> = peers.iter().map(|p| p.scene.as_str()).collect();
+    let scenes: Vec<_> = scenes
+        .iter()
+        .filter(|(scene, _)| told.contains(scene.name))
+        .collect();
     let mut text = String::from(
-        "## Engines outside of Bevy\n\nMeasured by `compare/peers/run`, on the same scenes of points, each engine in \
-         its own language: MuJoCo's spatial tendon from Python, with a call per step, Exudyn's spring-damper, called once for all steps, and Jolt's distance constraint \
-         in WebAssembly. **Their times are not comparable with those above**: they hold the cost of another language, \
-         and no Bevy app. Their errors are.\n\n\
-         | scene | peer | setting | Hz | largest error | step (not comparable) |\n|---|---|---|---|---|---|\n",
+        "## Engines outside of Bevy\n\nMeasured by `compare/peers/run`, on the same scenes of points, with the same \
+         stiffness and damping: MuJoCo's spatial tendon, Exudyn's spring-damper, Jolt's distance constraint (in \
+         WebAssembly), Box3D's distance joint, springs between Newton's particles, and edges of the soft bodies that newer \
+         versions of Rapier have. Box3D and Rapier state a spring as a frequency and a damping ratio, which are worked out \
+         from stiffness, damping and masses. Each engine runs in its own language, so their times, in `speed_vs_error/peers.csv`, are \
+         not comparable with those above. Their errors are: largest distance from the truth, in millimetres.\n\n",
     );
-    for line in csv.lines().skip(1) {
-        let cells: Vec<&str> = line.split(',').collect();
-        let [peer, setting, scene, rate, error, diverged, step] = cells.as_slice() else {
-            continue;
-        };
-        if !["60", "240"].contains(rate) {
-            continue;
+    for rate in [60, 240] {
+        let _ = write!(text, "At {rate} steps a second:\n\n| engine | setting |");
+        for (scene, _) in &scenes {
+            let _ = write!(text, " {} |", scene.title);
         }
-        let error = match error.parse::<f64>() {
-            Ok(error) if *diverged == "0" => format!("{} mm", digits(1e3 * error)),
-            _ => "diverges".into(),
-        };
-        let _ = writeln!(
-            text,
-            "| {scene} | {peer} | {setting} | {rate} | {error} | {step} µs |"
-        );
+        let _ = writeln!(text, "\n|---|---|{}", "---|".repeat(scenes.len()));
+        for dial in [Method::Ours.default_dial(), Dial::Extrapolated] {
+            let setting = Setting {
+                method: Method::Ours,
+                dial,
+                rate,
+            };
+            let _ = write!(text, "| **{}** | {dial} |", Method::Ours.title());
+            for (_, rows) in &scenes {
+                let row = find(rows, setting);
+                let cell = row.map_or("–".into(), |row| {
+                    millimetres(Some(row.strayed.error).filter(|_| !row.strayed.diverged))
+                });
+                let _ = write!(text, " {cell} |");
+            }
+            text.push('\n');
+        }
+        let mut names: Vec<&[String; 2]> = Vec::new();
+        for peer in peers.iter().filter(|p| p.rate == rate) {
+            if !names.contains(&&peer.name) {
+                names.push(&peer.name);
+            }
+        }
+        for name in names {
+            let _ = write!(text, "| {} | {} |", name[0], name[1]);
+            for (scene, _) in &scenes {
+                let peer = peers
+                    .iter()
+                    .find(|p| p.name == *name && p.rate == rate && p.scene == scene.name);
+                let cell = peer.map_or("–".into(), |peer| millimetres(peer.error));
+                let _ = write!(text, " {cell} |");
+            }
+            text.push('\n');
+        }
+        text.push('\n');
     }
-    text.push('\n');
     text
 }
