@@ -7,6 +7,7 @@ mod advice;
 mod campaign;
 mod chart;
 mod clock;
+mod cost;
 mod describe;
 mod follow;
 mod front;
@@ -120,7 +121,12 @@ fn publish(options: &Options, folder: &Path, extras: &str) -> Result<(), Box<dyn
         }
     }
     let headline = report::headline(&scenes);
-    let mut text = format!("{}## In short\n\n{headline}\n\n", report::opening());
+    cost::draw(&folder.join("cost.svg"), &scenes)?;
+    let mut text = format!(
+        "{}{}## In short\n\n{headline}\n\n",
+        report::opening(),
+        cost::section(&scenes)
+    );
     for (scene, rows) in &scenes {
         text.push_str(&report::section(scene, rows));
     }

@@ -1,0 +1,205 @@
+//! What truth costs: for each scene the cheapest setting of every method that keeps to an error.
+
+use crate::method::Method;
+use crate::paint::{Drawn, FAINT, INK, Sheet, colour, font};
+use crate::scenes::Scene;
+use crate::table::Row;
+use plotters::prelude::*;
+use std::fmt::Write;
+use std::path::Path;
+
+/// Errors that are asked for, m.
+const WITHIN: [f64; 3] = [1e-2, 1e-3, 1e-4];
+
+/// Fewest steps per second: as a game draws.
+const SLOWEST: u32 = 60;
+
+/// One of the ways to make a spring, whichever variants of it there are.
+const WAYS: [&[Method]; 4] = [
+    &[Method::Ours],
+    &[Method::Joint],
+    &[Method::Avian, Method::AvianBare],
+    &[Method::Force],
+];
+
+/// Scenes and what was measured in each.
+type Measured<'a> = [(&'a Scene, Vec<Row>)];
+
+/// The cheapest row of a way that keeps to an error.
+fn cheapest(rows: &[Row], way: &[Method], within: f64) -> Option<Row> {
+    rows.iter()
+        .filter(|r| way.contains(&r.setting.method) && r.setting.rate >= SLOWEST)
+        .filter(|r| !r.strayed.diverged && r.strayed.error <= within)
+        .min_by(|a, b| a.work().total_cmp(&b.work()))
+        .copied()
+}
+
+/// µs in 1/60 s of the scene.
+fn price(row: &Row) -> f64 {
+    1e6 * row.work() / 60.0
+}
+
+/// The table, and the words that go with it and its chart.
+pub fn section(scenes: &Measured) -> String {
+    let mut text = String::from(
+        "## What truth costs\n\n\
+         ![For each scene the cheapest setting of every method](speed_vs_error/cost.svg)\n\n\
+         For each scene and each error, the cheapest setting of every method that stays within that error, of all settings at 60 to \
+         960 steps a second. The numbers are computing time per 1/60 s of the scene in µs, the whole frame \
+         of a small app included: without any spring it takes about 9 µs. A dash means that no setting gets there, or that the method has no such spring. \
+         The settings are in the CSV files of the scenes, beside the chart.\n\n\
+         | scene | within | bevy_coilover | Rapier SpringJoint | Avian distance joint | force once per step |\n\
+         |---|---|---|---|---|---|\n",
+    );
+    for (scene, rows) in scenes {
+        for within in WITHIN {
+            let _ = write!(text, "| {} | {} mm |", scene.title, 1e3 * within);
+            for way in WAYS {
+                let cell = cheapest(rows, way, within).map_or("–".into(), |row| {
+                    format!(
+                        "{:.1} ({}, {} Hz)",
+                        price(&row),
+                        row.setting.dial,
+                        row.setting.rate
+                    )
+                });
+                let _ = write!(text, " {cell} |");
+            }
+            text.push('\n');
+        }
+    }
+    text + "\n"
+}
+
+/// Draws a panel for each error: a line for each scene, a dot for each method.
+pub fn draw(path: &Path, scenes: &Measured) -> Drawn {
+    let size = (1120, 130 + 34 * scenes.len() as u32);
+    let sheet = SVGBackend::new(path, size).into_drawing_area();
+    sheet.fill(&WHITE)?;
+    let (names, panels) = sheet.split_horizontally(190);
+    for (i, (scene, _)) in scenes.iter().enumerate() {
+        let at = (14, height(i) - 7);
+        names.draw(&Text::new(scene.title, at, font(14)))?;
+    }
+    let all = || {
+        let rows = scenes
+            .iter()
+            .flat_map(|(_, rows)| WAYS.map(|way| (rows, way)));
+        rows.flat_map(|(rows, way)| WITHIN.map(|within| cheapest(rows, way, within)))
+    };
+    let dearest = all().flatten().map(|row| price(&row)).fold(100.0, f64::max);
+    for (panel, within) in panels.split_evenly((1, WITHIN.len())).iter().zip(WITHIN) {
+        draw_panel(panel, scenes, within, dearest)?;
+    }
+    legend(&sheet, size.1 as i32 - 20)?;
+    sheet.present()?;
+    Ok(())
+}
+
+/// Of a scene's line, px.
+fn height(scene: usize) -> i32 {
+    66 + 34 * scene as i32
+}
+
+fn draw_panel(panel: &Sheet, scenes: &Measured, within: f64, dearest: f64) -> Drawn {
+    const CHEAPEST: f64 = 7.0;
+    let width = panel.dim_in_pixel().0 as i32;
+    // Right of that stands what no setting reaches.
+    let reach = f64::from(width - 64);
+    let at = |price: f64| 10 + (reach * (price / CHEAPEST).ln() / (dearest / CHEAPEST).ln()) as i32;
+    let title = format!("within {} mm", 1e3 * within);
+    panel.draw(&Text::new(title, (10, 14), font(17)))?;
+    let bottom = height(scenes.len()) - 16;
+    for tick in [10.0, 30.0, 100.0, 300.0, 1000.0, 3000.0] {
+        if tick <= dearest {
+            let x = at(tick);
+            panel.draw(&PathElement::new([(x, 46), (x, bottom)], FAINT))?;
+            let label = Text::new(format!("{tick} µs"), (x - 14, bottom + 4), font(12));
+            panel.draw(&label)?;
+        }
+    }
+    let never = width - 28;
+    panel.draw(&Text::new("not reached", (never - 40, 28), font(12)))?;
+    for (i, (_, rows)) in scenes.iter().enumerate() {
+        let y = height(i);
+        panel.draw(&PathElement::new([(10, y), (width - 10, y)], FAINT))?;
+        let mut missing = 0;
+        // Ours last, so that nothing hides it.
+        for way in WAYS.iter().rev() {
+            let paint = colour(way[0]);
+            if !rows.iter().any(|row| way.contains(&row.setting.method)) {
+                continue;
+            }
+            match cheapest(rows, way, within) {
+                Some(row) => {
+                    let radius = if way[0] == Method::Ours { 7 } else { 5 };
+                    panel.draw(&Circle::new((at(price(&row)), y), radius, paint.filled()))?;
+                }
+                None => {
+                    let x = never - 14 + 14 * missing;
+                    panel.draw(&Cross::new((x, y), 4, paint.stroke_width(2)))?;
+                    missing += 1;
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+fn legend(sheet: &Sheet, y: i32) -> Drawn {
+    let mut x = 200;
+    for way in WAYS {
+        sheet.draw(&Circle::new((x, y), 6, colour(way[0]).filled()))?;
+        sheet.draw(&Text::new(way[0].title(), (x + 12, y - 7), font(14)))?;
+        x += 180;
+    }
+    let words = "further left is cheaper";
+    sheet.draw(&Text::new(words, (x, y - 7), font(14).color(&INK)))?;
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::clock::Times;
+    use crate::follow::Strayed;
+    use crate::method::Setting;
+
+    fn row(method: Method, rate: u32, step: f64, error: f64) -> Row {
+        let strayed = Strayed {
+            error,
+            energy: None,
+            momentum: None,
+            diverged: false,
+        };
+        let times = Times {
+            median: step,
+            low: step,
+            high: step,
+        };
+        Row {
+            setting: Setting::default_of(method, rate),
+            strayed,
+            times,
+            turns: 1,
+        }
+    }
+
+    #[test]
+    fn the_cheapest_that_is_true_enough_is_taken() {
+        let rows = [
+            row(Method::Joint, 30, 9e-6, 1e-5),
+            row(Method::Joint, 60, 10e-6, 5e-3),
+            row(Method::Joint, 120, 10e-6, 9e-4),
+            row(Method::Joint, 240, 10e-6, 1e-4),
+        ];
+        let rate = |within| cheapest(&rows, WAYS[1], within).map(|row| row.setting.rate);
+        assert_eq!(
+            rate(1e-2),
+            Some(60),
+            "30 steps a second are too few for a game"
+        );
+        assert_eq!(rate(1e-3), Some(120));
+        assert_eq!(rate(1e-5), None);
+    }
+}
