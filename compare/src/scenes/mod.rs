@@ -5,6 +5,7 @@ mod dumbbell;
 mod networks;
 pub mod oscillator;
 mod pendulum;
+mod praised;
 mod quarter_car;
 mod star;
 
@@ -19,7 +20,7 @@ pub struct Scene {
     pub make: fn() -> Problem,
 }
 
-pub const SCENES: [Scene; 10] = [
+pub const SCENES: [Scene; 13] = [
     oscillator::SCENE,
     pendulum::SOFT,
     pendulum::DAMPED,
@@ -30,6 +31,9 @@ pub const SCENES: [Scene; 10] = [
     star::SCENE,
     quarter_car::SCENE,
     duffing::SCENE,
+    praised::SPRING_RATIO,
+    praised::HEAVY_ROPE,
+    praised::CLOTH,
 ];
 
 /// Standard gravity as the references have it, m/s².
