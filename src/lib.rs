@@ -13,6 +13,7 @@ mod element;
 mod engine;
 #[cfg(feature = "gltf")]
 mod gltf;
+mod mouse_spring;
 mod plugin;
 mod readout;
 mod recommend;
@@ -33,6 +34,7 @@ pub use element::{
 pub use engine::SpringLoad;
 #[cfg(feature = "gltf")]
 pub use gltf::{CoiloverGltfPlugin, ExportedGltf, export_gltf};
+pub use mouse_spring::MouseSpring;
 pub use plugin::{CoiloverPlugin, CoiloverSystems};
 pub use readout::{SpringMethod, SpringReadout};
 pub use recommend::recommend;
@@ -189,10 +191,10 @@ pub mod prelude {
         Anchors, Breakable, CoiloverDiagnosticsPlugin, CoiloverPlugin, CoiloverPlugins,
         CoiloverSettings, CoiloverSnapshot, CoiloverSystems, CustomDampingLaw, CustomSpringLaw,
         Damper, DampingLaw, EndNames, ForceLaw, ForceTable, HeldEnd, HoldPose, MaxForce,
-        Polynomial, Preload, RapierSnapshot, SnapshotError, Spring, SpringAction, SpringAxis,
-        SpringBroke, SpringDamper, SpringFault, SpringLaw, SpringLoad, SpringMethod, SpringReadout,
-        SpringTravel, SpringTuning, TorsionDamper, TorsionSpring, TorsionSpringDamper, WhenBroken,
-        WorldAnchors, recommend,
+        MouseSpring, Polynomial, Preload, RapierSnapshot, SnapshotError, Spring, SpringAction,
+        SpringAxis, SpringBroke, SpringDamper, SpringFault, SpringLaw, SpringLoad, SpringMethod,
+        SpringReadout, SpringTravel, SpringTuning, TorsionDamper, TorsionSpring,
+        TorsionSpringDamper, WhenBroken, WorldAnchors, recommend,
     };
     #[cfg(feature = "visual")]
     pub use crate::{

@@ -2,6 +2,7 @@
 
 use crate::element::*;
 use crate::engine::{self, Role, Scene, SpringLoad, Strays, Watched};
+use crate::mouse_spring::{self, Grip, MouseSpring};
 use crate::readout::SpringReadout;
 use crate::settings::CoiloverSettings;
 use bevy::ecs::schedule::ScheduleLabel;
@@ -151,6 +152,14 @@ impl Plugin for CoiloverPlugin {
 
         let schedule = self.settings.schedule;
         app.add_systems(schedule, engine::tell_strays.run_if(engine::any_strays));
+        let any_held = any_with_component::<MouseSpring>.or_else(any_with_component::<Grip>);
+        app.add_systems(
+            schedule,
+            mouse_spring::hold
+                .run_if(any_held)
+                .after(PhysicsSet::SyncBackend)
+                .before(CoiloverSystems::Prepare),
+        );
         app.configure_sets(
             schedule,
             (
@@ -206,7 +215,8 @@ pub(crate) fn register_elements(app: &mut App) {
         .register_type::<SpringTuning>()
         .register_type::<HoldPose>()
         .register_type::<WorldAnchors>()
-        .register_type::<EndNames>();
+        .register_type::<EndNames>()
+        .register_type::<MouseSpring>();
 }
 
 /// Sets the rates of physics and of `FixedUpdate` alike.

@@ -1,4 +1,4 @@
-//! A hand that pulls bodies: critically damped springs between the pointer and what it has hold of.
+//! A hand that pulls bodies: the pointer picks one, and a `MouseSpring` pulls it.
 
 use super::{Again, Shape};
 use bevy::prelude::*;
@@ -6,16 +6,14 @@ use bevy::window::PrimaryWindow;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
 
-/// How stiff the hand is, Hz, whatever it pulls.
-const FREQUENCY: f32 = 2.0;
 const COLOR: Color = Color::srgb(1.0, 0.55, 0.1);
 
 /// What the pointer has hold of.
 #[derive(Resource, Default)]
 pub struct Hand {
     grip: Option<Grip>,
-    /// The point that follows the pointer, then the springs from there.
-    made: Vec<Entity>,
+    /// The [`MouseSpring`] that pulls it.
+    spring: Option<Entity>,
 }
 
 impl Hand {
@@ -101,49 +99,31 @@ fn distance_to(ray: Ray3d, half: Vec3, at: &GlobalTransform) -> Option<f32> {
     (enter <= leave && enter > 0.0).then_some(enter)
 }
 
-/// Keeps the springs between pointer and body, as long as both are there.
+/// Keeps the spring between pointer and body, as long as both are there.
 fn pull(
     mut hand: ResMut<Hand>,
     mut again: ResMut<Again>,
     time: Res<Time>,
     bodies: Query<&RigidBody>,
-    mut points: Query<&mut Transform, Without<RigidBody>>,
+    mut springs: Query<&mut MouseSpring>,
     mut commands: Commands,
 ) {
-    if hand
-        .grip
-        .as_ref()
-        .is_some_and(|grip| !bodies.contains(grip.body))
-    {
-        // The scene has started again.
-        hand.grip = None;
-    }
-    let Hand { grip, made } = &mut *hand;
-    let Some(grip) = grip else {
-        for entity in made.drain(..) {
-            commands.entity(entity).try_despawn();
+    let Hand { grip, spring } = &mut *hand;
+    // Where there is none any more, the scene has started again.
+    if let Some(grip) = grip.take_if(|grip| bodies.contains(grip.body)) {
+        again.leave_time(time.elapsed_secs());
+        let new = MouseSpring::new(grip.body, grip.anchor, grip.pointer);
+        match spring.and_then(|spring| springs.get_mut(spring).ok()) {
+            Some(mut held) => *held = new,
+            None => *spring = Some(commands.spawn(new).id()),
         }
-        return;
-    };
-    again.leave_time(time.elapsed_secs());
-    if let Some(mut point) = made.first().and_then(|point| points.get_mut(*point).ok()) {
-        point.translation = grip.pointer;
-        return;
+        hand.grip = Some(grip);
+    } else {
+        hand.grip = None;
+        if let Some(spring) = hand.spring.take() {
+            commands.entity(spring).try_despawn();
+        }
     }
-    let point = commands
-        .spawn(Transform::from_translation(grip.pointer))
-        .id();
-    // One along each axis: what is pulled does not swing to the side either.
-    let springs = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| {
-        let spring = (
-            SpringDamper::new(point, grip.body).with_rest_length(0.0),
-            SpringTuning::frequency(FREQUENCY, 1.0),
-            SpringAxis::World(axis),
-            Anchors::new(Vec3::ZERO, grip.anchor),
-        );
-        commands.spawn(spring).id()
-    });
-    *made = vec![point, springs[0], springs[1], springs[2]];
 }
 
 /// A line from the pointer to where the body is held.

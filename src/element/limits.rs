@@ -30,7 +30,7 @@ pub enum SpringAction {
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 pub struct Preload(pub f32);
 
-/// Most force that spring and damper have together, N, above zero; the stops of a
+/// Most force that spring and damper have together, N, above zero: their sum is cut there, as a clutch slips. The stops of a
 /// [`SpringTravel`] are not held back by it.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
 #[type_path = "bevy_coilover"]

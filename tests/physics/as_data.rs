@@ -18,7 +18,7 @@ pub fn paths(lab: &Lab) -> BTreeSet<&'static str> {
         .collect()
 }
 
-const COMPONENTS: [&str; 21] = [
+const COMPONENTS: [&str; 22] = [
     "Spring",
     "Damper",
     "SpringDamper",
@@ -40,6 +40,7 @@ const COMPONENTS: [&str; 21] = [
     "SpringTuning",
     "HoldPose",
     "WorldAnchors",
+    "MouseSpring",
 ];
 
 #[test]

@@ -30,6 +30,7 @@ mod house;
 mod joints;
 mod laws;
 mod messages;
+mod mouse_spring;
 mod named_ends;
 mod natural_frequency;
 mod networks;

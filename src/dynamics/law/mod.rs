@@ -231,6 +231,17 @@ impl Law {
         spring
     }
 
+    /// What the spring alone would have without its limits, where they cut its force to `cut`.
+    fn uncut(&self, x: f64, cut: f64) -> f64 {
+        if x > self.at_limits[1] {
+            self.bare(x).force.max(cut)
+        } else if x < self.at_limits[0] {
+            self.bare(x).force.min(cut)
+        } else {
+            cut
+        }
+    }
+
     /// Tension without damping.
     pub(crate) fn elastic(&self, length: f64, rest_length: f64) -> Elastic {
         let mut sum = self.spring_at(length - rest_length);
@@ -285,10 +296,11 @@ impl Law {
             } else {
                 self.most
             };
-            let total = spring + sum.force;
+            // Their sum is cut, as a clutch that slips does: where the spring alone is past the limit, a damper that is weaker
+            // than what it has too much changes nothing. A cut keeps order, so this never drives.
+            let total = self.uncut(length - rest_length, spring) + sum.force;
             if total < least || total > greatest {
                 let clamped = total.clamp(least, greatest) - spring;
-                // Where the spring alone is past a limit already, damping adds nothing.
                 let force = if clamped * rate < 0.0 { 0.0 } else { clamped };
                 sum = Drag { force, slope: 0.0 };
             }

@@ -1,0 +1,189 @@
+//! Pulling a body by one of its points: with a mouse, a hand, a tractor beam.
+
+use crate::element::{Anchors, MaxForce, SpringAxis, SpringDamper, SpringFault, SpringTuning};
+use bevy::prelude::*;
+
+/// Pulls a point of a body to a point of the world by critically damped springs, so that it follows a pointer without
+/// swinging. Spawn it on an entity of its own without a parent; write [`target`](Self::target) as the pointer moves; despawn it, or remove it, to
+/// let go.
+///
+/// At the next step, three children are spawned, a [`SpringDamper`] along each axis of the world, tuned for the mass that the body has at
+/// that point. So what is pulled is as quick whatever it weighs, and does not swing to the side either. Under gravity a free body hangs g/ω² below
+/// the target, ω = 2π · frequency: 6 cm at 2 Hz. Where the body is gone, nothing is pulled.
+///
+/// A target, point, frequency or force that is no sound number is a [`SpringFault`] on this entity, and nothing is pulled meanwhile.
+///
+/// ```
+/// # use bevy::prelude::*;
+/// # use bevy_coilover::prelude::*;
+/// # fn grab(commands: &mut Commands, body: Entity, at: &GlobalTransform, pointer: Vec3) -> Entity {
+/// let point = at.affine().inverse().transform_point3(pointer);
+/// commands.spawn(MouseSpring::new(body, point, pointer).with_max_force(500.0)).id()
+/// # }
+/// # fn follow(mut held: Single<&mut MouseSpring>, pointer: Vec3) {
+/// held.target = pointer;
+/// # }
+/// ```
+#[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
+#[type_path = "bevy_coilover"]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
+#[reflect(Component, Debug, PartialEq, Clone)]
+#[require(Transform)]
+pub struct MouseSpring {
+    /// What is pulled: a body, or anything that an element can end on.
+    #[entities]
+    pub body: Entity,
+    /// Where it is held, in its own frame, m.
+    pub point: Vec3,
+    /// Where that point is pulled to, in the world, m.
+    pub target: Vec3,
+    /// Natural frequency, Hz: it is there after about 1/frequency seconds.
+    pub frequency: f32,
+    /// Greatest force along each axis of the world, N; none for any force.
+    pub max_force: Option<f32>,
+}
+
+impl MouseSpring {
+    /// With 2 Hz, and any force.
+    pub const fn new(body: Entity, point: Vec3, target: Vec3) -> Self {
+        Self {
+            body,
+            point,
+            target,
+            frequency: 2.0,
+            max_force: None,
+        }
+    }
+
+    /// Natural frequency, Hz.
+    pub const fn with_frequency(mut self, frequency: f32) -> Self {
+        self.frequency = frequency;
+        self
+    }
+
+    /// Greatest force along each axis of the world, N.
+    pub const fn with_max_force(mut self, newtons: f32) -> Self {
+        self.max_force = Some(newtons);
+        self
+    }
+
+    /// Field and reason, if it cannot pull.
+    fn fault(&self) -> Option<(&'static str, &'static str)> {
+        let is_positive = |x: f32| x > 0.0 && x.is_finite();
+        if !self.target.is_finite() {
+            Some(("MouseSpring::target", "is NaN or infinite"))
+        } else if !self.point.is_finite() {
+            Some(("MouseSpring::point", "is NaN or infinite"))
+        } else if !is_positive(self.frequency) {
+            Some(("MouseSpring::frequency", "is not above zero, or not finite"))
+        } else if !self.max_force.is_none_or(is_positive) {
+            Some(("MouseSpring::max_force", "is not above zero, or not finite"))
+        } else {
+            None
+        }
+    }
+
+    /// Whether the same springs serve another one: it differs in its target alone.
+    fn pulls_like(&self, other: &Self) -> bool {
+        Self {
+            target: other.target,
+            ..*self
+        } == *other
+    }
+}
+
+/// The springs of a [`MouseSpring`], and what they were made for.
+#[derive(Component, Clone, Copy, Debug)]
+pub(crate) struct Grip {
+    springs: [Entity; 3],
+    of: MouseSpring,
+}
+
+/// Makes the springs of what is held, takes their end to the target, and lets go.
+pub(crate) fn hold(
+    mut held: Query<(
+        Entity,
+        &MouseSpring,
+        &mut Transform,
+        Option<&Grip>,
+        Option<&SpringFault>,
+    )>,
+    released: Query<(Entity, &Grip), Without<MouseSpring>>,
+    ends: Query<(), With<Transform>>,
+    mut commands: Commands,
+) {
+    for (entity, grip) in &released {
+        release(entity, grip, &mut commands);
+    }
+    for (entity, spring, mut at, grip, told) in &mut held {
+        let fault = spring.fault();
+        tell(entity, fault, told, &mut commands);
+        let pulls = fault.is_none() && ends.contains(spring.body);
+        match grip {
+            Some(grip) if !(pulls && grip.of.pulls_like(spring)) => {
+                release(entity, grip, &mut commands);
+            }
+            Some(_) => {
+                at.translation = spring.target;
+                continue;
+            }
+            None => {}
+        }
+        if pulls {
+            at.translation = spring.target;
+            let springs = [Vec3::X, Vec3::Y, Vec3::Z]
+                .map(|axis| commands.spawn(along(axis, entity, spring)).id());
+            let of = *spring;
+            commands.entity(entity).insert(Grip { springs, of });
+            if let Some(newtons) = spring.max_force {
+                for spring in springs {
+                    commands.entity(spring).insert(MaxForce(newtons));
+                }
+            }
+        }
+    }
+}
+
+/// The spring along an axis.
+fn along(axis: Vec3, entity: Entity, spring: &MouseSpring) -> impl Bundle {
+    (
+        SpringDamper::new(entity, spring.body).with_rest_length(0.0),
+        SpringTuning::frequency(spring.frequency, 1.0),
+        SpringAxis::World(axis),
+        Anchors::new(Vec3::ZERO, spring.point),
+        ChildOf(entity),
+    )
+}
+
+fn release(entity: Entity, grip: &Grip, commands: &mut Commands) {
+    for spring in grip.springs {
+        commands.entity(spring).try_despawn();
+    }
+    commands.entity(entity).try_remove::<Grip>();
+}
+
+/// Says once what is wrong, and takes it back.
+fn tell(
+    entity: Entity,
+    fault: Option<(&'static str, &'static str)>,
+    told: Option<&SpringFault>,
+    commands: &mut Commands,
+) {
+    match (fault, told) {
+        (Some((field, _)), Some(told)) if told.field == field => {}
+        (Some((field, reason)), _) => {
+            let fault = SpringFault {
+                entity,
+                field: field.into(),
+                reason: reason.into(),
+            };
+            log::warn!("{fault}");
+            commands.entity(entity).try_insert(fault);
+        }
+        (None, Some(_)) => {
+            commands.entity(entity).try_remove::<SpringFault>();
+        }
+        (None, None) => {}
+    }
+}

@@ -1,0 +1,168 @@
+//! Does what a pointer has hold of follow it, as quickly and calmly as it should?
+
+use crate::harness::*;
+use crate::messages::Log;
+use bevy::prelude::*;
+use bevy_coilover::prelude::*;
+use bevy_rapier3d::prelude::*;
+use std::f64::consts::TAU;
+
+const FREQUENCY: f32 = 1.5;
+
+fn grab(lab: &mut Lab, body: Entity, target: Vec3) -> Entity {
+    lab.spawn(MouseSpring::new(body, Vec3::ZERO, target).with_frequency(FREQUENCY))
+}
+
+fn elements(lab: &mut Lab) -> usize {
+    let world = lab.app.world_mut();
+    world.query::<&SpringDamper>().iter(world).count()
+}
+
+#[test]
+fn a_held_body_comes_to_the_pointer_as_critically_damped_motion_does() {
+    for mass in [0.01, 2.0, 5e3] {
+        let mut lab = Lab::weightless();
+        let body = lab.body(mass, Vec3::new(1.0, 0.5, -0.25));
+        grab(&mut lab, body, Vec3::ZERO);
+        let omega = TAU * f64::from(FREQUENCY);
+        for tick in 1..=60 {
+            lab.tick();
+            let t = f64::from(tick) * f64::from(DT);
+            let left = ((1.0 + omega * t) * (-omega * t).exp()) as f32;
+            let at = lab.position(body);
+            let wanted = left * Vec3::new(1.0, 0.5, -0.25);
+            assert!(
+                at.distance(wanted) < 2e-3,
+                "{mass} kg, {t} s: {at}, {wanted}"
+            );
+        }
+    }
+}
+
+#[test]
+fn under_gravity_it_hangs_below_the_pointer_by_its_weight_over_the_stiffness() {
+    let mut lab = Lab::new();
+    let body = lab.body(3.0, Vec3::ZERO);
+    grab(&mut lab, body, Vec3::Y);
+    lab.run(5.0);
+    let sag = GRAVITY / (TAU * f64::from(FREQUENCY)).powi(2);
+    let at = lab.position(body);
+    assert!(
+        (f64::from(at.y) - 1.0 + sag).abs() < 1e-3 * sag,
+        "{at}, sag {sag}"
+    );
+}
+
+#[test]
+fn a_pointer_that_moves_takes_it_along() {
+    let mut lab = Lab::weightless();
+    let body = lab.body(3.0, Vec3::ZERO);
+    let mouse = grab(&mut lab, body, Vec3::ZERO);
+    for tick in 1..=240 {
+        let target = Vec3::X * (2.0 * DT * tick as f32);
+        lab.get_mut::<MouseSpring>(mouse).target = target;
+        lab.tick();
+    }
+    // Pointer and body go alike, so that no damper lags behind.
+    let at = lab.position(body);
+    assert!((at.x - 8.0).abs() < 5e-3, "{at}");
+    assert_eq!(elements(&mut lab), 3, "none is made anew for a new target");
+}
+
+#[test]
+fn no_axis_is_pulled_by_more_than_its_greatest_force() {
+    let mut lab = Lab::weightless();
+    let body = lab.body(1000.0, Vec3::ZERO);
+    let target = Vec3::new(100.0, 0.0, 0.0);
+    lab.spawn(MouseSpring::new(body, Vec3::ZERO, target).with_max_force(50.0));
+    lab.run(2.0);
+    let speed = lab.velocity(body).x;
+    assert!(
+        (speed - 0.1).abs() < 1e-3,
+        "50 N on a tonne for 2 s: {speed} m/s"
+    );
+}
+
+#[test]
+fn a_body_held_at_its_edge_swings_below_it_and_gains_nothing() {
+    let mut lab = Lab::new();
+    let body = lab.spawn(brick(2.0, Vec3::splat(0.05), Vec3::ZERO));
+    lab.spawn(MouseSpring::new(body, Vec3::X * 0.4, Vec3::X * 0.4));
+    let mut fastest = 0.0_f64;
+    for _ in 0..1200 {
+        lab.tick();
+        fastest = fastest.max(f64::from(lab.velocity(body).length()));
+    }
+    assert!(fastest < (2.0 * GRAVITY * 1.0).sqrt(), "{fastest} m/s");
+}
+
+#[test]
+fn who_lets_go_leaves_nothing_behind() {
+    for despawns in [true, false] {
+        let mut lab = Lab::weightless();
+        let body = lab.body(1.0, Vec3::ZERO);
+        let mouse = grab(&mut lab, body, Vec3::Y);
+        lab.run(0.2);
+        assert_eq!(elements(&mut lab), 3);
+        let world = lab.app.world_mut();
+        if despawns {
+            world.despawn(mouse);
+        } else {
+            world.entity_mut(mouse).remove::<MouseSpring>();
+        }
+        lab.run(0.1);
+        assert_eq!(elements(&mut lab), 0);
+        let velocity = lab.velocity(body);
+        lab.run(0.5);
+        assert_eq!(velocity, lab.velocity(body), "it flies on");
+        let force = lab.app.world().get::<ExternalForce>(body);
+        assert!(force.is_none_or(|f| f.force == Vec3::ZERO), "{force:?}");
+    }
+}
+
+#[test]
+fn a_held_body_that_is_despawned_is_let_go_without_a_word() {
+    let log = Log::capture();
+    let mut lab = Lab::weightless();
+    let body = lab.body(1.0, Vec3::ZERO);
+    grab(&mut lab, body, Vec3::Y);
+    lab.run(0.2);
+    lab.app.world_mut().despawn(body);
+    lab.run(0.2);
+    assert_eq!(elements(&mut lab), 0);
+    assert_eq!(log.take(), Vec::<String>::new());
+}
+
+#[test]
+fn numbers_that_mean_nothing_are_told_once_and_mended_by_better_ones() {
+    let log = Log::capture();
+    let mut lab = Lab::weightless();
+    let body = lab.body(1.0, Vec3::ZERO);
+    let mouse = grab(&mut lab, body, Vec3::Y);
+    lab.run(0.1);
+    let bad = [
+        ("target", MouseSpring::new(body, Vec3::ZERO, Vec3::NAN)),
+        ("point", MouseSpring::new(body, Vec3::INFINITY, Vec3::Y)),
+        (
+            "frequency",
+            MouseSpring::new(body, Vec3::ZERO, Vec3::Y).with_frequency(-1.0),
+        ),
+        (
+            "max_force",
+            MouseSpring::new(body, Vec3::ZERO, Vec3::Y).with_max_force(f32::NAN),
+        ),
+    ];
+    for (field, spring) in bad {
+        *lab.get_mut::<MouseSpring>(mouse) = spring;
+        lab.run(0.1);
+        let fault = lab.get::<SpringFault>(mouse);
+        assert_eq!(fault.field, format!("MouseSpring::{field}"));
+        assert_eq!(elements(&mut lab), 0);
+        let told = log.take();
+        assert_eq!(told.len(), 1, "{told:?}");
+    }
+    *lab.get_mut::<MouseSpring>(mouse) = MouseSpring::new(body, Vec3::ZERO, Vec3::Y);
+    lab.run(3.0);
+    assert!(lab.app.world().get::<SpringFault>(mouse).is_none());
+    assert!(lab.position(body).distance(Vec3::Y) < 1e-3);
+}
