@@ -22,8 +22,6 @@ pub(super) struct Group {
     pub dozing: Option<[RigidBodyHandle; 2]>,
     /// Contacts or joints hold some body of it.
     pub held: bool,
-    /// For so many steps nothing can come near it.
-    pub clear: u8,
     /// The engine solves its elements,
     pub inside: bool,
     /// and it was asleep in the last step.
@@ -128,7 +126,6 @@ impl Groups {
             assembly: None,
             dozing: None,
             held: false,
-            clear: 0,
             inside: false,
             is_asleep: false,
         }));

@@ -126,7 +126,11 @@ impl Scene {
             }
         }
         for (body, wanted) in self.bodies.iter_mut().zip(&scratch.wanted) {
-            body.disturbed |= wanted.signature != body.signature;
+            if wanted.signature != body.signature {
+                body.disturbed = true;
+                // Other elements may push it elsewhere.
+                body.clear = 0;
+            }
         }
         for row in &mut self.elements {
             // What moves nothing any more is in no component.

@@ -131,9 +131,10 @@ impl Scene {
         }
         let around = Surroundings::new(view.narrow, engine.joints, engine.colliders, crowd);
         let time = step.plan.time / f64::from(step.plan.pipeline_steps.max(1));
-        let (mut held, mut stiff) = (false, false);
+        let (mut held, mut stiff, mut clear) = (false, false, u8::MAX);
         for (slot, b) in members.bodies.iter().enumerate() {
             let row = &mut bodies[*b];
+            clear = clear.min(row.clear);
             let push = if any_new { solver.pushes[slot] } else { 0.0 };
             if (row.can_touch || around.any_joints || row.lingers > 0.0)
                 && let Some(body) = engine.bodies.get_mut(row.handle)
@@ -145,18 +146,22 @@ impl Scene {
         // Other numbers may push it elsewhere.
         let is_changed =
             !changed.is_empty() && members.elements.iter().any(|e| elements[*e].changed);
-        let clear = if is_changed {
-            0
-        } else {
-            groups.list()[g].clear
-        };
+        if is_changed {
+            clear = 0;
+        }
         if stiff && !held && clear == 0 {
             if !any_new {
                 solver.find_pushes(step, &members, elements, bodies, engine.bodies);
             }
             return self.meets_soon(g, view, step, engine, &solver.pushes);
         }
-        groups.at(g).clear = clear.saturating_sub(1);
+        let left = clear.saturating_sub(1);
+        for b in members.bodies {
+            // Mostly zero, and what is not written need not go back to memory.
+            if bodies[*b].clear != left {
+                bodies[*b].clear = left;
+            }
+        }
         held
     }
 
@@ -182,7 +187,9 @@ impl Scene {
             let row = handles.get(&(view.context, handle));
             row.is_some_and(|b| bodies[*b as usize].group == g as u32)
         });
-        self.groups.at(g).clear = clear;
+        for b in members.bodies {
+            self.bodies[*b].clear = clear;
+        }
         near
     }
 }

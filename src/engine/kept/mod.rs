@@ -95,6 +95,7 @@ struct KeptBody {
     raised_iterations: bool,
     /// s.
     lingers: f32,
+    clear: u8,
     /// Force (N) and torque (N m) of the user's, and of elements.
     user: [Vec3; 2],
     elements: [Vec3; 2],
@@ -115,7 +116,6 @@ struct KeptGroup {
     body: u32,
     held: bool,
     is_asleep: bool,
-    clear: u8,
     /// Of one that is solved in an assembly of its own.
     assembly: Option<Box<Remembered>>,
 }

@@ -146,7 +146,7 @@ impl Kept {
             if let Some(row) = scene.index.get(&kept.entity)
                 && let Some(row) = scene.bodies.get_mut(*row)
             {
-                row.disturbed = kept.disturbed;
+                (row.disturbed, row.clear) = (kept.disturbed, kept.clear);
             }
         }
         add_up(&scene.elements, &mut scene.bodies);
@@ -179,7 +179,7 @@ impl Kept {
                 continue;
             }
             let group = scene.groups.at(g);
-            (group.held, group.is_asleep, group.clear) = (kept.held, kept.is_asleep, kept.clear);
+            (group.held, group.is_asleep) = (kept.held, kept.is_asleep);
             if let Some(remembered) = &kept.assembly {
                 if group.assembly.is_none() {
                     scene.groups.promote(g, &mut scene.assemblies);
@@ -291,6 +291,7 @@ impl KeptBody {
             pressed: self.pressed,
             creeps: self.creeps,
             lingers: self.lingers,
+            clear: self.clear,
             user: ExternalForce { force, torque },
             carries_share: self.carries_share,
             now: self.now,

@@ -36,12 +36,11 @@ impl Kept {
                 let assembly = &scene.assemblies[index];
                 Box::new(assembly.component.remembered())
             });
-            if assembly.is_some() || group.held || group.is_asleep || group.clear > 0 {
+            if assembly.is_some() || group.held || group.is_asleep {
                 kept.groups.push(KeptGroup {
                     body: first,
                     held: group.held,
                     is_asleep: group.is_asleep,
-                    clear: group.clear,
                     assembly,
                 });
             }
@@ -144,6 +143,7 @@ fn take_body(row: &BodyRow, world: &World) -> KeptBody {
         pressed,
         creeps,
         lingers,
+        clear,
         user,
         // Shown in the components when a tick is over.
         share: _,
@@ -182,6 +182,7 @@ fn take_body(row: &BodyRow, world: &World) -> KeptBody {
         carries_share,
         raised_iterations: load.is_some_and(SpringLoad::raised_iterations),
         lingers,
+        clear,
         user: both(&user),
         elements: load.map_or_else(Default::default, |load| both(&load.elements)),
         now,

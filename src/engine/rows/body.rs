@@ -62,6 +62,9 @@ pub(in crate::engine) struct BodyRow {
     pub creeps: bool,
     /// or did so a moment ago: it counts as held for so long still, s.
     pub lingers: f32,
+    /// For so many steps nothing can come near its component. It stands here and not there so that components that are found anew
+    /// do not forget it.
+    pub clear: u8,
     pub user: ExternalForce,
     /// What we give it over the coming step; `None` where it is not stepped by us.
     pub share: Option<Share>,
@@ -116,6 +119,7 @@ impl BodyRow {
             pressed: false,
             creeps: false,
             lingers: 0.0,
+            clear: 0,
             user: ExternalForce::default(),
             share: None,
             carries_share: false,

@@ -2,8 +2,10 @@
 
 use crate::harness::*;
 use bevy::ecs::entity::{EntityHashMap, EntityMapper};
+use bevy::ecs::system::RunSystemOnce;
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
+use bevy_rapier3d::plugin::systems;
 use bevy_rapier3d::prelude::*;
 
 /// A lab whose entities are known by the order in which they were spawned: the key that is the same in every app.
@@ -18,6 +20,9 @@ pub struct Film {
 thread_local! {
     /// The plugin that draws springs is there.
     pub static DRAWN: std::cell::Cell<bool> = const { std::cell::Cell::new(false) };
+    /// Rapier hears of each body, collider and joint as it is spawned. Else it hears of them in the order of Bevy's archetypes, and
+    /// that depends on what else an app has.
+    pub static IN_ORDER: std::cell::Cell<bool> = const { std::cell::Cell::new(false) };
     /// Entities that an app has before its scene is made, so that those of the scene have other ids.
     pub static STRANGERS: std::cell::Cell<usize> = const { std::cell::Cell::new(0) };
 }
@@ -50,6 +55,9 @@ impl Film {
     pub fn spawn(&mut self, bundle: impl Bundle) -> Entity {
         let entity = self.lab.spawn(bundle);
         self.cast.push(entity);
+        if IN_ORDER.get() {
+            introduce(self.lab.app.world_mut(), entity);
+        }
         entity
     }
 
@@ -266,4 +274,18 @@ impl Props {
             }
         }
     }
+}
+
+/// Lets Rapier hear of an entity at once.
+fn introduce(world: &mut World, entity: Entity) {
+    let find = move |transforms: TransformHelper| transforms.compute_global_transform(entity).ok();
+    if let Ok(Some(at)) = world.run_system_once(find) {
+        world.entity_mut(entity).insert(at);
+    }
+    let heard = [
+        world.run_system_cached(systems::init_rigid_bodies),
+        world.run_system_cached(systems::init_colliders),
+        world.run_system_cached(systems::init_joints),
+    ];
+    assert!(heard.iter().all(Result::is_ok), "{heard:?}");
 }
