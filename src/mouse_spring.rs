@@ -2,14 +2,19 @@
 
 use crate::element::{Anchors, MaxForce, SpringAxis, SpringDamper, SpringFault, SpringTuning};
 use bevy::prelude::*;
+use bevy_rapier3d::prelude::{
+    RapierContextEntityLink, RapierRigidBodyHandle, RapierRigidBodySet, RigidBody,
+};
+use bevy_rapier3d::rapier::dynamics::{LockedAxes, RigidBody as RapierBody};
 
 /// Pulls a point of a body to a point of the world by critically damped springs, so that it follows a pointer without
 /// swinging. Spawn it on an entity of its own without a parent; write [`target`](Self::target) as the pointer moves; despawn it, or remove it, to
 /// let go.
 ///
-/// At the next step, three children are spawned, a [`SpringDamper`] along each axis of the world, tuned for the mass that the body has at
-/// that point. So what is pulled is as quick whatever it weighs, and does not swing to the side either. Under gravity a free body hangs g/ω² below
-/// the target, ω = 2π · frequency: 6 cm at 2 Hz. Where the body is gone, nothing is pulled.
+/// At the next step, three children are spawned, a [`SpringDamper`] along each axis of the world, for the mass that the body has at
+/// that point when nothing else holds it. So what is pulled is as quick whatever it weighs, and what stands on the ground is lifted. Under gravity
+/// it hangs g/ω² below the target, ω = 2π · frequency: 6 cm at 2 Hz. It follows a target that moves steadily without lagging behind; a target that
+/// jumps is overshot by an eighth (e⁻²). A body that is gone or cannot be moved is not pulled.
 ///
 /// A target, point, frequency or force that is no sound number is a [`SpringFault`] on this entity, and nothing is pulled meanwhile.
 ///
@@ -31,7 +36,7 @@ use bevy::prelude::*;
 #[reflect(Component, Debug, PartialEq, Clone)]
 #[require(Transform)]
 pub struct MouseSpring {
-    /// What is pulled: a body, or anything that an element can end on.
+    /// The dynamic body that is pulled.
     #[entities]
     pub body: Entity,
     /// Where it is held, in its own frame, m.
@@ -110,18 +115,25 @@ pub(crate) fn hold(
         Option<&SpringFault>,
     )>,
     released: Query<(Entity, &Grip), Without<MouseSpring>>,
-    ends: Query<(), With<Transform>>,
+    bodies: Query<(&RapierRigidBodyHandle, &RapierContextEntityLink), With<RigidBody>>,
+    sets: Query<&RapierRigidBodySet>,
     mut commands: Commands,
 ) {
+    let body_of = |entity| {
+        let (handle, context) = bodies.get(entity).ok()?;
+        let body = sets.get(context.0).ok()?.bodies.get(handle.0)?;
+        // A new one has no mass before its first step.
+        (body.is_dynamic() && body.mass() > 0.0).then_some(body)
+    };
     for (entity, grip) in &released {
         release(entity, grip, &mut commands);
     }
     for (entity, spring, mut at, grip, told) in &mut held {
         let fault = spring.fault();
         tell(entity, fault, told, &mut commands);
-        let pulls = fault.is_none() && ends.contains(spring.body);
+        let body = body_of(spring.body).filter(|_| fault.is_none());
         match grip {
-            Some(grip) if !(pulls && grip.of.pulls_like(spring)) => {
+            Some(grip) if !(body.is_some() && grip.of.pulls_like(spring)) => {
                 release(entity, grip, &mut commands);
             }
             Some(_) => {
@@ -130,10 +142,10 @@ pub(crate) fn hold(
             }
             None => {}
         }
-        if pulls {
+        if let Some(body) = body {
             at.translation = spring.target;
             let springs = [Vec3::X, Vec3::Y, Vec3::Z]
-                .map(|axis| commands.spawn(along(axis, entity, spring)).id());
+                .map(|axis| commands.spawn(along(axis, entity, spring, body)).id());
             let of = *spring;
             commands.entity(entity).insert(Grip { springs, of });
             if let Some(newtons) = spring.max_force {
@@ -146,14 +158,33 @@ pub(crate) fn hold(
 }
 
 /// The spring along an axis.
-fn along(axis: Vec3, entity: Entity, spring: &MouseSpring) -> impl Bundle {
+fn along(axis: Vec3, entity: Entity, spring: &MouseSpring, body: &RapierBody) -> impl Bundle {
+    let tuning = SpringTuning::frequency(spring.frequency, 1.0);
+    let (stiffness, damping) = tuning.coefficients(mass_at(body, spring.point, axis), 0.0);
     (
-        SpringDamper::new(entity, spring.body).with_rest_length(0.0),
-        SpringTuning::frequency(spring.frequency, 1.0),
+        SpringDamper::new(entity, spring.body)
+            .with_stiffness(stiffness)
+            .with_damping(damping)
+            .with_rest_length(0.0),
         SpringAxis::World(axis),
         Anchors::new(Vec3::ZERO, spring.point),
         ChildOf(entity),
     )
+}
+
+/// Effective mass of a body at a point of it along an axis of the world, kg, whatever holds it: the inverse of
+/// 1/m + (r × n) · I⁻¹ (r × n).
+fn mass_at(body: &RapierBody, point: Vec3, axis: Vec3) -> f32 {
+    let properties = &body.mass_properties().local_mprops;
+    let rotation = body.position().rotation;
+    let torque = (rotation * (point - properties.local_com)).cross(axis);
+    let about = (rotation * properties.principal_inertia_local_frame).inverse() * torque;
+    let turned = if body.locked_axes().intersects(LockedAxes::ROTATION_LOCKED) {
+        0.0
+    } else {
+        (about * about).dot(properties.inv_principal_inertia)
+    };
+    (properties.inv_mass + turned).recip()
 }
 
 fn release(entity: Entity, grip: &Grip, commands: &mut Commands) {

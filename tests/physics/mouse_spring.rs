@@ -23,6 +23,7 @@ fn a_held_body_comes_to_the_pointer_as_critically_damped_motion_does() {
     for mass in [0.01, 2.0, 5e3] {
         let mut lab = Lab::weightless();
         let body = lab.body(mass, Vec3::new(1.0, 0.5, -0.25));
+        lab.tick();
         grab(&mut lab, body, Vec3::ZERO);
         let omega = TAU * f64::from(FREQUENCY);
         for tick in 1..=60 {
@@ -165,4 +166,38 @@ fn numbers_that_mean_nothing_are_told_once_and_mended_by_better_ones() {
     lab.run(3.0);
     assert!(lab.app.world().get::<SpringFault>(mouse).is_none());
     assert!(lab.position(body).distance(Vec3::Y) < 1e-3);
+}
+
+#[test]
+fn a_box_that_rests_on_the_ground_is_lifted() {
+    let mut lab = Lab::new();
+    lab.spawn((
+        Collider::cuboid(5.0, 0.5, 5.0),
+        Transform::from_xyz(0.0, -0.5, 0.0),
+    ));
+    let at = Transform::from_xyz(0.0, 0.2, 0.0);
+    let body = lab.spawn((RigidBody::Dynamic, Collider::cuboid(0.2, 0.2, 0.2), at));
+    lab.run(1.0);
+    lab.spawn(MouseSpring::new(body, Vec3::Y * 0.1, Vec3::Y * 1.5).with_frequency(FREQUENCY));
+    lab.run(4.0);
+    let sag = GRAVITY / (TAU * f64::from(FREQUENCY)).powi(2);
+    let held = f64::from(lab.position(body).y) + 0.1;
+    assert!((held - 1.5 + sag).abs() < 0.01, "held at {held}");
+}
+
+#[test]
+fn a_target_that_jumps_is_overshot_by_the_blow_that_its_damper_gets() {
+    let mut lab = Lab::weightless();
+    let body = lab.body(2.0, Vec3::ZERO);
+    let mouse = grab(&mut lab, body, Vec3::ZERO);
+    lab.run(0.2);
+    lab.get_mut::<MouseSpring>(mouse).target = Vec3::X;
+    let mut farthest = 0.0_f32;
+    for _ in 0..120 {
+        lab.tick();
+        farthest = farthest.max(lab.position(body).x);
+    }
+    // Of a body at speed 2 ω, critically damped: e⁻² of the way.
+    assert!((farthest - 1.0 - 0.135).abs() < 0.01, "{farthest}");
+    assert!((lab.position(body).x - 1.0).abs() < 1e-3);
 }
