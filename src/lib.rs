@@ -11,6 +11,7 @@ mod diagnostics;
 mod dynamics;
 mod element;
 mod engine;
+mod functions;
 #[cfg(feature = "gltf")]
 mod gltf;
 mod mouse_spring;
@@ -161,6 +162,12 @@ pub mod guide {
     #[doc = include_str!("../docs/guide/on_docs_rs.md")]
     #[doc = include_str!("../docs/guide/multiplayer.md")]
     pub mod multiplayer {}
+
+    // Its code needs crates of the net; the folder `netcode/` compiles it.
+    #[cfg(not(doctest))]
+    #[doc = include_str!("../docs/guide/on_docs_rs.md")]
+    #[doc = include_str!("../docs/guide/netcode.md")]
+    pub mod netcode {}
 
     #[doc = include_str!("../docs/guide/on_docs_rs.md")]
     #[doc = include_str!("../docs/guide/workbench.md")]

@@ -95,7 +95,7 @@ impl CoiloverPlugin {
         self
     }
 
-    /// Sets how many kicks stiff networks may take together in a step to be followed
+    /// Sets how many kicks stiff networks may take together in a step to be followed, where their stiff modes move
     /// ([`CoiloverSettings::resolve`], default 1024; 1 for no more than asked).
     pub const fn with_resolve(mut self, kicks: u32) -> Self {
         self.settings.resolve = kicks;

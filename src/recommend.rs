@@ -57,7 +57,7 @@ fn swing(k: f64, c: f64, m: f64) -> f64 {
     } else {
         0.0
     };
-    GRAVITY.powf(1.5) / (24.0 * LENGTH.sqrt()) * (1.0 + 5.0 * ratio * ratio)
+    (GRAVITY * GRAVITY.sqrt()) / (24.0 * LENGTH.sqrt()) * (1.0 + 5.0 * ratio * ratio)
 }
 
 /// The error of position, m per second of motion, that so many micro-steps add: [`recommend`] the other way round.

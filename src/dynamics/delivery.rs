@@ -12,6 +12,7 @@
 //! the engine's rotation here and correcting what is missed.
 
 use super::body::{Body, shortest, unwound};
+use crate::functions::atan;
 use bevy::math::{DMat3, DQuat, DVec3, Quat, Vec3};
 
 /// How the engine will step: all substeps of one call together.
@@ -142,7 +143,7 @@ impl Schedule {
     /// How far the engine turns a body that its cap lets turn so far: it goes along tangents.
     pub(crate) fn farthest_turn(&self, cap: f64) -> f64 {
         let halves = 2.0 * f64::from(self.substeps);
-        halves * (cap / halves).atan()
+        halves * atan(cap / halves)
     }
 
     /// What the engine makes of a delivery, to its rounding: rotation and angular velocity.

@@ -6,6 +6,7 @@
 use super::body::Body;
 use super::element::{Element, Hold};
 use super::line::{Line, Motion};
+use crate::functions::atan2;
 use bevy::math::{DQuat, DVec3};
 use std::f64::consts::{PI, TAU};
 
@@ -105,7 +106,7 @@ fn twist(axis: DVec3, [frame, other]: [DQuat; 2]) -> Option<(DVec3, f64)> {
         return None;
     }
     let gradient = (w * w * axis + w * v.cross(axis) + along * v) / square;
-    Some((frame * gradient, 2.0 * along.atan2(w)))
+    Some((frame * gradient, 2.0 * atan2(along, w)))
 }
 
 /// An angle less whole turns, so that it is within half a turn, rad.

@@ -14,6 +14,7 @@ mod bound;
 pub(crate) mod delivery;
 pub(crate) mod element;
 pub(crate) mod energy;
+mod excited;
 pub(crate) mod guard;
 pub(crate) mod guide;
 pub(crate) mod kick;

@@ -59,6 +59,10 @@ impl Motion for Moving<'_> {
         moved.length() + counts * axial.abs() + VELOCITY_COUNTS * (sped - axial * along).length()
     }
 
+    fn travelled(&self, slot: usize) -> f64 {
+        self.distance(slot)
+    }
+
     fn extrapolate(&mut self, slot: usize) {
         self.state.towards(&self.saved(slot));
     }

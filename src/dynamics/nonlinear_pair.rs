@@ -327,6 +327,10 @@ impl Motion for NonlinearPair<'_> {
         (a.d - b.d).length() + VELOCITY_COUNTS * (a.v - b.v).length()
     }
 
+    fn travelled(&self, slot: usize) -> f64 {
+        self.distance(slot)
+    }
+
     fn extrapolate(&mut self, slot: usize) {
         self.state.towards(&self.saved[slot]);
     }

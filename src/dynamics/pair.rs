@@ -10,6 +10,7 @@ use super::line;
 use super::nonlinear_pair::NonlinearPair;
 use super::poles::{Poles, RESOLVED_PHASE};
 use super::resolution::EXTRAPOLATION_LIMIT;
+use crate::functions::exp;
 use bevy::math::DVec3;
 
 /// c h/m above which a step's energy is watched; see [`super::guard`].
@@ -322,7 +323,7 @@ impl Pair {
             (0.0, line.pushed / fast)
         };
         let (away, rate) = (stretch - rest, line.axial - flow);
-        let [slowly, hastily] = [slow, fast].map(|rate| (-rate * time).exp());
+        let [slowly, hastily] = [slow, fast].map(|rate| exp(-rate * time));
         let (even, odd) = if spread * time > 1e-4 {
             (0.5 * (slowly + hastily), 0.5 * (slowly - hastily) / spread)
         } else {

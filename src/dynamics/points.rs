@@ -12,6 +12,7 @@ mod survey;
 
 use super::body::{Body, Spin};
 use super::element::{Element, End, rounding};
+use super::excited::spread;
 use super::guide::Guide;
 use super::resolution::{EXTRAPOLATION_LIMIT, network_steps};
 use super::tolerance::{Motion, velocity_counts};
@@ -257,6 +258,21 @@ impl Points {
         }
     }
 
+    /// Time over which velocities that are off those count.
+    fn velocity_counts(&self, other: &[Point]) -> f64 {
+        let faster = |i: usize| self.points[i].velocity - other[i].velocity;
+        let (mut motion, mut stiffened) = (0.0, 0.0);
+        for (i, point) in self.points[..self.bodies].iter().enumerate() {
+            motion += faster(i).length_squared() / point.inverse_mass;
+        }
+        for wire in &self.wires {
+            let [a, b] = wire.ends.map(|end| faster(end as usize));
+            let along = wire.side.normalize_or_zero();
+            stiffened += wire.stiffness * (b - a).dot(along).powi(2);
+        }
+        velocity_counts(motion, stiffened)
+    }
+
     fn drift(&mut self, time: f64) {
         for point in &mut self.points {
             point.position += time * point.velocity;
@@ -297,21 +313,19 @@ impl Motion for Points {
 
     fn distance(&self, slot: usize) -> f64 {
         let other = &self.saved[slot].0;
-        let faster = |i: usize| self.points[i].velocity - other[i].velocity;
-        let (mut motion, mut stiffened) = (0.0, 0.0);
-        for (i, point) in self.points[..self.bodies].iter().enumerate() {
-            motion += faster(i).length_squared() / point.inverse_mass;
-        }
-        for wire in &self.wires {
-            let [a, b] = wire.ends.map(|end| faster(end as usize));
-            let along = wire.side.normalize_or_zero();
-            stiffened += wire.stiffness * (b - a).dot(along).powi(2);
-        }
-        let counts = velocity_counts(motion, stiffened);
+        let counts = self.velocity_counts(other);
         let apart = |(a, b): (&Point, &Point)| {
             a.position.distance(b.position) + counts * a.velocity.distance(b.velocity)
         };
         self.points.iter().zip(other).map(apart).fold(0.0, f64::max)
+    }
+
+    fn travelled(&self, slot: usize) -> f64 {
+        let before = &self.saved[slot].0;
+        let moved = self.points.iter().zip(before);
+        spread(moved.clone().map(|(now, was)| now.position - was.position))
+            + self.velocity_counts(before)
+                * spread(moved.map(|(now, was)| now.velocity - was.velocity))
     }
 
     fn extrapolate(&mut self, slot: usize) {

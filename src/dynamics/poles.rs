@@ -4,6 +4,7 @@
 /// Phase per step (radians) up to which the frequency is exact. Not far beyond it the sampled motion
 /// cannot be told from a slower one, so the phase stays there and only the energy is exact: stepped
 /// velocities are then smaller than true ones, and drifts no longer than the motion they belong to.
+use crate::functions::{cos, exp, exp_m1, sin, tanh};
 pub(crate) const RESOLVED_PHASE: f64 = 2.5;
 
 /// Decay exponent per step that is added to motion of unresolved phase. The engine rounds positions to
@@ -34,7 +35,7 @@ pub(crate) struct Poles {
 
 /// (1 − e^(−x))/x.
 pub(crate) fn decay_ratio(x: f64) -> f64 {
-    if x < 1e-12 { 1.0 } else { -(-x).exp_m1() / x }
+    if x < 1e-12 { 1.0 } else { -exp_m1(-x) / x }
 }
 
 impl Poles {
@@ -45,9 +46,9 @@ impl Poles {
         let discriminant = z - g * g;
         let (restoring, slow) = if discriminant > 0.0 {
             let phase = discriminant.sqrt().min(RESOLVED_PHASE);
-            let half = (phase / 2.0).sin();
-            let settle = -(-g).exp_m1();
-            ((settle * settle + 4.0 * (-g).exp() * half * half) / z, g)
+            let half = sin(phase / 2.0);
+            let settle = -exp_m1(-g);
+            ((settle * settle + 4.0 * exp(-g) * half * half) / z, g)
         } else {
             let fast = g + (-discriminant).sqrt();
             let slow = if fast > 0.0 { z / fast } else { 0.0 };
@@ -61,7 +62,7 @@ impl Poles {
         };
         Self {
             restoring,
-            loss: -(-2.0 * g).exp_m1(),
+            loss: -exp_m1(-2.0 * g),
             speed,
             skew,
         }
@@ -87,21 +88,21 @@ fn velocity_map(z: f64, g: f64) -> (f64, f64) {
         let sine = if phase < 1e-4 {
             1.0 - phase * phase / 6.0
         } else {
-            used.sin() / phase
+            sin(used) / phase
         };
-        ((-g).exp() * sine, (-g).exp() * used.cos())
+        (exp(-g) * sine, exp(-g) * cos(used))
     } else {
         let r = square.sqrt();
         let slow = if g + r > 0.0 { z / (g + r) } else { 0.0 };
-        let (p1, p2) = ((-slow).exp(), (-g - r).exp());
+        let (p1, p2) = (exp(-slow), exp(-g - r));
         let sine = if r < 1e-4 {
-            (-g).exp()
+            exp(-g)
         } else {
             (p1 - p2) / (2.0 * r)
         };
         (sine, (p1 + p2) / 2.0)
     };
-    let scaled_cosh = (1.0 + (-2.0 * g).exp()) / 2.0;
+    let scaled_cosh = (1.0 + exp(-2.0 * g)) / 2.0;
     let speed = (scaled_cosh + cosine) / (2.0 * sine);
     let skew = if g == 0.0 {
         0.0
@@ -112,12 +113,12 @@ fn velocity_map(z: f64, g: f64) -> (f64, f64) {
             + (u + w) / 120.0
             + (u * u + u * w + w * w) / 5040.0
             + (u + w) * (u * u + w * w) / 362_880.0;
-        g * (-g).exp() * series / sine
+        g * exp(-g) * series / sine
     } else if z < 1e-5 * g * g {
         // A damper with hardly a spring: the limit for small z.
-        (1.0 / g.tanh() - 1.0 / g) / 2.0
+        (1.0 / tanh(g) - 1.0 / g) / 2.0
     } else {
-        ((1.0 - (-2.0 * g).exp()) / (2.0 * sine) - g) / z
+        ((1.0 - exp(-2.0 * g)) / (2.0 * sine) - g) / z
     };
     (speed, skew)
 }

@@ -4,6 +4,7 @@ use super::body::{Body, Spin, shortest, turn};
 use super::bound::Bound;
 use super::element::{Element, End};
 use super::energy::Energy;
+use super::excited::spread;
 use super::guard::Guard;
 use super::guide::Guide;
 use super::kick::{self, Map, Memo};
@@ -307,6 +308,18 @@ impl Motion for Component {
             worst = worst.max(apart);
         }
         worst
+    }
+
+    fn travelled(&self, slot: usize) -> f64 {
+        let before = &self.memory.saved[slot].bodies;
+        let mut ends = self.elements.iter().flat_map(|element| &element.ends);
+        let held = ends
+            .any(|end| matches!(end, End::Path(_)))
+            .then_some(DVec3::ZERO);
+        let moved = self.bodies.iter().zip(before);
+        let way = moved.clone().map(|(now, was)| now.position - was.position);
+        let gained = moved.map(|(now, was)| now.velocity - was.velocity);
+        spread(way.chain(held)) + self.velocity_counts(before) * spread(gained.chain(held))
     }
 
     fn extrapolate(&mut self, slot: usize) {

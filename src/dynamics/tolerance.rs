@@ -4,6 +4,8 @@
 //! then a step is taken with m, 2m and 4m, which tells both; between, the cheaper of the two that keeps the
 //! tolerance is taken. The probing step itself keeps its most exact result.
 
+use super::excited::Excited;
+
 /// What is asked of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Accuracy {
@@ -98,6 +100,9 @@ pub(crate) trait Motion {
     fn run(&mut self, time: f64, count: u32);
     /// Distance to the state in a slot, m.
     fn distance(&self, slot: usize) -> f64;
+    /// How far bodies have gone against each other since the state in a slot, m, and what they have gained in speed counted
+    /// as in [`Self::distance`].
+    fn travelled(&self, slot: usize) -> f64;
     /// Adds a third of the difference to the state in a slot: removes the leading error of one with half
     /// as many steps, since only even powers of the step occur.
     fn extrapolate(&mut self, slot: usize);
@@ -136,6 +141,7 @@ pub(crate) struct Controller {
     calm: u32,
     /// Steps from the last probe to the next.
     span: u32,
+    excited: Excited,
 }
 
 /// One way to take a step.
@@ -164,7 +170,7 @@ impl Controller {
         accuracy: Accuracy,
     ) -> Outcome {
         let Some(tolerance) = accuracy.tolerance else {
-            return fixed(motion, time, accuracy);
+            return self.fixed(motion, time, accuracy);
         };
         let most = accuracy.most();
         // How fine it has to be is found out.
@@ -256,24 +262,23 @@ impl Controller {
             ..Outcome::default()
         }
     }
-}
 
-/// As many micro-steps as are asked for.
-fn fixed(motion: &mut impl Motion, time: f64, accuracy: Accuracy) -> Outcome {
-    let (count, capped) = accuracy.cap(
-        accuracy
-            .microsteps
-            .max(motion.least(time, accuracy.resolve)),
-    );
-    let plan = if accuracy.extrapolate {
-        Plan::Extrapolated(count).sound(motion, time)
-    } else {
-        Plan::Plain(count)
-    };
-    Outcome {
-        microsteps: take(motion, time, plan),
-        capped,
-        ..Outcome::default()
+    /// As many micro-steps as are asked for, or those that follow what moves.
+    fn fixed(&mut self, motion: &mut impl Motion, time: f64, accuracy: Accuracy) -> Outcome {
+        let asked = accuracy.microsteps.max(1);
+        let least = motion.least(time, accuracy.resolve);
+        let (count, capped) = accuracy.cap(asked.max(least));
+        let microsteps = if accuracy.extrapolate {
+            let plan = Plan::Extrapolated(count).sound(motion, time);
+            take(motion, time, plan)
+        } else {
+            self.excited.run(motion, time, [asked, count])
+        };
+        Outcome {
+            microsteps,
+            capped,
+            ..Outcome::default()
+        }
     }
 }
 
@@ -322,72 +327,4 @@ fn cheapest(
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// A motion whose error is C/n² + D/n⁴ per step.
-    struct Model {
-        errors: (f64, f64),
-        now: f64,
-        slots: [f64; 3],
-        kicks: u32,
-    }
-
-    impl Motion for Model {
-        fn save(&mut self, slot: usize) {
-            self.slots[slot] = self.now;
-        }
-        fn load(&mut self, slot: usize) {
-            self.now = self.slots[slot];
-        }
-        fn least(&mut self, _: f64, _: u32) -> u32 {
-            1
-        }
-        fn run(&mut self, time: f64, count: u32) {
-            let n = f64::from(count);
-            self.now += time * (self.errors.0 / n.powi(2) + self.errors.1 / n.powi(4));
-            self.kicks += count;
-        }
-        fn distance(&self, slot: usize) -> f64 {
-            (self.now - self.slots[slot]).abs()
-        }
-        fn extrapolate(&mut self, slot: usize) {
-            self.now += (self.now - self.slots[slot]) / 3.0;
-        }
-        fn is_resolved(&mut self, _: f64) -> bool {
-            true
-        }
-    }
-
-    #[test]
-    fn the_tolerance_is_kept_with_few_kicks() {
-        for (errors, tolerance, most) in [
-            ((1e-3, 1e-4), 1e-2, 1.5),
-            ((1e-1, 1e-3), 1e-2, 5.5),
-            ((1.0, 1e-2), 1e-3, 9.0),
-            ((1.0, 1.0), 1e-4, 60.0),
-        ] {
-            let mut model = Model {
-                errors,
-                now: 0.0,
-                slots: [0.0; 3],
-                kicks: 0,
-            };
-            let mut controller = Controller::default();
-            let accuracy = Accuracy {
-                microsteps: 1,
-                resolve: 1,
-                extrapolate: false,
-                tolerance: Some(tolerance),
-                max_microsteps: 256,
-                max_iterations: 1,
-            };
-            for _ in 0..240 {
-                controller.drive(&mut model, 1.0 / 240.0, accuracy);
-            }
-            assert!(model.now.abs() <= tolerance, "{errors:?}: {}", model.now);
-            let kicks = f64::from(model.kicks) / 240.0;
-            assert!(kicks < most, "{errors:?} at {tolerance}: {kicks} kicks");
-        }
-    }
-}
+mod tests;

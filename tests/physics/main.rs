@@ -49,6 +49,7 @@ mod still;
 mod strangers;
 mod strays;
 mod tolerance;
+mod undamped;
 mod user_force;
 #[cfg(feature = "visual")]
 mod visual_data;

@@ -112,3 +112,56 @@ fn networks_share_the_budget() {
     let kicks: u32 = readouts.iter(lab.app.world()).map(|r| r.microsteps).sum();
     assert!(kicks <= 1024, "{kicks} kicks");
 }
+
+/// Kicks that the last step took.
+fn kicks(lab: &mut Lab) -> u32 {
+    let mut readouts = lab.app.world_mut().query::<&SpringReadout>();
+    let of_all = readouts.iter(lab.app.world()).map(|r| r.microsteps);
+    of_all.max().unwrap_or(0)
+}
+
+/// A heavy body swings behind a light one, whose own mode was never touched; then someone strikes the light one.
+#[test]
+fn a_stiff_mode_costs_nothing_until_it_is_struck() {
+    let m = 3000.0;
+    let stiffness = m * (0.3 / f64::from(DT)).powi(2);
+    let k = f64::from(stiffness as f32);
+    let mut lab = Lab::with(CoiloverPlugin::default(), Engine::weightless());
+    let hook = lab.point(Vec3::ZERO);
+    // The light one stands where the slow mode has it.
+    let light = lab.body(1.0, Vec3::X * 1.05);
+    let heavy = lab.body(m as f32, Vec3::X * 2.1);
+    for (a, b) in [(hook, light), (light, heavy)] {
+        let spring = Spring::new(a, b).with_stiffness(stiffness as f32);
+        lab.spawn(spring.with_rest_length(1.0));
+    }
+    lab.run(0.5);
+    let calm = kicks(&mut lab);
+    lab.get_mut::<bevy_rapier3d::prelude::Velocity>(light)
+        .linear
+        .x += 10.0;
+    lab.tick();
+    let [x, v, w] = [
+        lab.position(light).x,
+        lab.velocity(light).x,
+        lab.velocity(heavy).x,
+    ]
+    .map(f64::from);
+    let from = x - 0.5 * f64::from(lab.position(heavy).x);
+    lab.tick();
+    let struck = kicks(&mut lab);
+    // It goes on as an oscillator about where the slow mode has it, half way to the heavy one.
+    let half = |lab: &Lab| 0.5 * f64::from(lab.position(heavy).x);
+    let omega = (2.0 * k).sqrt();
+    let phase = omega * f64::from(DT);
+    let wanted = from * phase.cos() + (v - 0.5 * w) / omega * phase.sin();
+    let off = f64::from(lab.position(light).x) - half(&lab) - wanted;
+    println!(
+        "{calm} kicks in calm, {struck} when struck, off by {off:.1e} m of {:.1e} m; slow mode {:.2} rad/s",
+        10.0 / omega,
+        (k / m / 2.0).sqrt()
+    );
+    assert!(calm <= 12, "{calm} kicks in calm");
+    assert!(struck >= 70, "{struck} kicks when struck");
+    assert!(off.abs() < 0.01 * 10.0 / omega, "{off} m");
+}

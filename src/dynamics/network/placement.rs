@@ -3,6 +3,7 @@
 use super::PLACED;
 use crate::dynamics::law::Drag;
 use crate::dynamics::poles::{RESOLVED_PHASE, UNRESOLVED_DECAY};
+use crate::functions::{cos, exp_m1};
 
 /// Damping time, in steps, of stiffness-proportional damping that takes the [`UNRESOLVED_DECAY`] of a lone
 /// element from a mode with z = (ω h)²; less from slower ones.
@@ -29,7 +30,7 @@ pub(in crate::dynamics) fn damper_placement(x: f64) -> f64 {
     if x <= 1.0 {
         0.5
     } else {
-        -1.0 / (-x).exp_m1() - 1.0 / x
+        -1.0 / exp_m1(-x) - 1.0 / x
     }
 }
 
@@ -38,7 +39,7 @@ pub(in crate::dynamics) fn placement(z: f64) -> f64 {
     if z <= 1e-3 {
         1.0 / 12.0
     } else if z < PLACED {
-        ((z / (2.0 * (1.0 - z.sqrt().cos())) - 1.0) / z).max(1.0 / 12.0)
+        ((z / (2.0 * (1.0 - cos(z.sqrt()))) - 1.0) / z).max(1.0 / 12.0)
     } else {
         0.25
     }

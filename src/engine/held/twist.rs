@@ -8,6 +8,7 @@
 use crate::dynamics::body::{Body, shortest, turn};
 use crate::dynamics::element::Element;
 use crate::dynamics::line::Line;
+use crate::functions::asin;
 use bevy::math::{DQuat, DVec3};
 use std::f64::consts::TAU;
 
@@ -81,7 +82,7 @@ impl Turn {
     /// How far the bodies have turned about what was ordered, rad, now that B stands like this in the frame of A.
     fn turned(&self, relative: DQuat) -> f64 {
         let by = shortest(relative * self.relative.inverse());
-        2.0 * by.xyz().dot(self.axis).clamp(-1.0, 1.0).asin()
+        2.0 * asin(by.xyz().dot(self.axis).clamp(-1.0, 1.0))
     }
 
     /// The twist after a step that began with `before`, where it now seems to be `seen` within some turns, and whether it

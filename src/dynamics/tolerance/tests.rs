@@ -1,0 +1,70 @@
+use super::*;
+
+/// A motion whose error is C/n² + D/n⁴ per step.
+struct Model {
+    errors: (f64, f64),
+    now: f64,
+    slots: [f64; 3],
+    kicks: u32,
+}
+
+impl Motion for Model {
+    fn save(&mut self, slot: usize) {
+        self.slots[slot] = self.now;
+    }
+    fn load(&mut self, slot: usize) {
+        self.now = self.slots[slot];
+    }
+    fn least(&mut self, _: f64, _: u32) -> u32 {
+        1
+    }
+    fn run(&mut self, time: f64, count: u32) {
+        let n = f64::from(count);
+        self.now += time * (self.errors.0 / n.powi(2) + self.errors.1 / n.powi(4));
+        self.kicks += count;
+    }
+    fn distance(&self, slot: usize) -> f64 {
+        (self.now - self.slots[slot]).abs()
+    }
+    fn travelled(&self, slot: usize) -> f64 {
+        self.distance(slot)
+    }
+    fn extrapolate(&mut self, slot: usize) {
+        self.now += (self.now - self.slots[slot]) / 3.0;
+    }
+    fn is_resolved(&mut self, _: f64) -> bool {
+        true
+    }
+}
+
+#[test]
+fn the_tolerance_is_kept_with_few_kicks() {
+    for (errors, tolerance, most) in [
+        ((1e-3, 1e-4), 1e-2, 1.5),
+        ((1e-1, 1e-3), 1e-2, 5.5),
+        ((1.0, 1e-2), 1e-3, 9.0),
+        ((1.0, 1.0), 1e-4, 60.0),
+    ] {
+        let mut model = Model {
+            errors,
+            now: 0.0,
+            slots: [0.0; 3],
+            kicks: 0,
+        };
+        let mut controller = Controller::default();
+        let accuracy = Accuracy {
+            microsteps: 1,
+            resolve: 1,
+            extrapolate: false,
+            tolerance: Some(tolerance),
+            max_microsteps: 256,
+            max_iterations: 1,
+        };
+        for _ in 0..240 {
+            controller.drive(&mut model, 1.0 / 240.0, accuracy);
+        }
+        assert!(model.now.abs() <= tolerance, "{errors:?}: {}", model.now);
+        let kicks = f64::from(model.kicks) / 240.0;
+        assert!(kicks < most, "{errors:?} at {tolerance}: {kicks} kicks");
+    }
+}

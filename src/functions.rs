@@ -1,0 +1,44 @@
+//! Functions whose last bit is the platform's, or, with the feature `enhanced-determinism`, the same everywhere.
+//!
+//! Sums, products, quotients and roots are rounded alike by every processor (IEEE 754); these are not. Vectors and quaternions
+//! take theirs from Bevy, which the same feature tells to do alike.
+
+#[cfg(feature = "enhanced-determinism")]
+pub(crate) use libm::{asin, atan, atan2, cos, exp, expm1 as exp_m1, sin, tanh};
+#[cfg(not(feature = "enhanced-determinism"))]
+pub(crate) use platform::{asin, atan, atan2, cos, exp, exp_m1, sin, tanh};
+
+#[cfg(not(feature = "enhanced-determinism"))]
+mod platform {
+    pub(crate) fn asin(x: f64) -> f64 {
+        x.asin()
+    }
+
+    pub(crate) fn atan(x: f64) -> f64 {
+        x.atan()
+    }
+
+    pub(crate) fn atan2(y: f64, x: f64) -> f64 {
+        y.atan2(x)
+    }
+
+    pub(crate) fn cos(x: f64) -> f64 {
+        x.cos()
+    }
+
+    pub(crate) fn exp(x: f64) -> f64 {
+        x.exp()
+    }
+
+    pub(crate) fn exp_m1(x: f64) -> f64 {
+        x.exp_m1()
+    }
+
+    pub(crate) fn sin(x: f64) -> f64 {
+        x.sin()
+    }
+
+    pub(crate) fn tanh(x: f64) -> f64 {
+        x.tanh()
+    }
+}
