@@ -2,7 +2,7 @@
 
 use super::means::Film;
 use super::progress::Progress;
-use super::{DT, PictureAt, Stage, look, offscreen, physics, say};
+use super::{DT, PictureAt, Stage, TickByTick, look, offscreen, physics, say};
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use std::path::{Path, PathBuf};
@@ -63,7 +63,12 @@ pub fn shoot(stage: &Stage, film: Film) -> AppExit {
     for frame in 0..frames {
         // All the ticks up to this frame in one update, then one picture of where they led.
         let upto = |f: u32| begun + (shown - begun) * f / frames;
-        set_ticks(&mut app, upto(frame + 1) - upto(frame));
+        let mut ticks = upto(frame + 1) - upto(frame);
+        if app.world().contains_resource::<TickByTick>() && ticks > 1 {
+            offscreen::undrawn(&mut app, |app| pass(app, ticks - 1));
+            ticks = 1;
+        }
+        set_ticks(&mut app, ticks);
         let picture = offscreen::shoot_next(&mut app, &image, |app| set_ticks(app, 0));
         let Some(picture) = picture else {
             continue;
@@ -101,10 +106,16 @@ fn save(picture: Image, path: &Path) -> Result<(), String> {
     std::fs::rename(unfinished, path).map_err(|e| e.to_string())
 }
 
-/// So many fixed ticks in one update.
+/// So many fixed ticks, in one update if they can be.
 fn pass(app: &mut App, ticks: u32) {
-    set_ticks(app, ticks);
-    app.update();
+    let at_once = match app.world().contains_resource::<TickByTick>() {
+        true => 1,
+        false => ticks,
+    };
+    set_ticks(app, at_once);
+    for _ in 0..ticks.checked_div(at_once).unwrap_or(1) {
+        app.update();
+    }
     set_ticks(app, 0);
 }
 

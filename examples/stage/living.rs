@@ -1,6 +1,6 @@
 //! Does a scene still look as it should after many minutes? Watched without drawing anything.
 
-use super::{Again, DT, Stage, again, headless_app};
+use super::{Again, DT, Finding, Stage, again, headless_app};
 use bevy::ecs::schedule::SingleThreadedExecutor;
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
@@ -9,6 +9,10 @@ use std::collections::HashMap;
 /// On a body that lies askew when it is turned further than this from the world's axes, rad.
 #[derive(Component)]
 pub struct Upright(pub f32);
+
+/// Inserted by a `setup`: what must hold after every minute, however many there have been.
+#[derive(Resource, Clone, Copy)]
+pub struct Lasting(pub fn(&mut World) -> Vec<Finding>);
 
 /// What drives through the picture may be outside it for so long, s.
 const OUTSIDE: f32 = 3.0;
@@ -28,8 +32,12 @@ pub fn watch(stage: &Stage, minutes: f32) -> AppExit {
     app.cleanup();
     let mut outside = HashMap::new();
     let mut most = (0.0_f32, 0.0_f32);
+    let minute = (60.0 / DT).round() as u32;
     for tick in 0..=(60.0 * minutes / DT).round() as u32 {
         app.update();
+        if tick > 0 && tick.is_multiple_of(minute) && !lasts(app.world_mut(), tick / minute) {
+            return AppExit::error();
+        }
         if let Err(wrong) = look(stage, app.world_mut(), &mut outside, &mut most) {
             let times = app.world().resource::<Again>().times;
             let seconds = tick as f32 * DT;
@@ -49,6 +57,22 @@ pub fn watch(stage: &Stage, minutes: f32) -> AppExit {
         most.1.to_degrees()
     );
     AppExit::Success
+}
+
+/// Whether all is still as it should be after so many minutes; says what is not.
+fn lasts(world: &mut World, minutes: u32) -> bool {
+    let Some(Lasting(check)) = world.get_resource().copied() else {
+        return true;
+    };
+    let findings = check(world);
+    for finding in &findings {
+        if finding.good {
+            println!("  minute {minutes}: {finding}");
+        } else {
+            eprintln!("  minute {minutes}: {finding}");
+        }
+    }
+    findings.iter().all(|finding| finding.good)
 }
 
 /// Notes how long each body has been outside the picture, and keeps the most of that (s) and of all angles (rad).

@@ -6,6 +6,7 @@ use bevy::camera::RenderTarget;
 use bevy::core_pipeline::tonemapping::Tonemapping;
 use bevy::light::CascadeShadowConfigBuilder;
 use bevy::prelude::*;
+use bevy::render::render_resource::Face;
 
 /// What a body looks like; ignored where nothing is drawn.
 #[derive(Component, Clone, Copy)]
@@ -35,7 +36,7 @@ impl Shape {
     }
 }
 
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Paint {
     Iron,
     Ivory,
@@ -45,10 +46,17 @@ pub enum Paint {
     Asphalt,
     Sand,
     Red,
+    Wood,
+    Hemp,
+    Water,
+    /// Seen from both sides.
+    Cloth,
+    /// Light goes through it.
+    Jelly,
 }
 
 impl Paint {
-    fn material(self) -> StandardMaterial {
+    pub(super) fn material(self) -> StandardMaterial {
         let (color, roughness, metallic) = match self {
             Paint::Iron => (Color::srgb(0.16, 0.17, 0.19), 0.5, 0.3),
             Paint::Ivory => (Color::srgb(0.86, 0.83, 0.76), 0.6, 0.0),
@@ -58,11 +66,24 @@ impl Paint {
             Paint::Asphalt => (Color::srgb(0.25, 0.26, 0.28), 0.95, 0.0),
             Paint::Sand => (Color::srgb(0.55, 0.51, 0.44), 0.95, 0.0),
             Paint::Red => (Color::srgb(0.62, 0.15, 0.12), 0.6, 0.0),
+            Paint::Wood => (Color::srgb(0.46, 0.31, 0.18), 0.85, 0.0),
+            Paint::Hemp => (Color::srgb(0.62, 0.52, 0.36), 0.95, 0.0),
+            Paint::Water => (Color::srgb(0.20, 0.34, 0.40), 0.25, 0.0),
+            Paint::Cloth => (Color::srgb(0.66, 0.13, 0.11), 0.9, 0.0),
+            Paint::Jelly => (Color::srgba(0.35, 0.68, 0.22, 0.6), 0.25, 0.0),
         };
+        let both_sides = matches!(self, Paint::Cloth);
         StandardMaterial {
             base_color: color,
             perceptual_roughness: roughness,
             metallic,
+            double_sided: both_sides,
+            cull_mode: if both_sides { None } else { Some(Face::Back) },
+            alpha_mode: if color.alpha() < 1.0 {
+                AlphaMode::Blend
+            } else {
+                AlphaMode::Opaque
+            },
             ..default()
         }
     }
@@ -78,8 +99,9 @@ pub fn floor() -> impl Bundle {
 
 /// Adds what makes a scene visible, seen from `eye`, into a window or an image.
 pub fn dress(app: &mut App, eye: Vec3, target: Vec3, image: Option<RenderTarget>) {
+    super::skin::add(app);
     app.insert_resource(ClearColor(Color::srgb(0.62, 0.67, 0.72)))
-        .add_systems(PreUpdate, show_shapes)
+        .add_systems(PreUpdate, (show_shapes, super::rope::show))
         .add_systems(Startup, move |mut commands: Commands| {
             let mut camera = commands.spawn((
                 Stays,

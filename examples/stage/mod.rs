@@ -18,14 +18,18 @@ mod offscreen;
 mod orbit;
 mod plot;
 mod progress;
+mod rope;
+mod skin;
 mod strip;
 
 pub use again::{Again, Begin, fresh, tick};
 pub use check::{Finding, Track, tracks};
 pub use keys::SpaceIsTaken;
-pub use living::Upright;
+pub use living::{Lasting, Upright};
 pub use look::{Paint, Shape, floor};
 pub use plot::Plot;
+pub use rope::Rope;
+pub use skin::{Skin, Vertex};
 
 use bevy::prelude::*;
 use bevy::time::TimeUpdateStrategy;
@@ -57,6 +61,10 @@ pub struct Stage {
 /// Inserted by a `setup`: the second that `--screenshot` shows, where the end is not the best of it.
 #[derive(Resource)]
 pub struct PictureAt(pub f32);
+
+/// Inserted by a `setup` that moves bodies by their `Transform`: the engine hears of it once in a frame.
+#[derive(Resource)]
+pub struct TickByTick;
 
 /// What the command line asks for.
 #[derive(Default)]

@@ -7,7 +7,7 @@
 use image::{RgbImage, imageops};
 use pictures::{command, root};
 
-const SCENES: [&str; 16] = [
+const SCENES: [&str; 18] = [
     "linear_spring",
     "nonlinear_spring",
     "spring_3d",
@@ -21,6 +21,8 @@ const SCENES: [&str; 16] = [
     "natural_frequency",
     "suspension",
     "drive",
+    "flag",
+    "rope_bridge",
     "tensegrity",
     "newtons_chain",
     "showcase",

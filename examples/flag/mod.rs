@@ -1,0 +1,36 @@
+//! The flag in its parts: threads, wind, tears, and what is measured.
+
+mod cloth;
+mod findings;
+mod tear;
+mod wind;
+
+use crate::stage::{Begin, fresh};
+use bevy::prelude::*;
+use bevy_coilover::prelude::*;
+use bevy_rapier3d::prelude::*;
+
+pub use findings::check;
+
+/// The gust, s.
+const GUST: [f32; 2] = [20.0, 23.0];
+pub const SECONDS: f32 = 40.0;
+pub const PICTURE: f32 = 3.0;
+
+pub fn setup(app: &mut App) {
+    app.world_mut()
+        .resource_mut::<CoiloverSettings>()
+        .microsteps = 8;
+    app.add_systems(Begin, (fresh::<findings::Seen>, cloth::setup).chain())
+        .add_systems(
+            FixedUpdate,
+            (tear::carry_off, tear::fray, wind::blow)
+                .chain()
+                .before(PhysicsSet::SyncBackend),
+        )
+        .add_systems(
+            FixedUpdate,
+            findings::record.after(CoiloverSystems::Readout),
+        )
+        .add_observer(tear::snap);
+}
