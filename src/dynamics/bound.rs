@@ -19,6 +19,9 @@ const SWAY: f64 = 0.02;
 /// implicit midpoint rule there, whose ends show hardly any of that.
 const UNRESOLVED_SWAY: f64 = 0.002;
 
+/// Share of what was liveliest that counts in the next step: it is forgotten in some ten seconds.
+const REMEMBERED: f64 = 0.998;
+
 /// Rounds of taking.
 const ROUNDS: usize = 4;
 
@@ -34,6 +37,8 @@ pub(crate) struct Bound {
     work: f64,
     /// The stiffest mode is not resolved.
     unresolved: bool,
+    /// Most energy of motion and springs of late: what hangs has little of both where it turns back, J.
+    liveliest: f64,
 }
 
 impl Bound {
@@ -81,15 +86,20 @@ impl Bound {
 
     /// Most energy that there may seem to be, with so much of it in motion and springs.
     fn most(&self, lively: f64, time: f64) -> Option<f64> {
-        let sway = if self.unresolved {
+        Some(self.given? + time * self.work + self.sway(lively))
+    }
+
+    fn sway(&self, lively: f64) -> f64 {
+        let share = if self.unresolved {
             UNRESOLVED_SWAY
         } else {
             SWAY
         };
-        Some(self.given? + time * self.work + sway * lively)
+        share * lively.max(self.liveliest)
     }
 
-    /// Takes a surplus out of the motion; says whether that was enough.
+    /// Takes a surplus out of the motion; says whether that was enough. A small one waits until there is motion along the
+    /// elements: to take the step again costs far more.
     pub(crate) fn hold(&mut self, elements: &[Element], bodies: &mut [Body], time: f64) -> bool {
         if self.given.is_none() {
             return true;
@@ -101,14 +111,17 @@ impl Bound {
             if surplus <= 0.0 {
                 return true;
             }
-            if !surplus.is_finite() || surplus > energy.motion {
+            if !surplus.is_finite() {
                 return false;
             }
-            if take(elements, bodies, surplus) < 0.01 * surplus {
-                return false;
+            let enough =
+                surplus <= energy.motion && take(elements, bodies, surplus) >= 0.01 * surplus;
+            if !enough {
+                return surplus <= self.sway(energy.motion + energy.stored);
             }
         }
-        false
+        let energy = Energy::of(elements, bodies);
+        self.surplus(&energy, time) <= self.sway(energy.motion + energy.stored)
     }
 
     /// Slows all motion, about the common centre of mass where nothing else holds the network, until the
@@ -160,7 +173,7 @@ impl Bound {
     /// Notes what the step ends with.
     pub(crate) fn end(&mut self, elements: &[Element], bodies: &[Body], time: f64) {
         if self.given.is_some() {
-            self.finish(Energy::of(elements, bodies).sum(), time);
+            self.finish(&Energy::of(elements, bodies), time);
             // From the next step on what torques gave is what the bodies have.
             let torque_work: f64 = bodies.iter().map(|body| body.torque_work).sum();
             self.last += torque_work;
@@ -168,9 +181,10 @@ impl Bound {
         }
     }
 
-    /// Ends a step with such an energy, J.
-    pub(crate) fn finish(&mut self, energy: f64, time: f64) {
-        self.last = energy;
+    /// Ends a step with such an energy.
+    pub(crate) fn finish(&mut self, energy: &Energy, time: f64) {
+        self.last = energy.sum();
+        self.liveliest = (REMEMBERED * self.liveliest).max(energy.motion + energy.stored);
         if let Some(given) = &mut self.given {
             *given += time * self.work;
         }

@@ -46,3 +46,5 @@ pub(crate) fn single(number: f64) -> f32 {
 mod own_engine;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod undamped;

@@ -50,7 +50,7 @@ impl Component {
             .is_none_or(|farthest| points.are_within(farthest, time));
         let kept = bound.is_kept(&end.energy, end.power, time) && within;
         if kept {
-            bound.finish(end.energy.sum(), time);
+            bound.finish(&end.energy, time);
             self.memory.carriable = Some(time);
             if self.is_warm {
                 return outcome;

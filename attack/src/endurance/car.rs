@@ -1,0 +1,98 @@
+//! A car that stands on four wheels and is pushed down.
+
+use super::{Endurance, GRAVITY, lab};
+use bevy::prelude::*;
+use bevy_coilover::prelude::*;
+use bevy_rapier3d::prelude::*;
+
+/// m.
+const RADIUS: f32 = 0.33;
+/// m.
+const REST: f32 = 0.5;
+/// kg.
+const CHASSIS: f32 = 1200.0;
+/// kg.
+const WHEEL: f32 = 20.0;
+/// N/m and N s/m of each coilover: 1.4 Hz, a third of critical.
+const STIFFNESS: f32 = 23e3;
+const DAMPING: f32 = 1750.0;
+
+/// A chassis of 1 200 kg on four wheels that joints guide. Sag is what statics say, and it does not walk.
+pub fn car() -> Endurance {
+    let mut app = lab(GRAVITY);
+    let world = app.world_mut();
+    let road = Collider::cuboid(50.0, 1.0, 50.0);
+    world.spawn((
+        RigidBody::Fixed,
+        road,
+        Friction::new(1.0),
+        Transform::from_xyz(0.0, -1.0, 0.0),
+    ));
+    let chassis = world
+        .spawn((
+            RigidBody::Dynamic,
+            Transform::from_xyz(0.0, RADIUS + REST, 0.0),
+            Collider::cuboid(1.6, 0.15, 0.6),
+            ColliderMassProperties::Mass(CHASSIS),
+            Velocity::default(),
+            ReadMassProperties::default(),
+        ))
+        .id();
+    let (mut bodies, mut springs) = (vec![chassis], Vec::new());
+    for (x, z) in [(1.3, 0.75), (1.3, -0.75), (-1.3, 0.75), (-1.3, -0.75)] {
+        let corner = Vec3::new(x, 0.0, z);
+        let free = JointAxesMask::LIN_X
+            | JointAxesMask::LIN_Z
+            | JointAxesMask::ANG_X
+            | JointAxesMask::ANG_Y;
+        let guide = GenericJointBuilder::new(free).local_anchor1(corner).build();
+        let wheel = world
+            .spawn((
+                RigidBody::Dynamic,
+                Transform::from_translation(corner + Vec3::Y * RADIUS),
+                Collider::ball(RADIUS),
+                ColliderMassProperties::Mass(WHEEL),
+                Friction::new(1.0),
+                Velocity::default(),
+                ReadMassProperties::default(),
+                ImpulseJoint::new(chassis, TypedJoint::GenericJoint(guide)),
+            ))
+            .id();
+        let coilover = SpringDamper::new(chassis, wheel)
+            .with_stiffness(STIFFNESS)
+            .with_damping(DAMPING)
+            .with_rest_length(REST);
+        bodies.push(wheel);
+        springs.push(
+            world
+                .spawn((coilover, Anchors::new(corner, Vec3::ZERO)))
+                .id(),
+        );
+    }
+    Endurance {
+        title: "car",
+        app,
+        bodies,
+        springs,
+        gravity: GRAVITY,
+        pause: 10.0,
+        strike: |scene, strike| {
+            let corner = strike % 4;
+            let chassis = scene.bodies[0];
+            scene.push(chassis, Vec3::NEG_Y * 0.8);
+            if let Some(mut velocity) = scene.app.world_mut().get_mut::<Velocity>(chassis) {
+                velocity.angular += Quat::from_rotation_y(corner as f32) * Vec3::X * 0.3;
+            }
+        },
+        stands: |scene| {
+            // On its wheels' height, less the sag under the chassis.
+            let sag = CHASSIS * GRAVITY / (4.0 * STIFFNESS);
+            let place = scene.place(scene.bodies[0]);
+            let height = (place.y - (RADIUS + REST - sag)).abs() / sag;
+            (f64::from(height), 0.03)
+        },
+        strikes: 0,
+        // Tyres take of it as well.
+        explained: None,
+    }
+}

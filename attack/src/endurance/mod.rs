@@ -1,0 +1,173 @@
+//! Scenes that run for days: a car that stands, a hanging cloth, a net of a thousand springs. Each is struck again and again,
+//! comes to rest or nearly so in between, and keeps a ledger of its energy.
+
+mod car;
+mod cloth;
+mod net;
+
+pub use car::car;
+pub use cloth::cloth;
+pub use net::net;
+
+use bevy::ecs::schedule::{Schedules, SingleThreadedExecutor};
+use bevy::prelude::*;
+use bevy::time::TimeUpdateStrategy;
+use bevy_coilover::prelude::*;
+use bevy_rapier3d::prelude::*;
+use std::time::Duration;
+
+/// One tick, s.
+pub const DT: f32 = 1.0 / 60.0;
+/// m/s², downwards where there is any.
+pub const GRAVITY: f32 = 9.81;
+
+/// A scene that is struck in equal times.
+pub struct Endurance {
+    /// What it is.
+    pub title: &'static str,
+    app: App,
+    bodies: Vec<Entity>,
+    springs: Vec<Entity>,
+    gravity: f32,
+    /// Seconds from one strike to the next.
+    pub pause: f32,
+    /// Strikes it; the number says which strike it is.
+    strike: fn(&mut Self, u64),
+    /// How far what should stand as theory says is from there, 0 for exactly; and how much is allowed.
+    stands: fn(&Self) -> (f64, f64),
+    strikes: u64,
+    /// Bounds of the ledger's error as a share of the energy that was given, J/J; none where contacts take energy as well.
+    pub explained: Option<f64>,
+}
+
+/// What happened from one strike to the next.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Interval {
+    /// Energy that the strike gave, J.
+    pub given: f64,
+    /// What of it neither is there nor was taken by dampers, J.
+    pub unexplained: f64,
+    /// How far it stands from where it should when the next strike comes, and how much is allowed.
+    pub off: (f64, f64),
+    /// Fastest body then, m/s.
+    pub speed: f64,
+}
+
+/// An app with Rapier and springs, and nothing else.
+fn lab(gravity: f32) -> App {
+    let mut app = App::new();
+    app.add_plugins((MinimalPlugins, TransformPlugin))
+        .add_plugins(RapierPhysicsPlugin::<NoUserData>::default().in_fixed_schedule())
+        .add_plugins(CoiloverPlugin::default());
+    let tick = Duration::from_secs_f32(DT);
+    app.insert_resource(TimestepMode::Fixed {
+        dt: DT,
+        substeps: 1,
+    })
+    .insert_resource(Time::<Fixed>::from_duration(tick))
+    .insert_resource(TimeUpdateStrategy::ManualDuration(tick));
+    app.finish();
+    app.cleanup();
+    // One scene runs at a time, and threads cost more than they gain for so little in each system.
+    let mut schedules = app.world_mut().resource_mut::<Schedules>();
+    for (_, schedule) in schedules.iter_mut() {
+        schedule.set_executor(SingleThreadedExecutor::new());
+    }
+    app.update();
+    let world = app.world_mut();
+    for mut configuration in world.query::<&mut RapierConfiguration>().iter_mut(world) {
+        configuration.gravity = Vec3::NEG_Y * gravity;
+    }
+    app
+}
+
+impl Endurance {
+    /// Strikes it, and runs until the next strike.
+    pub fn interval(&mut self) -> Interval {
+        let before = self.energy();
+        (self.strike)(self, self.strikes);
+        self.strikes += 1;
+        let struck = self.energy();
+        let mut taken = 0.0;
+        for _ in 0..(self.pause / DT).round() as usize {
+            self.app.update();
+            taken += self.dissipation() * f64::from(DT);
+        }
+        Interval {
+            given: struck - before,
+            unexplained: self.energy() + taken - struck,
+            off: (self.stands)(self),
+            speed: self.speed(),
+        }
+    }
+
+    fn of<T: Component>(&self, entities: &[Entity]) -> impl Iterator<Item = &T> {
+        let world = self.app.world();
+        entities.iter().filter_map(|entity| world.get::<T>(*entity))
+    }
+
+    /// Kinetic energy, that of height, and that of springs, J.
+    fn energy(&self) -> f64 {
+        let world = self.app.world();
+        let moving = |body: &Entity| {
+            let (Some(at), Some(v)) = (world.get::<Transform>(*body), world.get::<Velocity>(*body))
+            else {
+                return 0.0;
+            };
+            let mass = world
+                .get::<ReadMassProperties>(*body)
+                .map(|read| read.get().clone());
+            let Some(mass) = mass else { return 0.0 };
+            let spin = (at.rotation * mass.principal_inertia_local_frame).inverse() * v.angular;
+            let turning = (mass.principal_inertia * spin).dot(spin);
+            let height = at.transform_point(mass.local_center_of_mass).y;
+            f64::from(0.5 * mass.mass * v.linear.length_squared() + 0.5 * turning)
+                + f64::from(mass.mass) * f64::from(self.gravity) * f64::from(height)
+        };
+        let stored = self
+            .of::<SpringReadout>(&self.springs)
+            .map(|read| f64::from(read.stored_energy));
+        self.bodies.iter().map(moving).sum::<f64>() + stored.sum::<f64>()
+    }
+
+    /// Power of all dampers, W.
+    fn dissipation(&self) -> f64 {
+        self.of::<SpringReadout>(&self.springs)
+            .map(|read| f64::from(read.dissipated_power))
+            .sum()
+    }
+
+    fn speed(&self) -> f64 {
+        self.of::<Velocity>(&self.bodies)
+            .map(|v| f64::from(v.linear.length()))
+            .fold(0.0, f64::max)
+    }
+
+    fn place(&self, body: Entity) -> Vec3 {
+        self.app
+            .world()
+            .get::<Transform>(body)
+            .map_or(Vec3::NAN, |at| at.translation)
+    }
+
+    /// Adds to the velocity of a body.
+    fn push(&mut self, body: Entity, by: Vec3) {
+        if let Some(mut velocity) = self.app.world_mut().get_mut::<Velocity>(body) {
+            velocity.linear += by;
+        }
+    }
+}
+
+/// A direction that looks random, the same for the same numbers.
+fn direction(strike: u64, body: u64) -> Vec3 {
+    let mut x =
+        strike.wrapping_mul(0x9E37_79B9_7F4A_7C15) ^ body.wrapping_mul(0xD1B5_4A32_D192_ED03);
+    let mut next = || {
+        x ^= x >> 29;
+        x = x
+            .wrapping_mul(0xBF58_476D_1CE4_E5B9)
+            .wrapping_add(0x94D0_49BB_1331_11EB);
+        (x >> 40) as f32 / (1_u64 << 23) as f32 - 1.0
+    };
+    Vec3::new(next(), next(), next())
+}
