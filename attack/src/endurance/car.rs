@@ -1,6 +1,6 @@
 //! A car that stands on four wheels and is pushed down.
 
-use super::{Endurance, GRAVITY, lab};
+use super::{Endurance, GRAVITY, body, lab};
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
@@ -9,6 +9,8 @@ use bevy_rapier3d::prelude::*;
 const RADIUS: f32 = 0.33;
 /// m.
 const REST: f32 = 0.5;
+/// Half the chassis' size, m.
+const HALF: Vec3 = Vec3::new(1.6, 0.15, 0.6);
 /// kg.
 const CHASSIS: f32 = 1200.0;
 /// kg.
@@ -25,17 +27,25 @@ pub fn car() -> Endurance {
     world.spawn((
         RigidBody::Fixed,
         road,
+        CollisionGroups::new(Group::GROUP_1, Group::GROUP_2),
         Friction::new(1.0),
         Transform::from_xyz(0.0, -1.0, 0.0),
     ));
+    let squares = HALF * HALF;
+    let sums = Vec3::new(
+        squares.y + squares.z,
+        squares.z + squares.x,
+        squares.x + squares.y,
+    );
+    let ball = 0.4 * WHEEL * RADIUS * RADIUS;
+    let mut masses = vec![(CHASSIS, CHASSIS / 3.0 * sums)];
+    masses.extend([(WHEEL, Vec3::splat(ball)); 4]);
     let chassis = world
         .spawn((
-            RigidBody::Dynamic,
-            Transform::from_xyz(0.0, RADIUS + REST, 0.0),
-            Collider::cuboid(1.6, 0.15, 0.6),
-            ColliderMassProperties::Mass(CHASSIS),
-            Velocity::default(),
-            ReadMassProperties::default(),
+            body(Vec3::Y * (RADIUS + REST), masses[0]),
+            Collider::cuboid(HALF.x, HALF.y, HALF.z),
+            ColliderMassProperties::Density(0.0),
+            CollisionGroups::new(Group::GROUP_2, Group::GROUP_1),
         ))
         .id();
     let (mut bodies, mut springs) = (vec![chassis], Vec::new());
@@ -48,13 +58,11 @@ pub fn car() -> Endurance {
         let guide = GenericJointBuilder::new(free).local_anchor1(corner).build();
         let wheel = world
             .spawn((
-                RigidBody::Dynamic,
-                Transform::from_translation(corner + Vec3::Y * RADIUS),
+                body(corner + Vec3::Y * RADIUS, masses[1]),
                 Collider::ball(RADIUS),
-                ColliderMassProperties::Mass(WHEEL),
+                ColliderMassProperties::Density(0.0),
+                CollisionGroups::new(Group::GROUP_2, Group::GROUP_1),
                 Friction::new(1.0),
-                Velocity::default(),
-                ReadMassProperties::default(),
                 ImpulseJoint::new(chassis, TypedJoint::GenericJoint(guide)),
             ))
             .id();
@@ -73,6 +81,7 @@ pub fn car() -> Endurance {
         title: "car",
         app,
         bodies,
+        masses,
         springs,
         gravity: GRAVITY,
         pause: 10.0,

@@ -1,41 +1,35 @@
 //! A cloth that hangs and is blown at.
 
-use super::{Endurance, GRAVITY, direction, lab};
+use super::{Endurance, GRAVITY, body, direction, lab};
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
 
-const SIDE: usize = 24;
+const SIDE: usize = 16;
 /// m.
 const PITCH: f32 = 0.1;
 /// kg.
 const POINT: f32 = 0.01;
 /// N/m and N s/m of each thread.
-const STIFFNESS: f32 = 200.0;
+const STIFFNESS: f32 = 100.0;
 const DAMPING: f32 = 0.3;
+/// N s/m of what stands for air, at each fourth point of each fourth row.
+const AIR: f32 = 0.3;
 
-/// 24 × 24 points that hang from those of their uppermost row: what all weigh hangs on that row.
+/// 16 × 16 points that hang from those of their uppermost row: what all weigh hangs on that row.
 pub fn cloth() -> Endurance {
     let mut app = lab(GRAVITY);
     let world = app.world_mut();
     let mut points = Vec::new();
     for i in 0..SIDE * SIDE {
         let (x, row) = (i % SIDE, i / SIDE);
-        let at = Transform::from_xyz(PITCH * x as f32, -PITCH * row as f32, 0.0);
+        let at = PITCH * Vec3::new(x as f32, -(row as f32), 0.0);
         points.push(if row == 0 {
+            let at = Transform::from_translation(at);
             world.spawn((RigidBody::Fixed, at)).id()
         } else {
-            let mass = AdditionalMassProperties::Mass(POINT);
             let locked = LockedAxes::ROTATION_LOCKED;
-            let body = (
-                RigidBody::Dynamic,
-                at,
-                mass,
-                locked,
-                Velocity::default(),
-                ReadMassProperties::default(),
-            );
-            world.spawn(body).id()
+            world.spawn((body(at, (POINT, Vec3::ONE)), locked)).id()
         });
     }
     let mut springs = Vec::new();
@@ -53,18 +47,26 @@ pub fn cloth() -> Endurance {
             }
         }
     }
+    // Far behind, so that it acts across the cloth.
+    for i in (0..SIDE * SIDE).filter(|i| i % SIDE % 4 == 3 && i / SIDE % 4 == 3) {
+        let at = Vec3::new(PITCH * (i % SIDE) as f32, -PITCH * (i / SIDE) as f32, -50.0);
+        let far = world.spawn(Transform::from_translation(at)).id();
+        let air = Damper::new(far, points[i]).with_damping(AIR);
+        springs.push(world.spawn(air).id());
+    }
     Endurance {
         title: "cloth",
         app,
         bodies: points.split_off(SIDE),
+        masses: vec![(POINT, Vec3::ONE); SIDE * (SIDE - 1)],
         springs,
         gravity: GRAVITY,
         pause: 20.0,
         strike: |scene, strike| {
-            let wind = direction(strike, 0);
+            let wind = Vec3::Z * direction(strike, 0).z;
             for index in 0..scene.bodies.len() {
                 let body = scene.bodies[index];
-                scene.push(body, Vec3::new(0.3 * wind.x, 0.0, 1.5 * wind.z));
+                scene.push(body, 1.5 * wind);
             }
         },
         stands: |scene| {

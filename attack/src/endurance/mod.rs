@@ -27,6 +27,8 @@ pub struct Endurance {
     pub title: &'static str,
     app: App,
     bodies: Vec<Entity>,
+    /// Mass, kg, and principal inertia, kg m², of each.
+    masses: Vec<(f32, Vec3)>,
     springs: Vec<Entity>,
     gravity: f32,
     /// Seconds from one strike to the next.
@@ -36,16 +38,16 @@ pub struct Endurance {
     /// How far what should stand as theory says is from there, 0 for exactly; and how much is allowed.
     stands: fn(&Self) -> (f64, f64),
     strikes: u64,
-    /// Bounds of the ledger's error as a share of the energy that was given, J/J; none where contacts take energy as well.
+    /// Bounds of the ledger's error as a share of the energy that was turned over; none where contacts take energy as well.
     pub explained: Option<f64>,
 }
 
 /// What happened from one strike to the next.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Interval {
-    /// Energy that the strike gave, J.
-    pub given: f64,
-    /// What of it neither is there nor was taken by dampers, J.
+    /// Energy that the strike gave or took, and what dampers took, J.
+    pub turned_over: f64,
+    /// What of it is neither there nor was taken by dampers, J.
     pub unexplained: f64,
     /// How far it stands from where it should when the next strike comes, and how much is allowed.
     pub off: (f64, f64),
@@ -88,13 +90,13 @@ impl Endurance {
         (self.strike)(self, self.strikes);
         self.strikes += 1;
         let struck = self.energy();
-        let mut taken = 0.0;
+        let warm = self.heat();
         for _ in 0..(self.pause / DT).round() as usize {
             self.app.update();
-            taken += self.dissipation() * f64::from(DT);
         }
+        let taken = self.heat() - warm;
         Interval {
-            given: struck - before,
+            turned_over: (struck - before).abs() + taken,
             unexplained: self.energy() + taken - struck,
             off: (self.stands)(self),
             speed: self.speed(),
@@ -108,32 +110,32 @@ impl Endurance {
 
     /// Kinetic energy, that of height, and that of springs, J.
     fn energy(&self) -> f64 {
-        let world = self.app.world();
-        let moving = |body: &Entity| {
-            let (Some(at), Some(v)) = (world.get::<Transform>(*body), world.get::<Velocity>(*body))
-            else {
+        let moving = |(body, (mass, inertia)): (&Entity, &(f32, Vec3))| {
+            let world = self.app.world();
+            let places = world.get::<Transform>(*body);
+            let Some((at, v)) = places.zip(world.get::<Velocity>(*body)) else {
                 return 0.0;
             };
-            let mass = world
-                .get::<ReadMassProperties>(*body)
-                .map(|read| read.get().clone());
-            let Some(mass) = mass else { return 0.0 };
-            let spin = (at.rotation * mass.principal_inertia_local_frame).inverse() * v.angular;
-            let turning = (mass.principal_inertia * spin).dot(spin);
-            let height = at.transform_point(mass.local_center_of_mass).y;
-            f64::from(0.5 * mass.mass * v.linear.length_squared() + 0.5 * turning)
-                + f64::from(mass.mass) * f64::from(self.gravity) * f64::from(height)
+            let spin = at.rotation.inverse() * v.angular;
+            let twice = mass * v.linear.length_squared() + (*inertia * spin).dot(spin);
+            let weight = f64::from(mass * self.gravity);
+            0.5 * f64::from(twice) + weight * f64::from(at.translation.y)
         };
         let stored = self
             .of::<SpringReadout>(&self.springs)
             .map(|read| f64::from(read.stored_energy));
-        self.bodies.iter().map(moving).sum::<f64>() + stored.sum::<f64>()
+        self.bodies
+            .iter()
+            .zip(&self.masses)
+            .map(moving)
+            .sum::<f64>()
+            + stored.sum::<f64>()
     }
 
-    /// Power of all dampers, W.
-    fn dissipation(&self) -> f64 {
+    /// What all dampers took so far, J.
+    fn heat(&self) -> f64 {
         self.of::<SpringReadout>(&self.springs)
-            .map(|read| f64::from(read.dissipated_power))
+            .map(|read| f64::from(read.dissipated_energy))
             .sum()
     }
 
@@ -156,6 +158,21 @@ impl Endurance {
             velocity.linear += by;
         }
     }
+}
+
+/// A body of such a mass (kg) and inertia (kg m²).
+fn body(at: Vec3, (mass, principal_inertia): (f32, Vec3)) -> impl Bundle {
+    let properties = MassProperties {
+        mass,
+        principal_inertia,
+        ..default()
+    };
+    (
+        RigidBody::Dynamic,
+        Transform::from_translation(at),
+        AdditionalMassProperties::MassProperties(properties),
+        Velocity::default(),
+    )
 }
 
 /// A direction that looks random, the same for the same numbers.

@@ -1,9 +1,8 @@
 //! A net of a thousand springs that floats.
 
-use super::{Endurance, direction, lab};
+use super::{Endurance, body, direction, lab};
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
-use bevy_rapier3d::prelude::*;
 
 const SIDE: usize = 8;
 const DEEP: usize = 6;
@@ -11,7 +10,7 @@ const DEEP: usize = 6;
 const PITCH: f32 = 0.5;
 /// N/m and N s/m.
 const STIFFNESS: f32 = 300.0;
-const DAMPING: f32 = 1.0;
+const DAMPING: f32 = 5.0;
 
 /// A lattice of 8 × 8 × 6 boxes of 0.5 to 1 kg, with 1 008 springs from corner to corner. It weighs nothing, so its centre of
 /// mass stays where it is.
@@ -19,24 +18,14 @@ pub fn net() -> Endurance {
     let mut app = lab(0.0);
     let world = app.world_mut();
     let index = |x: usize, y: usize, z: usize| (z * SIDE + y) * SIDE + x;
-    let mut bodies = Vec::new();
+    let (mut bodies, mut masses) = (Vec::new(), Vec::new());
     for i in 0..SIDE * SIDE * DEEP {
         let (x, y, z) = (i % SIDE, i / SIDE % SIDE, i / SIDE / SIDE);
         let mass = 0.5 + 0.5 * (i % 3) as f32 / 2.0;
-        let properties = AdditionalMassProperties::MassProperties(MassProperties {
-            mass,
-            principal_inertia: mass * 0.01 * Vec3::new(1.0, 1.2, 1.5),
-            ..default()
-        });
-        let at = Transform::from_translation(PITCH * Vec3::new(x as f32, y as f32, z as f32));
-        let body = (
-            RigidBody::Dynamic,
-            at,
-            properties,
-            Velocity::default(),
-            ReadMassProperties::default(),
-        );
-        bodies.push(world.spawn(body).id());
+        let mass = (mass, mass * 0.01 * Vec3::new(1.0, 1.2, 1.5));
+        let at = PITCH * Vec3::new(x as f32, y as f32, z as f32);
+        bodies.push(world.spawn(body(at, mass)).id());
+        masses.push(mass);
     }
     let mut springs = Vec::new();
     for i in 0..bodies.len() {
@@ -63,45 +52,34 @@ pub fn net() -> Endurance {
         title: "net",
         app,
         bodies,
+        masses,
         springs,
         gravity: 0.0,
         pause: 20.0,
         strike: |scene, strike| {
-            // Equal and opposite pushes, or it would leave.
+            // Bodies that are opposite each other are pushed alike, so that it is not turned, and the next two against
+            // that, so that it does not leave.
             for pair in 0..scene.bodies.len() / 2 {
-                let by = direction(strike, pair as u64);
-                let ends = [
-                    scene.bodies[pair],
-                    scene.bodies[scene.bodies.len() - 1 - pair],
-                ];
-                let masses = ends.map(|body| {
-                    scene
-                        .app
-                        .world()
-                        .get::<ReadMassProperties>(body)
-                        .map_or(1.0, |m| m.mass)
-                });
-                scene.push(ends[0], by / masses[0]);
-                scene.push(ends[1], -by / masses[1]);
+                let by = direction(strike, pair as u64 / 2);
+                let by = if pair % 2 == 0 { by } else { -by };
+                for index in [pair, scene.bodies.len() - 1 - pair] {
+                    let mass = scene.masses[index].0;
+                    scene.push(scene.bodies[index], by / mass);
+                }
             }
         },
         stands: |scene| {
             // How far its centre of mass has wandered, as a share of its size.
             let (mut sum, mut mass) = (Vec3::ZERO, 0.0);
-            for body in &scene.bodies {
-                let own = scene
-                    .app
-                    .world()
-                    .get::<ReadMassProperties>(*body)
-                    .map_or(0.0, |m| m.mass);
-                sum += own * scene.place(*body);
-                mass += own;
+            for (body, (own, _)) in scene.bodies.iter().zip(&scene.masses) {
+                sum += *own * scene.place(*body);
+                mass += *own;
             }
             let middle =
                 0.5 * PITCH * Vec3::new((SIDE - 1) as f32, (SIDE - 1) as f32, (DEEP - 1) as f32);
             (f64::from((sum / mass).distance(middle)), 0.5)
         },
         strikes: 0,
-        explained: Some(0.02),
+        explained: Some(0.05),
     }
 }
