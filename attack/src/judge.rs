@@ -62,15 +62,44 @@ fn play(plan: &Plan, with_springs: bool) -> Result<(), String> {
     let mut deeds = plan.deeds.clone();
     deeds.sort_by_key(|(tick, _)| *tick);
     let mut deeds = deeds.iter().peekable();
+    let mut kept = vec![None; plan.goes_back.len()];
     for tick in 0..TICKS {
+        for ([_, back], kept) in plan.goes_back.iter().zip(&kept) {
+            if *back == tick {
+                go_back(&mut stage, kept);
+            }
+        }
         while let Some((_, deed)) = deeds.next_if(|(at, _)| *at == tick) {
             stage.act(deed, with_springs);
         }
         stage.app.update();
         is_finite(&mut stage).map_err(|wrong| format!("tick {tick}: {wrong}"))?;
+        for ([taken, _], kept) in plan.goes_back.iter().zip(&mut kept) {
+            if *taken == tick {
+                *kept = Some(keep(&stage));
+            }
+        }
     }
     // Without springs too: a paused engine goes on there, and may find its own faults only then.
     nothing_is_left(&mut stage)
+}
+
+type Kept = (RapierSnapshot, CoiloverSnapshot);
+
+fn keep(stage: &Stage) -> Kept {
+    let world = stage.app.world();
+    (RapierSnapshot::take(world), CoiloverSnapshot::take(world))
+}
+
+/// Puts a snapshot back where it fits. What was done meanwhile may forbid it; then nothing is changed.
+fn go_back(stage: &mut Stage, kept: &Option<Kept>) {
+    let Some((engine, springs)) = kept else {
+        return;
+    };
+    let world = stage.app.world_mut();
+    // The springs' side may fit where the engine's does not: that is no worse than a jump by the game.
+    let _ = engine.restore(world);
+    let _ = springs.restore(world);
 }
 
 /// Whether all that can be seen is a number.

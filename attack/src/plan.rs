@@ -168,6 +168,8 @@ pub struct Plan {
     pub deeds: Vec<(u8, Deed)>,
     /// There is a ground to fall on.
     pub ground: bool,
+    /// Ticks after which snapshots are taken, and ticks before which they are put back.
+    pub goes_back: Vec<[u8; 2]>,
 }
 
 /// Even in its logarithm.
@@ -331,11 +333,14 @@ pub fn plans() -> impl Strategy<Value = Plan> {
         vec(element(), 1..8),
         vec((0..TICKS, deed()), 0..8),
         any::<bool>(),
+        // Last, so that what comes before is as it was for each seed.
+        prop_oneof![2 => Just(Vec::new()), 1 => vec([0..TICKS, 0..TICKS], 1..4)],
     )
-        .prop_map(|(bodies, elements, deeds, ground)| Plan {
+        .prop_map(|(bodies, elements, deeds, ground, goes_back)| Plan {
             bodies,
             elements,
             deeds,
             ground,
+            goes_back,
         })
 }

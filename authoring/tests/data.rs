@@ -25,7 +25,7 @@ impl bevy::asset::LoadFromPath for NoAssets {
 }
 
 /// Every component that a designer writes, with numbers that are no defaults.
-fn all() -> Vec<Box<dyn PartialReflect>> {
+pub fn all() -> Vec<Box<dyn PartialReflect>> {
     let table = || ForceTable::new([(-1.0, -20.0), (0.0, 0.0), (0.5, 3.25)]);
     vec![
         Box::new(Spring::default().with_stiffness(12.5)),

@@ -14,3 +14,4 @@ mod gltf_scenes;
 mod remote;
 mod skein;
 mod snapshot;
+mod untrusted;

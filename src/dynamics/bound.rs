@@ -19,6 +19,9 @@ const SWAY: f64 = 0.02;
 /// implicit midpoint rule there, whose ends show hardly any of that.
 const UNRESOLVED_SWAY: f64 = 0.002;
 
+/// Share of [`SWAY`] that a step may win while a surplus waits. Roundings win a thousandth of that.
+const OWN: f64 = 0.1;
+
 /// Share of what was liveliest that counts in the next step: it is forgotten in some ten seconds.
 const REMEMBERED: f64 = 0.998;
 
@@ -33,6 +36,8 @@ pub(crate) struct Bound {
     given: Option<f64>,
     /// What it had at the end of the last step.
     last: f64,
+    /// What it had at the start of this one.
+    start: f64,
     /// Work that moving ends can have done in this step, at most.
     work: f64,
     /// The stiffest mode is not resolved.
@@ -51,6 +56,7 @@ impl Bound {
 
     /// Begins a step with the energy `now`, of which `rounding` can be noise, and the power of moving ends, W.
     pub(crate) fn start(&mut self, now: f64, rounding: f64, power: f64, perturbed: bool) {
+        self.start = now;
         let change = now - self.last;
         let gift = if change.abs() < rounding || (change > 0.0 && !perturbed) {
             // Noise of the engine's f32 is neither gift nor loss, nor is it a gift that it does not arrive where it
@@ -98,8 +104,8 @@ impl Bound {
         share * lively.max(self.liveliest)
     }
 
-    /// Takes a surplus out of the motion; says whether that was enough. A small one waits until there is motion along the
-    /// elements: to take the step again costs far more.
+    /// Takes a surplus out of the motion; says whether that was enough. One that this step has not made, as roundings make in
+    /// an hour, waits until there is motion along the elements: to take the step again would cost far more.
     pub(crate) fn hold(&mut self, elements: &[Element], bodies: &mut [Body], time: f64) -> bool {
         if self.given.is_none() {
             return true;
@@ -117,11 +123,16 @@ impl Bound {
             let enough =
                 surplus <= energy.motion && take(elements, bodies, surplus) >= 0.01 * surplus;
             if !enough {
-                return surplus <= self.sway(energy.motion + energy.stored);
+                return self.may_wait(&energy, surplus);
             }
         }
         let energy = Energy::of(elements, bodies);
-        self.surplus(&energy, time) <= self.sway(energy.motion + energy.stored)
+        self.may_wait(&energy, self.surplus(&energy, time))
+    }
+
+    fn may_wait(&self, energy: &Energy, surplus: f64) -> bool {
+        let sway = self.sway(energy.motion + energy.stored);
+        surplus <= sway && energy.sum() - self.start <= OWN * sway
     }
 
     /// Slows all motion, about the common centre of mass where nothing else holds the network, until the
