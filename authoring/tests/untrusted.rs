@@ -210,7 +210,7 @@ fn are_finite(world: &mut World) -> Result<(), String> {
         world.query_filtered::<(Entity, &GlobalTransform, &Velocity), With<RigidBody>>();
     for (entity, at, velocity) in bodies.iter(world) {
         let moves = velocity.linear.is_finite() && velocity.angular.is_finite();
-        if !(at.is_finite() && moves) {
+        if !(at.affine().is_finite() && moves) {
             return Err(format!("{entity}: {at:?}, {velocity:?}"));
         }
     }
