@@ -244,29 +244,39 @@ type Make = fn(CoiloverPlugin) -> Scene;
 fn each_scene_ends_in_the_bits_that_are_noted() {
     let default = CoiloverPlugin::default;
     let scenes: [(&str, Make, CoiloverPlugin, u64); 9] = [
-        ("pendulum", pendulum, default(), 0),
+        ("pendulum", pendulum, default(), 0x5e6e_2095_4143_8424),
         (
             "pendulum, extrapolated",
             pendulum,
             default().with_extrapolation(),
-            0,
+            0x7e22_5464_bb8a_4ce4,
         ),
         (
             "tumbling pair",
             tumbling_pair,
             default().with_tolerance(1e-4),
-            0,
+            0xa2d2_5070_8bf1_e3b3,
         ),
-        ("boxes on springs", boxes_on_springs, default(), 0),
-        ("cloth", cloth, default(), 0),
-        ("laws", laws, default(), 0),
-        ("wound up", wound_up, default(), 0),
-        ("on the ground", on_the_ground, default(), 0),
+        (
+            "boxes on springs",
+            boxes_on_springs,
+            default(),
+            0x7c2e_08a8_67f5_fe89,
+        ),
+        ("cloth", cloth, default(), 0x6df4_0f1f_95be_900c),
+        ("laws", laws, default(), 0x750b_017b_15e3_20a7),
+        ("wound up", wound_up, default(), 0x2d93_7a60_cb58_51b2),
+        (
+            "on the ground",
+            on_the_ground,
+            default(),
+            0x7728_813d_7efe_8c9a,
+        ),
         (
             "cloth, by a tolerance",
             cloth,
             default().with_tolerance(1e-3),
-            0,
+            0xfd24_aa56_726a_33fb,
         ),
     ];
     let mut others = Vec::new();

@@ -62,7 +62,7 @@ pub(crate) use companions::Beside;
 pub(crate) use curve::Curve;
 pub use forces::SpringLoad;
 pub(crate) use forces::read_users;
-pub(crate) use kept::Kept;
+pub(crate) use kept::{Kept, note_engine};
 pub(crate) use measure::measure;
 pub(crate) use named_ends::find_named_ends;
 #[cfg(feature = "workbench")]

@@ -63,6 +63,8 @@ pub struct Scene {
     pub(super) sweeps: EntityHashMap<Sweeps>,
     /// The rows are those of a snapshot, put there at that tick: what changed before is none of theirs.
     pub(super) since: Option<Tick>,
+    /// Rapier's snapshot was put back since the last step, and springs' was not yet.
+    pub(super) engine_went_back: bool,
     /// Elements whose components are others than a snapshot says.
     pub(super) pending: Vec<Entity>,
 }

@@ -49,6 +49,7 @@ pub(crate) fn solve(
     scene.time = 0.0;
     scene.stepped.clear();
     scene.delivered = false;
+    scene.engine_went_back = false;
     for (context, mut simulation, mut colliders, mut joints, configuration, lag) in &mut contexts {
         let plan = Plan::new(*mode, time.delta_secs(), lag.diff);
         if plan.time <= 0.0 || !configuration.physics_pipeline_active {

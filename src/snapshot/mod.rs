@@ -70,7 +70,8 @@ impl CoiloverSnapshot {
     /// Has the springs of a world go on from there.
     ///
     /// Elements that came after the snapshot may stay, and go on as new ones. If it does not fit the world, nothing is
-    /// changed.
+    /// changed; but if Rapier's was put back just before, springs begin anew, and leave nothing behind in Rapier of what
+    /// they had in it then.
     pub fn restore(&self, world: &mut World) -> Result<(), SnapshotError> {
         self.0.put(world)
     }

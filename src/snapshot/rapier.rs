@@ -2,6 +2,7 @@
 
 use super::SnapshotError;
 use crate::compat::{self, SoftBodies};
+use crate::engine::note_engine;
 use bevy::ecs::entity::{EntityHashSet, EntityMapper, MapEntities};
 use bevy::prelude::*;
 use bevy_rapier3d::plugin::systems::writeback_rigid_bodies;
@@ -137,6 +138,7 @@ impl RapierSnapshot {
                 context.put(parts);
             }
         }
+        note_engine(world);
         // Also notes what it has written, so that nothing of it is taken for the game's.
         let written = world.run_system_cached(writeback_rigid_bodies);
         written.map_err(|_| SnapshotError::NoPlugin)

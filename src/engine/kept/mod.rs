@@ -4,11 +4,14 @@
 //! for elements that are new, and then given what they remembered. So only memory is kept: laws, ends, components of the
 //! scene and coefficients come out the same to the last bit.
 
+mod anew;
 mod check;
 mod inside;
 mod map;
 mod put;
 mod take;
+
+pub(crate) use anew::note_engine;
 
 use super::held::{Leeway, SoftJoint};
 use super::rows::{EnergyLedger, Memory, Raised, Rest, Sweeps};

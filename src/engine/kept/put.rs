@@ -1,5 +1,6 @@
 //! Into a scene.
 
+use super::anew::engine_went_back;
 use super::{Kept, KeptBody, KeptElement, NONE};
 use crate::engine::companions::Companions;
 use crate::engine::find::Finder;
@@ -27,7 +28,12 @@ type Sources<'w, 's> = (
 impl Kept {
     /// Has the springs of a world go on from there.
     pub(crate) fn put(&self, world: &mut World) -> Result<(), SnapshotError> {
-        self.check(world)?;
+        let engine_went_back = engine_went_back(world);
+        let fits = self.check(world);
+        if fits.is_err() && engine_went_back {
+            self.begin_anew(world);
+        }
+        fits?;
         let mut kept = self.clone();
         kept.name_contexts(world);
         let Some(mut scene) = world.remove_resource::<Scene>() else {
@@ -205,6 +211,18 @@ impl Kept {
                 .map(|(context, inside)| (*context, inside.put(*context)))
                 .collect();
             scene.unloaded.clone_from(&self.unloaded);
+            // What elements had that are at fault now.
+            if let [context] = &self.contexts[..] {
+                for kept in &self.elements {
+                    let row = scene.row_of.get(&kept.entity).map(|i| &scene.elements[*i]);
+                    if let Some(inside) = kept.inside.as_deref()
+                        && row.is_none_or(|row| row.inside.is_none())
+                    {
+                        let inside = inside.put(context.entity);
+                        scene.left.push((context.entity, inside));
+                    }
+                }
+            }
         }
         scene.still = default();
         // Elements and bodies that the snapshot does not know.
