@@ -2,14 +2,16 @@
 //!
 //! - [`model`] is plain data: an element's numbers, what was edited, what is recorded, and what follows from it.
 //! - [`bench`] holds it between the frames; [`view`] draws it with egui and knows no world.
-//! - [`gather`] reads the world, [`apply`] changes it, [`commands`] does what the view asks for, [`scene`] draws and picks
-//!   in the scene.
+//! - [`gather`] reads the world, [`apply`] changes it, [`commands`] does what the view asks for.
+//! - In the scene, [`scene`] draws and picks, [`handles`] moves anchors; [`pointer`] is the mouse there.
 
 mod apply;
 mod bench;
 mod commands;
 mod gather;
+mod handles;
 mod model;
+mod pointer;
 mod scene;
 #[cfg(test)]
 mod tests;
@@ -74,13 +76,14 @@ impl Plugin for CoiloverWorkbenchPlugin {
         }
         app.init_resource::<CoiloverWorkbench>()
             .init_resource::<Bench>()
+            .init_resource::<handles::Handles>()
             .add_systems(
                 PreUpdate,
                 toggle
                     .after(InputSystems)
                     .before(EguiPreUpdateSet::ProcessInput),
             )
-            .add_systems(Update, scene::pick.run_if(is_open))
+            .add_systems(Update, (scene::pick, handles::drag).chain().run_if(is_open))
             .add_systems(
                 PostUpdate,
                 gather::gather

@@ -1,5 +1,6 @@
 //! The workbench as a person uses it: a game without a renderer, and a window's own events.
 
+mod in_the_scene;
 mod person;
 
 use super::CoiloverWorkbench;
@@ -155,8 +156,7 @@ fn the_list_is_searched() {
 fn a_coil_is_clicked_in_the_scene() {
     let mut person = Person::at_the_bench();
     // Half-way between hook and lamp, which stand in the middle of the window.
-    let camera = Vec3::new(0.0, 1.0, 8.0);
-    let hook = person::project(Vec3::new(0.0, 1.5, 0.0), camera);
+    let hook = person::project(Vec3::new(0.0, 1.5, 0.0), person::EYE);
     person.click_at(hook);
     assert_eq!(
         person.app.world().resource::<CoiloverWorkbench>().selected,

@@ -8,6 +8,7 @@ mod list;
 mod plots;
 
 use super::bench::{Ask, Bench};
+use super::model::facts::Subject;
 use bevy_egui::egui::{self, Panel, RichText, Ui};
 
 pub(crate) use field::significant;
@@ -97,7 +98,20 @@ fn bar(ui: &mut Ui, bench: &mut Bench) {
         if let Some(message) = &bench.message {
             ui.label(message);
         }
+        let hint = egui::Label::new(RichText::new(hint(bench)).weak()).truncate();
+        let right = egui::Layout::right_to_left(egui::Align::Center);
+        ui.with_layout(right, |ui| ui.add(hint));
     });
+}
+
+/// What the mouse does in the scene.
+fn hint(bench: &Bench) -> &'static str {
+    let has_anchors = |subject: &Subject| !subject.now.part.is_torsion();
+    if bench.subject.as_ref().is_some_and(has_anchors) {
+        "Drag a ball to move its anchor"
+    } else {
+        ""
+    }
 }
 
 fn speed_text(speed: f32) -> String {
