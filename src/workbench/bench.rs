@@ -57,6 +57,8 @@ pub(crate) struct Bench {
     pub history: History,
     pub record: Record,
     pub clock: Clock,
+    /// The key with which the mouse pulls bodies.
+    pub grab: Option<KeyCode>,
     /// The time of the record that is looked at; none for the present.
     pub scrub: Option<f64>,
     pub plots: Plots,

@@ -41,6 +41,7 @@ pub(super) fn drag(
     pointer: Pointer,
     mut handles: ResMut<Handles>,
     mut bench: ResMut<Bench>,
+    settings: Res<super::CoiloverWorkbench>,
     globals: Query<&GlobalTransform>,
     // Points of the world that wait for a step would be written over what is dragged.
     waiting: Query<(), With<WorldAnchors>>,
@@ -65,7 +66,7 @@ pub(super) fn drag(
         .min_by(|a, b| a.1.total_cmp(&b.1));
     handles.over = nearest.map(|(end, _)| end).filter(|_| !pointer.is_taken());
 
-    if pointer.put_down().is_some() {
+    if pointer.put_down().is_some() && !pointer.is_with(settings.grab) {
         handles.drag = handles.over.map(|end| Drag {
             entity,
             end,

@@ -13,6 +13,7 @@ pub(super) const STILL: f32 = 4.0;
 #[derive(SystemParam)]
 pub(super) struct Pointer<'w, 's> {
     buttons: Res<'w, ButtonInput<MouseButton>>,
+    keys: Res<'w, ButtonInput<KeyCode>>,
     egui: Option<Res<'w, EguiWantsInput>>,
     windows: Query<'w, 's, &'static Window, With<PrimaryWindow>>,
     cameras: Query<'w, 's, (&'static Camera, &'static GlobalTransform), With<PrimaryEguiContext>>,
@@ -44,6 +45,11 @@ impl Pointer<'_, '_> {
     /// It was let go in this frame.
     pub fn is_let_go(&self) -> bool {
         self.buttons.just_released(MouseButton::Left)
+    }
+
+    /// A key is held down.
+    pub fn is_with(&self, key: Option<KeyCode>) -> bool {
+        key.is_some_and(|key| self.keys.pressed(key))
     }
 
     /// Where a point of the world is in the window.

@@ -1,6 +1,7 @@
 //! The panel's place in the window, and what is drawn and clicked in the scene.
 
 use super::bench::Bench;
+use super::grab::Hand;
 use super::handles::Handles;
 use super::model::snapshot::Snapshot;
 use super::pointer::{Pointer, STILL};
@@ -18,7 +19,7 @@ const NEAR: f32 = 12.0;
 
 const COLOR: Color = Color::srgb(1.0, 0.9, 0.2);
 
-/// Of a handle below the pointer.
+/// Of a handle below the pointer, and of what pulls a body.
 const LIT: Color = Color::WHITE;
 
 /// Radius of a handle as a share of its distance from the eye: about seven pixels.
@@ -44,10 +45,12 @@ pub(super) fn add_gizmos(app: &mut App) {
     config.line.width = 3.0;
 }
 
-/// A line from anchor to anchor, and a ball at each.
+/// A line from anchor to anchor, a ball at each, and a line from a body that is pulled to the pointer.
 fn mark(
     bench: Res<Bench>,
     handles: Res<Handles>,
+    hand: Res<Hand>,
+    globals: Query<&GlobalTransform>,
     cameras: Query<&GlobalTransform, With<PrimaryEguiContext>>,
     mut gizmos: Gizmos<Mark>,
 ) {
@@ -55,6 +58,10 @@ fn mark(
         return;
     };
     let ball = |at: Vec3| BALL * eye.translation().distance(at);
+    if let Some([held, to]) = hand.line(&globals) {
+        gizmos.line(held, to, LIT);
+        gizmos.sphere(to, ball(to), LIT);
+    }
     let Some(subject) = &bench.subject else {
         return;
     };
@@ -120,13 +127,15 @@ pub(super) fn show(
 /// Chooses the element that was clicked.
 pub(super) fn pick(
     pointer: Pointer,
+    settings: Res<CoiloverWorkbench>,
     elements: Query<EntityRef, IsElement>,
     globals: Query<&GlobalTransform>,
     mut down: Local<Option<Vec2>>,
     mut commands: Commands,
 ) {
     if let Some(at) = pointer.put_down() {
-        *down = Some(at);
+        // With the key it is a body that is meant.
+        *down = Some(at).filter(|_| !pointer.is_with(settings.grab));
     }
     if !pointer.is_let_go() {
         return;

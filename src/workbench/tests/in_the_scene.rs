@@ -1,9 +1,11 @@
-//! What a person does in the scene: anchors are dragged.
+//! What a person does in the scene: anchors are dragged, bodies pulled.
 
 use super::person::{EYE, Person, project};
 use crate::prelude::*;
 use crate::workbench::CoiloverWorkbench;
+use bevy::input::ButtonState;
 use bevy::prelude::*;
+use bevy_rapier3d::prelude::*;
 
 /// The end B of an element: the body that hangs.
 fn body(person: &Person, element: Entity) -> Entity {
@@ -19,6 +21,11 @@ fn place(person: &Person, entity: Entity) -> Vec3 {
 
 fn anchors(person: &Person, element: Entity) -> Option<Anchors> {
     person.app.world().get::<Anchors>(element).copied()
+}
+
+fn springs_of_a_hand(person: &mut Person) -> usize {
+    let world = person.app.world_mut();
+    world.query::<&MouseSpring>().iter(world).count()
 }
 
 /// Drags from one point of the world to another, in the plane of the springs.
@@ -156,4 +163,92 @@ fn an_end_without_extent_is_left_as_it_is() {
     let at = Vec3::new(-0.5, 2.2, 0.0);
     drag(&mut person, at, at + Vec3::Y, 0);
     assert_eq!(anchors(&person, cord), None);
+}
+
+#[test]
+fn a_body_is_pulled_with_the_mouse() {
+    let mut person = Person::at_the_bench();
+    assert!(person.sees("left Shift + drag pulls a body"));
+    let (lamp, bell) = (body(&person, person.lamp), body(&person, person.bell));
+    // It has a collider, the bell has none.
+    let collider = (Collider::ball(0.2), ColliderMassProperties::Mass(0.1));
+    person.app.world_mut().entity_mut(lamp).insert(collider);
+    person.run(300);
+    for (body, pull) in [
+        (lamp, Vec3::new(-0.5, -0.3, 0.0)),
+        (bell, 0.4 * Vec3::NEG_Y),
+    ] {
+        person.hold(KeyCode::ShiftLeft, ButtonState::Pressed);
+        let before = place(&person, body);
+        person.drag_between(project(before, EYE), project(before + pull, EYE), 0);
+        let after = place(&person, body);
+        let way = (after - before).dot(pull.normalize());
+        assert!(way > 0.02, "it went {way} m");
+        person.hold(KeyCode::ShiftLeft, ButtonState::Released);
+        assert_eq!(springs_of_a_hand(&mut person), 0);
+        person.run(30);
+    }
+    // Neither was an element chosen, nor anything edited.
+    let selected = person.app.world().resource::<CoiloverWorkbench>().selected;
+    assert_eq!(selected, None);
+}
+
+#[test]
+fn what_is_pulled_comes_to_the_pointer() {
+    let mut person = Person::at_the_bench();
+    let lamp = body(&person, person.lamp);
+    person.hold(KeyCode::ShiftLeft, ButtonState::Pressed);
+    let from = place(&person, lamp);
+    let to = from + Vec3::new(-0.4, 0.0, 0.0);
+    let [start, end] = [from, to].map(|at| project(at, EYE));
+    person.press_at(start);
+    person.move_to(end);
+    person.run(180);
+    assert_eq!(springs_of_a_hand(&mut person), 1);
+    let there = place(&person, lamp);
+    // The lamp's own spring, soft beside the hand's, still pulls, and its weight: centimetres.
+    assert!((there - to).length() < 0.2, "{there} for {to}");
+    // Closing the workbench lets go.
+    person.key(KeyCode::F9);
+    person.run(2);
+    assert_eq!(springs_of_a_hand(&mut person), 0);
+}
+
+#[test]
+fn nothing_is_pulled_below_the_panel_or_without_the_key() {
+    let mut person = Person::at_the_bench();
+    let lamp = body(&person, person.lamp);
+    let from = place(&person, lamp);
+    person.press_at(project(from, EYE));
+    person.run(3);
+    assert_eq!(springs_of_a_hand(&mut person), 0);
+    person.let_go();
+    // A body below the list of elements.
+    let below = person.place("Lamp spring").expect("in the list");
+    person.hold(KeyCode::ShiftLeft, ButtonState::Pressed);
+    person.press_at(below);
+    person.run(3);
+    assert_eq!(springs_of_a_hand(&mut person), 0);
+    person.let_go();
+    // With another key, or none.
+    let mut settings = person.app.world_mut().resource_mut::<CoiloverWorkbench>();
+    settings.grab = None;
+    person.press_at(project(place(&person, lamp), EYE));
+    person.run(3);
+    assert_eq!(springs_of_a_hand(&mut person), 0);
+    assert!(!person.sees("pulls a body"));
+}
+
+#[test]
+fn a_body_that_is_gone_is_let_go() {
+    let mut person = Person::at_the_bench();
+    let lamp = body(&person, person.lamp);
+    person.hold(KeyCode::ShiftLeft, ButtonState::Pressed);
+    person.press_at(project(place(&person, lamp), EYE));
+    person.run(5);
+    assert_eq!(springs_of_a_hand(&mut person), 1);
+    person.app.world_mut().entity_mut(lamp).despawn();
+    person.run(5);
+    assert_eq!(springs_of_a_hand(&mut person), 0);
+    person.let_go();
 }

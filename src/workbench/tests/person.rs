@@ -272,6 +272,19 @@ impl Person {
         self.run(3);
     }
 
+    /// Holds a key down, or lets it go.
+    pub fn hold(&mut self, key_code: KeyCode, state: ButtonState) {
+        self.app.world_mut().write_message(KeyboardInput {
+            key_code,
+            logical_key: Key::Shift,
+            state,
+            text: None,
+            repeat: false,
+            window: self.window,
+        });
+        self.run(1);
+    }
+
     pub fn click_at(&mut self, at: Vec2) {
         self.point_at(at);
         self.button(ButtonState::Pressed);
