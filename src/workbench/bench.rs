@@ -16,6 +16,8 @@ pub(crate) enum Ask {
     Speed(f32),
     /// Text for the clipboard, and what it is.
     Copy(String, &'static str),
+    /// What was copied, into the chosen element.
+    Paste,
     /// A table of the record, into a file.
     Csv(String),
     Picture,

@@ -2,11 +2,12 @@
 //!
 //! - [`model`] is plain data: an element's numbers, what was edited, what is recorded, and what follows from it.
 //! - [`bench`] holds it between the frames; [`view`] draws it with egui and knows no world.
-//! - [`gather`] reads the world, [`apply`] changes it, [`commands`] does what the view asks for.
+//! - [`gather`] reads the world, [`apply`] changes it, [`commands`] does what the view asks for, with [`clipboard`].
 //! - In the scene, [`scene`] draws and picks, [`handles`] moves anchors, [`grab`] pulls bodies; [`pointer`] is the mouse there.
 
 mod apply;
 mod bench;
+mod clipboard;
 mod commands;
 mod gather;
 mod grab;
