@@ -16,6 +16,8 @@ pub(crate) enum Ask {
     Speed(f32),
     /// Text for the clipboard, and what it is.
     Copy(String, &'static str),
+    /// What was copied, into the chosen element.
+    Paste,
     /// A table of the record, into a file.
     Csv(String),
     Picture,
@@ -57,6 +59,8 @@ pub(crate) struct Bench {
     pub history: History,
     pub record: Record,
     pub clock: Clock,
+    /// The key with which the mouse pulls bodies.
+    pub grab: Option<KeyCode>,
     /// The time of the record that is looked at; none for the present.
     pub scrub: Option<f64>,
     pub plots: Plots,

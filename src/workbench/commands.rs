@@ -2,15 +2,10 @@
 
 use super::CoiloverWorkbench;
 use super::bench::{Ask, Bench};
+use super::clipboard;
 use bevy::prelude::*;
 use bevy::render::view::screenshot::{Screenshot, save_to_disk};
-use std::cell::RefCell;
 use std::path::{Path, PathBuf};
-
-thread_local! {
-    /// What was copied is there as long as this is.
-    static CLIPBOARD: RefCell<Option<arboard::Clipboard>> = const { RefCell::new(None) };
-}
 
 /// Does all that was asked for in this frame.
 pub(super) fn obey(world: &mut World) {
@@ -44,7 +39,14 @@ pub(super) fn obey(world: &mut World) {
                 }
                 None
             }
-            Ask::Copy(text, what) => Some(copy(text, what)),
+            Ask::Copy(text, what) => Some(clipboard::copy(text, what)),
+            Ask::Paste => match clipboard::paste() {
+                Ok(text) => {
+                    world.resource_mut::<Bench>().load("what was copied", &text);
+                    None
+                }
+                Err(wrong) => Some(format!("nothing to paste: {wrong}")),
+            },
             Ask::Csv(text) => {
                 let file = free(&folder, &title, "csv");
                 Some(said(write(&file, &text).map(|()| file)))
@@ -81,23 +83,6 @@ fn step(world: &mut World) {
     if let Some(mut fixed) = world.get_resource_mut::<Time<Fixed>>() {
         let missing = fixed.timestep().saturating_sub(fixed.overstep());
         fixed.accumulate_overstep(missing);
-    }
-}
-
-fn copy(text: String, what: &str) -> String {
-    let done = CLIPBOARD.with(|clipboard| {
-        let mut clipboard = clipboard.try_borrow_mut().map_err(|e| e.to_string())?;
-        if clipboard.is_none() {
-            *clipboard = Some(arboard::Clipboard::new().map_err(|e| e.to_string())?);
-        }
-        match clipboard.as_mut() {
-            Some(clipboard) => clipboard.set_text(text).map_err(|e| e.to_string()),
-            None => Ok(()),
-        }
-    });
-    match done {
-        Ok(()) => format!("copied as {what}"),
-        Err(wrong) => format!("not copied: {wrong}"),
     }
 }
 
@@ -149,10 +134,15 @@ fn free(folder: &Path, name: &str, ending: &str) -> PathBuf {
         .unwrap_or_else(|| file(10_000))
 }
 
+/// The file of a preset: RON where its name ends so, else JSON.
 fn preset(folder: &Path, name: &str) -> PathBuf {
+    let (name, ending) = match name.strip_suffix(".ron") {
+        Some(name) => (name, "ron"),
+        None => (name.strip_suffix(".json").unwrap_or(name), "json"),
+    };
     folder
         .join("presets")
-        .join(format!("{}.json", file_name(name)))
+        .join(format!("{}.{ending}", file_name(name)))
 }
 
 /// Those that there are, by name.
@@ -160,9 +150,12 @@ pub(super) fn presets(folder: &Path) -> Vec<String> {
     let files = std::fs::read_dir(folder.join("presets"));
     let name = |entry: std::io::Result<std::fs::DirEntry>| {
         let path = entry.ok()?.path();
-        let is_preset = path.extension().is_some_and(|ending| ending == "json");
-        let name = path.file_stem()?.to_str()?.to_owned();
-        is_preset.then_some(name)
+        let name = path.file_stem()?.to_str()?;
+        match path.extension()?.to_str()? {
+            "json" => Some(name.to_owned()),
+            "ron" => Some(format!("{name}.ron")),
+            _ => None,
+        }
     };
     let mut names: Vec<_> = files.into_iter().flatten().filter_map(name).collect();
     names.sort();
@@ -180,5 +173,9 @@ mod tests {
         let folder = Path::new("there_is_no_such_folder");
         assert_eq!(free(folder, "a", "csv"), folder.join("a_1.csv"));
         assert!(presets(folder).is_empty());
+        let file = |name| preset(Path::new(""), name);
+        assert_eq!(file("a.b"), Path::new("presets/a_b.json"));
+        assert_eq!(file("a.json"), Path::new("presets/a.json"));
+        assert_eq!(file("../a.ron"), Path::new("presets/___a.ron"));
     }
 }

@@ -51,7 +51,9 @@ pub(super) struct Looked {
 pub(super) fn gather(world: &mut World, state: &mut SystemState<Look>, mut looked: Local<Looked>) {
     world.resource_scope(|world, mut bench: Mut<Bench>| {
         let bench = &mut *bench;
-        bench.select(world.resource::<CoiloverWorkbench>().selected);
+        let settings = world.resource::<CoiloverWorkbench>();
+        bench.grab = settings.grab;
+        bench.select(settings.selected);
         let chosen = bench.selected.and_then(|entity| {
             let snapshot = Snapshot::read(world.get_entity(entity).ok()?)?;
             Some((entity, snapshot))

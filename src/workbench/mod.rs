@@ -2,14 +2,18 @@
 //!
 //! - [`model`] is plain data: an element's numbers, what was edited, what is recorded, and what follows from it.
 //! - [`bench`] holds it between the frames; [`view`] draws it with egui and knows no world.
-//! - [`gather`] reads the world, [`apply`] changes it, [`commands`] does what the view asks for, [`scene`] draws and picks
-//!   in the scene.
+//! - [`gather`] reads the world, [`apply`] changes it, [`commands`] does what the view asks for, with [`clipboard`].
+//! - In the scene, [`scene`] draws and picks, [`handles`] moves anchors, [`grab`] pulls bodies; [`pointer`] is the mouse there.
 
 mod apply;
 mod bench;
+mod clipboard;
 mod commands;
 mod gather;
+mod grab;
+mod handles;
 mod model;
+mod pointer;
 mod scene;
 #[cfg(test)]
 mod tests;
@@ -46,6 +50,8 @@ pub struct CoiloverWorkbench {
     pub open: bool,
     /// The key that opens and closes it; `None` for no key.
     pub key: Option<KeyCode>,
+    /// The key with which the mouse pulls bodies in the scene; `None` for no key, and no pulling.
+    pub grab: Option<KeyCode>,
     /// The element that is shown.
     pub selected: Option<Entity>,
     /// Where presets, tables and pictures go; made when the first is saved.
@@ -57,6 +63,7 @@ impl Default for CoiloverWorkbench {
         Self {
             open: false,
             key: Some(KeyCode::F9),
+            grab: Some(KeyCode::ShiftLeft),
             selected: None,
             folder: "workbench".into(),
         }
@@ -74,13 +81,22 @@ impl Plugin for CoiloverWorkbenchPlugin {
         }
         app.init_resource::<CoiloverWorkbench>()
             .init_resource::<Bench>()
+            .init_resource::<handles::Handles>()
+            .init_resource::<grab::Hand>()
             .add_systems(
                 PreUpdate,
                 toggle
                     .after(InputSystems)
                     .before(EguiPreUpdateSet::ProcessInput),
             )
-            .add_systems(Update, scene::pick.run_if(is_open))
+            .add_systems(
+                Update,
+                (
+                    (scene::pick, handles::drag).chain().run_if(is_open),
+                    // Once more when it was closed, to let go.
+                    grab::grab.run_if(is_open.or_else(grab::holds)),
+                ),
+            )
             .add_systems(
                 PostUpdate,
                 gather::gather
@@ -108,6 +124,10 @@ impl Plugin for CoiloverWorkbenchPlugin {
                 // the workbench was closed.
                 apply::apply
                     .run_if(apply::has_edits)
+                    .before(CoiloverSystems::Prepare)
+                    .before(bevy_rapier3d::prelude::PhysicsSet::SyncBackend),
+                grab::pull
+                    .run_if(grab::holds)
                     .before(CoiloverSystems::Prepare)
                     .before(bevy_rapier3d::prelude::PhysicsSet::SyncBackend),
                 gather::record

@@ -1,25 +1,29 @@
 //! The panel's place in the window, and what is drawn and clicked in the scene.
 
 use super::bench::Bench;
+use super::grab::Hand;
+use super::handles::Handles;
 use super::model::snapshot::Snapshot;
+use super::pointer::{Pointer, STILL};
 use super::{CoiloverWorkbench, commands, is_open, view};
 use crate::engine::IsElement;
 use bevy::gizmos::AppGizmoBuilder;
 use bevy::gizmos::config::{GizmoConfigGroup, GizmoConfigStore};
 use bevy::gizmos::gizmos::Gizmos;
 use bevy::prelude::*;
-use bevy::window::PrimaryWindow;
 use bevy_egui::egui::{Align2, Color32, FontId, LayerId, Ui, UiBuilder, pos2};
-use bevy_egui::input::EguiWantsInput;
 use bevy_egui::{EguiContexts, PrimaryEguiContext};
 
 /// Pixels between the pointer and an element that is still clicked.
 const NEAR: f32 = 12.0;
 
-/// Pixels by which a click may move.
-const STILL: f32 = 4.0;
-
 const COLOR: Color = Color::srgb(1.0, 0.9, 0.2);
+
+/// Of a handle below the pointer, and of what pulls a body.
+const LIT: Color = Color::WHITE;
+
+/// Radius of a handle as a share of its distance from the eye: about seven pixels.
+const BALL: f32 = 0.008;
 
 /// What marks the chosen element.
 #[derive(GizmoConfigGroup, Reflect, Clone, Debug, Default)]
@@ -41,12 +45,23 @@ pub(super) fn add_gizmos(app: &mut App) {
     config.line.width = 3.0;
 }
 
-/// A line from anchor to anchor, and a ball at each.
+/// A line from anchor to anchor, a ball at each, and a line from a body that is pulled to the pointer.
 fn mark(
     bench: Res<Bench>,
+    handles: Res<Handles>,
+    hand: Res<Hand>,
+    globals: Query<&GlobalTransform>,
     cameras: Query<&GlobalTransform, With<PrimaryEguiContext>>,
     mut gizmos: Gizmos<Mark>,
 ) {
+    let Some(eye) = cameras.iter().next() else {
+        return;
+    };
+    let ball = |at: Vec3| BALL * eye.translation().distance(at);
+    if let Some([held, to]) = hand.line(&globals) {
+        gizmos.line(held, to, LIT);
+        gizmos.sphere(to, ball(to), LIT);
+    }
     let Some(subject) = &bench.subject else {
         return;
     };
@@ -54,12 +69,13 @@ fn mark(
         return;
     };
     gizmos.line(a, b, COLOR);
-    let Some(eye) = cameras.iter().next() else {
-        return;
-    };
-    for at in [a, b] {
-        let radius = 0.008 * eye.translation().distance(at);
-        gizmos.sphere(at, radius, COLOR);
+    for (end, at) in [a, b].into_iter().enumerate() {
+        let (size, color) = if handles.is_lit(end) {
+            (1.4, LIT)
+        } else {
+            (1.0, COLOR)
+        };
+        gizmos.sphere(at, size * ball(at), color);
     }
 }
 
@@ -110,42 +126,34 @@ pub(super) fn show(
 
 /// Chooses the element that was clicked.
 pub(super) fn pick(
-    buttons: Res<ButtonInput<MouseButton>>,
-    egui: Option<Res<EguiWantsInput>>,
-    windows: Query<&Window, With<PrimaryWindow>>,
-    cameras: Query<(&Camera, &GlobalTransform), With<PrimaryEguiContext>>,
+    pointer: Pointer,
+    settings: Res<CoiloverWorkbench>,
     elements: Query<EntityRef, IsElement>,
     globals: Query<&GlobalTransform>,
     mut down: Local<Option<Vec2>>,
     mut commands: Commands,
 ) {
-    let pointer = windows.single().ok().and_then(Window::cursor_position);
-    if buttons.just_pressed(MouseButton::Left) {
-        let taken = egui.is_some_and(|egui| egui.wants_any_pointer_input());
-        *down = pointer.filter(|_| !taken);
+    if let Some(at) = pointer.put_down() {
+        // With the key it is a body that is meant.
+        *down = Some(at).filter(|_| !pointer.is_with(settings.grab));
     }
-    if !buttons.just_released(MouseButton::Left) {
-        return;
-    }
-    let (Some(pointer), Some(from)) = (pointer, down.take()) else {
-        return;
-    };
-    let Some((camera, eye)) = cameras.iter().next() else {
-        return;
-    };
-    if pointer.distance(from) > STILL {
+    if !pointer.is_let_go() {
         return;
     }
-    let on_screen = |end: Entity, anchor: Vec3| {
-        let at = globals.get(end).ok()?.transform_point(anchor);
-        camera.world_to_viewport(eye, at).ok()
+    let (Some(at), Some(from)) = (pointer.at(), down.take()) else {
+        return;
     };
+    if at.distance(from) > STILL {
+        return;
+    }
+    let on_screen =
+        |end: Entity, anchor: Vec3| pointer.project(globals.get(end).ok()?.transform_point(anchor));
     let distance = |element: EntityRef| {
         let now = Snapshot::read(element)?;
         let [a, b] = now.part.ends();
         let anchors = now.anchors.unwrap_or_default();
         let (a, b) = (on_screen(a, anchors.a)?, on_screen(b, anchors.b)?);
-        Some((element.id(), to_segment(pointer, a, b)))
+        Some((element.id(), to_segment(at, a, b)))
     };
     let nearest = elements
         .iter()

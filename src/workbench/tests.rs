@@ -1,5 +1,6 @@
 //! The workbench as a person uses it: a game without a renderer, and a window's own events.
 
+mod in_the_scene;
 mod person;
 
 use super::CoiloverWorkbench;
@@ -155,8 +156,7 @@ fn the_list_is_searched() {
 fn a_coil_is_clicked_in_the_scene() {
     let mut person = Person::at_the_bench();
     // Half-way between hook and lamp, which stand in the middle of the window.
-    let camera = Vec3::new(0.0, 1.0, 8.0);
-    let hook = person::project(Vec3::new(0.0, 1.5, 0.0), camera);
+    let hook = person::project(Vec3::new(0.0, 1.5, 0.0), person::EYE);
     person.click_at(hook);
     assert_eq!(
         person.app.world().resource::<CoiloverWorkbench>().selected,
@@ -221,7 +221,72 @@ fn a_preset_is_saved_and_loaded() {
         .get::<SpringDamper>(person.bell)
         .expect("an element");
     assert_eq!((bell.stiffness, bell.damping), (80.0, 1.5));
+    // The same as RON, by its name.
+    let behind = person.place("soft").expect("the name") + 50.0 * Vec2::X;
+    person.click_at(behind);
+    person.type_text(".ron");
+    person.click("Save");
+    let text = std::fs::read_to_string(folder.join("presets/soft.ron")).expect("a file");
+    assert!(text.contains("stiffness: 80.0,"), "{text}");
+    person.drag("80 N/m", 50.0);
+    person.click("Load");
+    person.click_last("soft.ron");
+    person.run(3);
+    let bell = *person
+        .app
+        .world()
+        .get::<SpringDamper>(person.bell)
+        .expect("an element");
+    assert_eq!((bell.stiffness, bell.damping), (80.0, 1.5));
     assert!(std::fs::remove_dir_all(folder).is_ok());
+}
+
+#[test]
+fn an_element_is_copied_and_pasted() {
+    for format in ["JSON", "RON"] {
+        let mut person = Person::at_the_bench();
+        person.click("Lamp spring");
+        person.click("preload");
+        person.run(2);
+        person.click(format);
+        assert!(
+            person.sees(&format!("copied as {format}")),
+            "{:?}",
+            person.texts()
+        );
+        person.click("Bell spring");
+        person.run(2);
+        person.click("Paste");
+        person.run(3);
+        assert!(person.sees("loaded what was copied"));
+        let world = person.app.world();
+        let [lamp, bell] = [person.lamp, person.bell].map(|element| {
+            let pair = *world.get::<SpringDamper>(element).expect("an element");
+            let numbers = (pair.stiffness, pair.damping, pair.rest_length);
+            (numbers, world.get::<Preload>(element).copied())
+        });
+        assert_eq!(lamp, bell);
+        assert_eq!(lamp.1, Some(Preload(0.0)));
+        person.click("Undo");
+        person.run(2);
+        let world = person.app.world();
+        let bell = world.get::<SpringDamper>(person.bell).expect("an element");
+        assert_eq!(bell.stiffness, 500.0);
+        assert_eq!(world.get::<Preload>(person.bell), None);
+    }
+}
+
+#[test]
+fn what_is_no_preset_is_told_when_it_is_pasted() {
+    let mut person = Person::at_the_bench();
+    person.click("Lamp spring");
+    person.click("Paste");
+    assert!(person.sees("nothing to paste"), "{:?}", person.texts());
+    person.click("Rust");
+    person.click("Paste");
+    person.run(3);
+    assert!(person.sees("neither JSON nor RON"));
+    assert_eq!(person.lamp().stiffness, 80.0);
 }
 
 #[test]

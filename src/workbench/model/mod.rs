@@ -5,6 +5,7 @@ pub(crate) mod facts;
 pub(crate) mod figures;
 pub(crate) mod history;
 pub(crate) mod preset;
+mod preset_parts;
 pub(crate) mod record;
 pub(crate) mod rows;
 #[cfg(test)]

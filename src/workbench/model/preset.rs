@@ -1,15 +1,17 @@
-//! An element's numbers as JSON, and back: what is copied, saved and loaded.
+//! An element's numbers as JSON or RON, and back: what is copied, pasted, saved and loaded.
 //!
-//! It is an object of components by their type paths, as Bevy's remote protocol and scene files have them, without the
-//! ends: a preset fits any two bodies.
+//! It is a map of components by their type paths, without the ends: a preset fits any two bodies. JSON is as Bevy's remote
+//! protocol has it, RON as Bevy's scene files.
 
-use super::snapshot::{Part, Snapshot};
+use super::preset_parts::{KINDS, Numbers, Written, component_of};
+use super::snapshot::Snapshot;
 use crate::element::*;
-use bevy::prelude::*;
-use bevy::reflect::serde::{TypedReflectDeserializer, TypedReflectSerializer};
-use bevy::reflect::{GetTypeRegistration, TypePath, TypeRegistry};
-use serde::de::DeserializeSeed;
-use serde_json::{Map, Value};
+use bevy::reflect::{TypePath, TypeRegistry};
+use ron::ser::PrettyConfig;
+use serde::de::{DeserializeSeed, Error, IgnoredAny, MapAccess, Visitor};
+use serde::ser::SerializeMap;
+use serde::{Deserializer, Serialize, Serializer};
+use std::fmt;
 
 /// Where a limit stands for none; JSON has no infinity.
 const NO_LIMIT: f32 = f32::MAX;
@@ -43,70 +45,52 @@ fn registry() -> TypeRegistry {
 
 /// The element as JSON.
 pub(crate) fn json(snapshot: &Snapshot) -> Result<String, String> {
-    let registry = registry();
-    let mut out = Map::new();
-    out.insert(path(&snapshot.part), numbers(&snapshot.part));
     let snapshot = limits(snapshot.clone(), f32::INFINITY, NO_LIMIT);
-    macro_rules! write {
-        ($field:ident: $type:ty) => {
-            if let Some(value) = &snapshot.$field {
-                let value = serde_json::to_value(TypedReflectSerializer::new(value, &registry));
-                let value = value.map_err(|wrong| wrong.to_string())?;
-                out.insert(<$type>::type_path().into(), value);
-            }
-        };
-    }
-    companions!(write);
-    serde_json::to_string_pretty(&Value::Object(out)).map_err(|wrong| wrong.to_string())
+    let preset = Preset {
+        snapshot: &snapshot,
+        registry: &registry(),
+    };
+    serde_json::to_string_pretty(&preset).map_err(|wrong| wrong.to_string())
 }
 
-/// Puts a preset into an element; its ends stay. What the preset has not is removed.
-pub(crate) fn apply(text: &str, snapshot: &Snapshot) -> Result<Snapshot, String> {
-    let value: Value =
-        serde_json::from_str(text).map_err(|wrong| format!("this is not JSON: {wrong}"))?;
-    let Value::Object(mut components) = value else {
-        return Err("a preset is an object of components by their type paths".into());
+/// The element as RON.
+pub(crate) fn ron(snapshot: &Snapshot) -> Result<String, String> {
+    let preset = Preset {
+        snapshot,
+        registry: &registry(),
     };
-    let mut out = Snapshot::new(snapshot.part);
-    let mut found = false;
-    for kind in [
-        "Spring",
-        "Damper",
-        "SpringDamper",
-        "TorsionSpring",
-        "TorsionDamper",
-        "TorsionSpringDamper",
-    ] {
-        if let Some(numbers) = components.remove(&format!("bevy_coilover::{kind}")) {
-            if kind.starts_with("Torsion") != snapshot.part.is_torsion() {
-                return Err(format!(
-                    "this is a {kind}, and the element a {}",
-                    snapshot.part.name()
-                ));
-            }
-            take_numbers(&mut out.part, &numbers)?;
-            found = true;
-        }
+    // The same on every system.
+    let config = PrettyConfig::new().new_line("\n");
+    ron::ser::to_string_pretty(&preset, config).map_err(|wrong| wrong.to_string())
+}
+
+/// The element for a file of this name: RON where it ends so, else JSON.
+pub(crate) fn text_for(name: &str, snapshot: &Snapshot) -> Result<String, String> {
+    if name.ends_with(".ron") {
+        ron(snapshot)
+    } else {
+        json(snapshot)
     }
-    if !found {
-        return Err("this preset has no spring or damper".into());
+}
+
+/// Puts a preset, JSON or RON, into an element; its ends stay. What the preset has not is removed.
+pub(crate) fn apply(text: &str, snapshot: &Snapshot) -> Result<Snapshot, String> {
+    let preset = Preset {
+        snapshot,
+        registry: &registry(),
+    };
+    if serde_json::from_str::<IgnoredAny>(text).is_ok() {
+        let mut json = serde_json::Deserializer::from_str(text);
+        return preset
+            .deserialize(&mut json)
+            .map_err(|wrong| wrong.to_string());
     }
-    let registry = registry();
-    macro_rules! read {
-        ($field:ident: $type:ty) => {
-            out.$field = match components.remove(<$type>::type_path()) {
-                Some(value) => Some(component::<$type>(value, &registry)?),
-                None => None,
-            };
-        };
+    match ron::from_str::<IgnoredAny>(text) {
+        Ok(_) => ron::Options::default()
+            .from_str_seed(text, preset)
+            .map_err(|wrong| wrong.to_string()),
+        Err(wrong) => Err(format!("this is neither JSON nor RON: {wrong}")),
     }
-    companions!(read);
-    // An anchor belongs to the bodies more than to the spring: a preset that has none leaves it.
-    out.anchors = out.anchors.or(snapshot.anchors);
-    if let Some(stranger) = components.keys().next() {
-        return Err(format!("a preset cannot have a {stranger}"));
-    }
-    Ok(limits(out, NO_LIMIT, f32::INFINITY))
 }
 
 /// With one number for no limit in the place of another.
@@ -129,73 +113,80 @@ fn limits(mut snapshot: Snapshot, from: f32, to: f32) -> Snapshot {
     snapshot
 }
 
-fn component<T: TypePath + FromReflect + GetTypeRegistration>(
-    value: Value,
-    registry: &TypeRegistry,
-) -> Result<T, String> {
-    let name = T::short_type_path();
-    let read = TypedReflectDeserializer::of::<T>(registry).deserialize(value);
-    let read = read.map_err(|wrong| format!("{name}: {wrong}"))?;
-    T::from_reflect(&*read).ok_or_else(|| format!("{name} is not complete"))
+/// What is written, or what is read into.
+struct Preset<'a> {
+    snapshot: &'a Snapshot,
+    registry: &'a TypeRegistry,
 }
 
-fn path(part: &Part) -> String {
-    format!("bevy_coilover::{}", part.name())
-}
-
-/// The name of the rest length's field.
-fn rest_name(part: &Part) -> &'static str {
-    if part.is_torsion() {
-        "rest_angle"
-    } else {
-        "rest_length"
+impl Serialize for Preset<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        use bevy::reflect::serde::TypedReflectSerializer;
+        let mut map = serializer.serialize_map(None)?;
+        let part = &self.snapshot.part;
+        map.serialize_entry(&format!("bevy_coilover::{}", part.name()), &Written(part))?;
+        macro_rules! write {
+            ($field:ident: $type:ty) => {
+                if let Some(value) = &self.snapshot.$field {
+                    let value = TypedReflectSerializer::new(value, self.registry);
+                    map.serialize_entry(<$type>::type_path(), &value)?;
+                }
+            };
+        }
+        companions!(write);
+        map.end()
     }
 }
 
-fn numbers(part: &Part) -> Value {
-    let mut out = Map::new();
-    let mut copy = *part;
-    if let Some(axis) = part.twist() {
-        out.insert("axis".into(), axis.to_array().to_vec().into());
+impl<'de> DeserializeSeed<'de> for Preset<'_> {
+    type Value = Snapshot;
+
+    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<Snapshot, D::Error> {
+        deserializer.deserialize_map(self)
     }
-    if let Some(rest) = copy.rest_mut() {
-        out.insert(rest_name(part).into(), (*rest).into());
-    }
-    if let Some(stiffness) = part.stiffness() {
-        out.insert("stiffness".into(), stiffness.into());
-    }
-    if let Some(damping) = part.damping() {
-        out.insert("damping".into(), damping.into());
-    }
-    Value::Object(out)
 }
 
-fn take_numbers(part: &mut Part, numbers: &Value) -> Result<(), String> {
-    let number = |name: &str| match numbers.get(name) {
-        None | Some(Value::Null) => Ok(None),
-        Some(value) => match value.as_f64().map(|value| value as f32) {
-            Some(value) if value.is_finite() => Ok(Some(value)),
-            _ => Err(format!("{name} is not a number")),
-        },
-    };
-    let rest = number(rest_name(part))?;
-    if let (Some(mine), Some(value)) = (part.stiffness_mut(), number("stiffness")?) {
-        *mine = value;
+impl<'de> Visitor<'de> for Preset<'_> {
+    type Value = Snapshot;
+
+    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str("a preset: an object of components by their type paths")
     }
-    if let (Some(mine), Some(value)) = (part.damping_mut(), number("damping")?) {
-        *mine = value;
+
+    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Snapshot, A::Error> {
+        let mut out = Snapshot::new(self.snapshot.part);
+        let mut found = false;
+        while let Some(path) = map.next_key::<String>()? {
+            let short = path.strip_prefix("bevy_coilover::").unwrap_or(&path);
+            let told = |wrong: A::Error| A::Error::custom(format!("{short}: {wrong}"));
+            if KINDS.contains(&short) {
+                if short.starts_with("Torsion") != out.part.is_torsion() {
+                    let name = out.part.name();
+                    let wrong = format!("this is a {short}, and the element a {name}");
+                    return Err(A::Error::custom(wrong));
+                }
+                let numbers: Numbers = map.next_value().map_err(told)?;
+                numbers.put_into(&mut out.part).map_err(A::Error::custom)?;
+                found = true;
+                continue;
+            }
+            macro_rules! read {
+                ($field:ident: $type:ty) => {
+                    if path == <$type>::type_path() {
+                        let value = component_of::<$type, A>(&mut map, self.registry);
+                        out.$field = Some(value.map_err(told)?);
+                        continue;
+                    }
+                };
+            }
+            companions!(read);
+            return Err(A::Error::custom(format!("a preset cannot have a {path}")));
+        }
+        if !found {
+            return Err(A::Error::custom("this preset has no spring or damper"));
+        }
+        // An anchor belongs to the bodies more than to the spring: a preset that has none leaves it.
+        out.anchors = out.anchors.or(self.snapshot.anchors);
+        Ok(limits(out, NO_LIMIT, f32::INFINITY))
     }
-    if numbers.get(rest_name(part)).is_some()
-        && let Some(mine) = part.rest_mut()
-    {
-        *mine = rest;
-    }
-    if let (Some(mine), Some(Value::Array(axis))) = (part.twist_mut(), numbers.get("axis")) {
-        let axis: Vec<_> = axis.iter().filter_map(Value::as_f64).collect();
-        let [x, y, z] = axis[..] else {
-            return Err("axis is not three numbers".into());
-        };
-        *mine = Vec3::new(x as f32, y as f32, z as f32);
-    }
-    Ok(())
 }

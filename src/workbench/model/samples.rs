@@ -86,22 +86,77 @@ pub(crate) fn samples() -> Vec<(&'static str, Snapshot)> {
 #[test]
 fn a_preset_is_read_as_it_was_written() {
     for (name, sample) in samples() {
-        let text = preset::json(&sample).expect("a preset");
-        let mut other = Snapshot::new(sample.part);
-        other.preload = Some(Preload(1.0));
-        if let Some(stiffness) = other.part.stiffness_mut() {
-            *stiffness = 7.0;
+        for written in [preset::json, preset::ron] {
+            let text = written(&sample).expect("a preset");
+            let mut other = Snapshot::new(sample.part);
+            other.preload = Some(Preload(1.0));
+            if let Some(stiffness) = other.part.stiffness_mut() {
+                *stiffness = 7.0;
+            }
+            if let Some(rest) = other.part.rest_mut() {
+                *rest = Some(0.125);
+            }
+            let read = preset::apply(&text, &other);
+            assert_eq!(read.as_ref(), Ok(&sample), "{name}: {text}");
         }
-        let read = preset::apply(&text, &other);
-        assert_eq!(read.as_ref(), Ok(&sample), "{name}: {text}");
     }
+}
+
+/// As a person reads it, and as a scene file has it.
+#[test]
+fn ron_is_as_in_a_scene_file() {
+    let [a, b] = ends();
+    let rope = Spring::new(a, b).with_stiffness(80.0).with_rest_length(1.5);
+    let rope = Snapshot {
+        anchors: Some(Anchors::new(Vec3::ZERO, Vec3::new(0.0, -0.25, 0.0))),
+        breakable: Some(Breakable::at_length(2.0)),
+        ..Snapshot::new(Part::Spring(rope))
+    };
+    let text = r#"{
+    "bevy_coilover::Spring": (
+        rest_length: Some(1.5),
+        stiffness: 80.0,
+    ),
+    "bevy_coilover::Anchors": (
+        a: (0.0, 0.0, 0.0),
+        b: (0.0, -0.25, 0.0),
+    ),
+    "bevy_coilover::Breakable": (
+        force: inf,
+        length: 2.0,
+        then: Despawn,
+    ),
+}"#;
+    assert_eq!(preset::ron(&rope).as_deref(), Ok(text));
+    // A scene file has the ends too, and may leave out what stays.
+    let scene = r#"{"bevy_coilover::Spring": (body_a: 4294967295, stiffness: 9, body_b: 1)}"#;
+    let read = preset::apply(scene, &rope).expect("a preset");
+    assert_eq!(read.part.stiffness(), Some(9.0));
+    assert_eq!(read.part.rest(), Some(1.5));
+    assert_eq!((read.part.ends(), read.breakable), ([a, b], None));
+    let none = r#"{"bevy_coilover::Spring": (rest_length: None)}"#;
+    let read = preset::apply(none, &rope).expect("a preset");
+    assert_eq!(read.part.rest(), None);
 }
 
 #[test]
 fn bad_presets_are_told() {
     let (_, plain) = samples().remove(0);
     let wrong = |text: &str| preset::apply(text, &plain).expect_err(text);
-    assert!(wrong("{").contains("not JSON"));
+    assert!(wrong("{").contains("neither JSON nor RON"));
+    assert!(wrong("").contains("neither JSON nor RON"));
+    assert!(wrong("(((").contains("neither JSON nor RON"));
+    assert!(wrong("5").contains("object"));
+    // As deep as a text can be, and no overflow of the stack.
+    assert!(wrong(&"[".repeat(100_000)).contains("neither"));
+    let of_ron = |rest: &str| format!(r#"{{"bevy_coilover::Spring": (stiffness: 1.0), {rest}}}"#);
+    assert!(wrong(&of_ron(r#""bevy_coilover::Preload": ("much")"#)).contains("Preload"));
+    assert!(wrong(&of_ron(r#""Name": ("Bob")"#)).contains("Name"));
+    assert!(wrong(r#"{"bevy_coilover::Spring": (stiffness: inf)}"#).contains("stiffness"));
+    assert!(
+        wrong(r#"{"bevy_coilover::Spring": (rest_length: Some(NaN))}"#).contains("rest_length")
+    );
+    assert!(wrong(r#"{"bevy_coilover::TorsionSpring": ()}"#).contains("TorsionSpring"));
     assert!(wrong("[]").contains("object"));
     assert!(wrong("{}").contains("no spring"));
     assert!(wrong(r#"{"bevy_coilover::TorsionSpring": {}}"#).contains("TorsionSpring"));
@@ -116,7 +171,7 @@ fn bad_presets_are_told() {
     );
     assert!(wrong(&spring(r#""Name": "Bob""#)).contains("Name"));
     let nan = r#"{"bevy_coilover::Spring": {"stiffness": 1e99}}"#;
-    assert!(wrong(nan).contains("stiffness"));
+    assert!(wrong(nan).contains("number"));
 }
 
 mod generated {

@@ -15,7 +15,7 @@ use bevy_egui::{EguiFullOutput, EguiPostUpdateSet};
 use bevy_rapier3d::prelude::*;
 
 const SIZE: UVec2 = UVec2::new(1280, 1200);
-const EYE: Vec3 = Vec3::new(0.0, 1.0, 8.0);
+pub const EYE: Vec3 = Vec3::new(0.0, 1.0, 8.0);
 
 /// Texts that are on the screen, and where.
 #[derive(Resource, Default)]
@@ -197,7 +197,7 @@ impl Person {
         self.texts().iter().any(|seen| seen.contains(text))
     }
 
-    fn place(&self, text: &str) -> Option<Vec2> {
+    pub fn place(&self, text: &str) -> Option<Vec2> {
         let seen = &self.app.world().resource::<Seen>().0;
         let exactly = seen.iter().find(|(seen, _)| seen == text);
         let about = || seen.iter().find(|(seen, _)| seen.contains(text));
@@ -244,6 +244,47 @@ impl Person {
         self.run(1);
     }
 
+    /// Moves in ten steps from one place to another with the button held, and holds it for so many frames more.
+    pub fn drag_between(&mut self, from: Vec2, to: Vec2, wait: u32) {
+        self.press_at(from);
+        self.move_to(to);
+        self.run(wait);
+        self.let_go();
+    }
+
+    /// Puts the button down.
+    pub fn press_at(&mut self, at: Vec2) {
+        self.point_at(at);
+        self.button(ButtonState::Pressed);
+    }
+
+    /// Moves in ten steps.
+    pub fn move_to(&mut self, to: Vec2) {
+        let from = self.pointer;
+        for i in 1..=10 {
+            self.point_at(from.lerp(to, 0.1 * i as f32));
+        }
+    }
+
+    /// Lets the button go.
+    pub fn let_go(&mut self) {
+        self.button(ButtonState::Released);
+        self.run(3);
+    }
+
+    /// Holds a key down, or lets it go.
+    pub fn hold(&mut self, key_code: KeyCode, state: ButtonState) {
+        self.app.world_mut().write_message(KeyboardInput {
+            key_code,
+            logical_key: Key::Shift,
+            state,
+            text: None,
+            repeat: false,
+            window: self.window,
+        });
+        self.run(1);
+    }
+
     pub fn click_at(&mut self, at: Vec2) {
         self.point_at(at);
         self.button(ButtonState::Pressed);
@@ -266,13 +307,7 @@ impl Person {
     /// Drags a text so many pixels to the right.
     pub fn drag(&mut self, text: &str, pixels: f32) {
         let from = self.find(text);
-        self.point_at(from);
-        self.button(ButtonState::Pressed);
-        for i in 1..=10 {
-            self.point_at(from + 0.1 * i as f32 * pixels * Vec2::X);
-        }
-        self.button(ButtonState::Released);
-        self.run(3);
+        self.drag_between(from, from + pixels * Vec2::X, 0);
     }
 
     fn press(&mut self, key_code: KeyCode, logical_key: Key, text: Option<&str>) {

@@ -219,6 +219,9 @@ fn readout(ui: &mut Ui, readout: &SpringReadout, torsion: bool) {
     });
 }
 
+/// Writes an element as text.
+type Writer = fn(&Snapshot) -> Result<String, String>;
+
 /// Undo to the start, copies and presets.
 fn exports(ui: &mut Ui, bench: &mut Bench, title: &str, draft: &Snapshot) {
     ui.horizontal(|ui| {
@@ -232,15 +235,27 @@ fn exports(ui: &mut Ui, bench: &mut Bench, title: &str, draft: &Snapshot) {
         {
             bench.reset();
         }
-        if ui.button("Copy as Rust").clicked() {
+        ui.separator();
+        ui.label("Copy as");
+        if ui.button("Rust").clicked() {
             let text = code::rust(draft, &code::function_name(title), title);
             bench.asks.push(Ask::Copy(text, "Rust"));
         }
-        if ui.button("Copy as JSON").clicked() {
-            match preset::json(draft) {
-                Ok(text) => bench.asks.push(Ask::Copy(text, "JSON")),
-                Err(wrong) => bench.message = Some(wrong),
+        for (what, written) in [("JSON", preset::json as Writer), ("RON", preset::ron)] {
+            if ui.button(what).clicked() {
+                match written(draft) {
+                    Ok(text) => bench.asks.push(Ask::Copy(text, what)),
+                    Err(wrong) => bench.message = Some(wrong),
+                }
             }
+        }
+        ui.separator();
+        let paste = ui.button("Paste");
+        if paste
+            .on_hover_text("JSON or RON, into this element")
+            .clicked()
+        {
+            bench.asks.push(Ask::Paste);
         }
     });
     ui.horizontal(|ui| {
@@ -250,10 +265,9 @@ fn exports(ui: &mut Ui, bench: &mut Bench, title: &str, draft: &Snapshot) {
         ui.add(name);
         let named = !bench.preset_name.trim().is_empty();
         if ui.add_enabled(named, Button::new("Save")).clicked() {
-            match preset::json(draft) {
-                Ok(text) => bench
-                    .asks
-                    .push(Ask::Save(bench.preset_name.trim().into(), text)),
+            let name = bench.preset_name.trim();
+            match preset::text_for(name, draft) {
+                Ok(text) => bench.asks.push(Ask::Save(name.into(), text)),
                 Err(wrong) => bench.message = Some(wrong),
             }
         }

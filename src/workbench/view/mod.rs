@@ -8,6 +8,8 @@ mod list;
 mod plots;
 
 use super::bench::{Ask, Bench};
+use super::model::facts::Subject;
+use bevy::input::keyboard::KeyCode;
 use bevy_egui::egui::{self, Panel, RichText, Ui};
 
 pub(crate) use field::significant;
@@ -97,7 +99,38 @@ fn bar(ui: &mut Ui, bench: &mut Bench) {
         if let Some(message) = &bench.message {
             ui.label(message);
         }
+        let hint = egui::Label::new(RichText::new(hint(bench)).weak()).truncate();
+        let right = egui::Layout::right_to_left(egui::Align::Center);
+        ui.with_layout(right, |ui| ui.add(hint));
     });
+}
+
+/// What the mouse does in the scene.
+fn hint(bench: &Bench) -> String {
+    let mut hint = String::new();
+    if let Some(key) = bench.grab {
+        hint += &format!("{} + drag pulls a body", key_name(key));
+    }
+    let has_anchors = |subject: &Subject| !subject.now.part.is_torsion();
+    if bench.subject.as_ref().is_some_and(has_anchors) {
+        let gap = if hint.is_empty() { "" } else { "; " };
+        hint = format!("Drag a ball to move its anchor{gap}{hint}");
+    }
+    hint
+}
+
+/// As it stands on a keyboard.
+fn key_name(key: KeyCode) -> String {
+    let name = match key {
+        KeyCode::ShiftLeft => "left Shift",
+        KeyCode::ShiftRight => "right Shift",
+        KeyCode::ControlLeft => "left Ctrl",
+        KeyCode::ControlRight => "right Ctrl",
+        KeyCode::AltLeft => "left Alt",
+        KeyCode::AltRight => "right Alt",
+        other => return format!("{other:?}").trim_start_matches("Key").into(),
+    };
+    name.into()
 }
 
 fn speed_text(speed: f32) -> String {
