@@ -7,7 +7,7 @@
 use image::{RgbImage, imageops};
 use pictures::{command, root};
 
-const SCENES: [&str; 18] = [
+const SCENES: [&str; 19] = [
     "linear_spring",
     "nonlinear_spring",
     "spring_3d",
@@ -23,6 +23,7 @@ const SCENES: [&str; 18] = [
     "drive",
     "flag",
     "rope_bridge",
+    "crane",
     "tensegrity",
     "newtons_chain",
     "showcase",

@@ -1,0 +1,33 @@
+//! The crane in its parts: what stands, what hangs and how it is driven, and what is measured.
+
+mod findings;
+mod load;
+mod steel;
+
+use crate::stage::{self, Begin, Lasting};
+use bevy::prelude::*;
+use bevy_coilover::prelude::*;
+use bevy_rapier3d::prelude::*;
+
+pub use findings::check;
+
+/// Seconds of one way, from the ground to the ground.
+pub const SECONDS: f32 = load::ROUND;
+/// Second of the picture: the crate hangs back behind the trolley.
+pub const PICTURE: f32 = 13.3;
+
+pub fn setup(app: &mut App) {
+    app.insert_resource(Lasting(check))
+        .insert_resource(stage::TickByTick);
+    app.add_systems(
+        Begin,
+        (stage::fresh::<findings::Seen>, steel::spawn, load::spawn),
+    )
+    .add_systems(
+        FixedUpdate,
+        (
+            load::drive.before(PhysicsSet::SyncBackend),
+            findings::record.after(CoiloverSystems::Readout),
+        ),
+    );
+}
