@@ -7,7 +7,7 @@ use pictures::command;
 use std::process::Stdio;
 
 /// Scenes, and the minutes that each is watched.
-const SCENES: [(&str, &str); 22] = [
+const SCENES: [(&str, &str); 23] = [
     ("trampoline", "1"),
     // Cloth and bridge are much to compute; a bridge crossed once shows what ten crossings would.
     ("flag", "5"),
@@ -23,6 +23,7 @@ const SCENES: [(&str, &str); 22] = [
     ("coilover_visible", "10"),
     ("damper_3d", "10"),
     ("damper_visible", "10"),
+    ("door_closer", "10"),
     ("free_fall", "10"),
     ("linear_spring", "10"),
     ("natural_frequency", "10"),

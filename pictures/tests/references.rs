@@ -7,7 +7,7 @@
 use image::{RgbImage, imageops};
 use pictures::{command, root};
 
-const SCENES: [&str; 19] = [
+const SCENES: [&str; 20] = [
     "linear_spring",
     "nonlinear_spring",
     "spring_3d",
@@ -17,6 +17,7 @@ const SCENES: [&str; 19] = [
     "coilover_visible",
     "bungee",
     "torsion_bar",
+    "door_closer",
     "free_fall",
     "natural_frequency",
     "suspension",

@@ -1,0 +1,25 @@
+//! The example in its parts: the doors, who goes through them, and what is measured.
+
+mod doors;
+mod findings;
+mod person;
+
+use crate::stage::{self, Begin};
+use bevy::prelude::*;
+use bevy_rapier3d::prelude::*;
+
+pub use findings::check;
+
+/// Seconds of one way in and out.
+pub const SECONDS: f32 = 24.0;
+/// Second of the picture: the person is in the first door.
+pub const PICTURE: f32 = 3.2;
+
+pub fn setup(app: &mut App) {
+    app.insert_resource(stage::TickByTick)
+        .add_systems(Begin, (doors::spawn, person::spawn))
+        .add_systems(
+            FixedUpdate,
+            (person::walk, person::push).before(PhysicsSet::SyncBackend),
+        );
+}
