@@ -6,7 +6,7 @@ use super::model::facts::{End, EndKind, Facts, Stepping, Subject};
 use super::model::record::Sample;
 use super::model::rows::Row;
 use super::model::snapshot::Snapshot;
-use crate::element::{CustomDampingLaw, CustomSpringLaw, SpringFault};
+use crate::element::{CustomDampingLaw, CustomSpringLaw, SpringAxis, SpringFault};
 use crate::engine::{Beside, Curve, IsElement, Parts};
 use crate::readout::SpringReadout;
 use crate::settings::CoiloverSettings;
@@ -151,6 +151,8 @@ impl Look<'_, '_> {
         };
         let settings = self.settings.as_deref();
         let gravity = self.configurations.iter().next();
+        let gravity = gravity.map_or(Vec3::ZERO, |configuration| configuration.gravity);
+        let anchored = [self.end(ends[0], anchors.a), self.end(ends[1], anchors.b)];
         Facts {
             readout: readout.unwrap_or_default(),
             fault: self
@@ -158,8 +160,9 @@ impl Look<'_, '_> {
                 .get(entity)
                 .ok()
                 .map(|fault| format!("It does not act: {} {}.", fault.field, fault.reason)),
-            ends: [self.end(ends[0], anchors.a), self.end(ends[1], anchors.b)],
-            gravity: gravity.map_or(0.0, |configuration| configuration.gravity.length()),
+            slope: self.slope(now, &anchored, gravity),
+            ends: anchored,
+            gravity: gravity.length(),
             stepping: Stepping {
                 dt,
                 microsteps: settings.map_or(1, |settings| settings.microsteps.max(1)),
@@ -168,6 +171,25 @@ impl Look<'_, '_> {
             custom: [custom.0, custom.1],
             curve: Curve::of(&self.laws, entity),
         }
+    }
+
+    /// Cosine between gravity and an element, from its still end to its load.
+    fn slope(&self, now: &Snapshot, ends: &[End; 2], gravity: Vec3) -> Option<f32> {
+        let [a, b] = ends;
+        let to_load = match [a, b].map(|end| end.kind == EndKind::Dynamic) {
+            [false, true] => 1.0,
+            [true, false] => -1.0,
+            _ => return None,
+        };
+        let along = match now.axis {
+            None => b.at? - a.at?,
+            Some(SpringAxis::World(axis)) => axis,
+            Some(SpringAxis::BodyA(axis)) => {
+                self.globals.get(now.part.ends()[0]).ok()?.rotation() * axis
+            }
+        };
+        let slope = to_load * along.try_normalize()?.dot(gravity.try_normalize()?);
+        Some(slope).filter(|slope| slope.is_finite())
     }
 
     fn end(&self, entity: Entity, anchor: Vec3) -> End {

@@ -2,6 +2,7 @@
 
 mod in_the_scene;
 mod person;
+mod tuning;
 
 use super::CoiloverWorkbench;
 use super::bench::{Bench, Plots};
@@ -51,23 +52,6 @@ fn a_number_is_dragged_and_the_drag_undone() {
     person.run(2);
     assert_eq!(person.lamp().stiffness, stiffness);
     person.click("Reset");
-    person.run(2);
-    assert_eq!(person.lamp().stiffness, 80.0);
-}
-
-#[test]
-fn a_frequency_is_typed_and_the_stiffness_follows() {
-    let mut person = Person::at_the_bench();
-    person.click("Lamp spring");
-    person.click("1.00658 Hz");
-    person.type_text("2,5");
-    person.key(KeyCode::Enter);
-    person.run(2);
-    let expected = 2.0 * (std::f32::consts::TAU * 2.5).powi(2);
-    let stiffness = person.lamp().stiffness;
-    assert!((stiffness / expected - 1.0).abs() < 1e-4, "{stiffness} N/m");
-    // One edit, not one for each letter.
-    person.click("Undo");
     person.run(2);
     assert_eq!(person.lamp().stiffness, 80.0);
 }

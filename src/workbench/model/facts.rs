@@ -2,6 +2,7 @@
 
 use super::figures::Load;
 use super::snapshot::Snapshot;
+use crate::element::SpringAction;
 use crate::engine::Curve;
 use crate::readout::SpringReadout;
 use bevy::prelude::*;
@@ -45,6 +46,9 @@ pub(crate) struct Facts {
     pub fault: Option<String>,
     pub ends: [End; 2],
     pub gravity: f32,
+    /// Cosine between gravity and the element, from its still end to its load: 1 of what hangs on it, -1 of what stands on
+    /// it. None where nothing says which end is the load.
+    pub slope: Option<f32>,
     pub stepping: Stepping,
     /// A function of the game's own takes the place of spring or damper.
     pub custom: [bool; 2],
@@ -66,6 +70,45 @@ impl Facts {
         let linear = snapshot.spring_is_linear() && !self.custom[0];
         (linear && load.is_sound()).then_some(load)
     }
+
+    /// Gives an element the stiffness that sags so far, m, and the rest length with which its load stays where it rests:
+    /// the same as a [`SpringTuning::sag`](crate::SpringTuning::sag) does for one that is new.
+    pub fn set_sag(&self, element: &mut Snapshot, sag: f32) {
+        let Some(load) = self.load_of(element) else {
+            return;
+        };
+        let stiffness = load.stiffness_for_sag(sag);
+        let Some(before) = element.part.stiffness() else {
+            return;
+        };
+        if !(stiffness.is_finite() && stiffness > 0.0) {
+            return;
+        }
+        // What a preload carries does not stretch the spring.
+        let weight = self.slope.map(|slope| load.mass * load.gravity * slope);
+        let carries = |tension: &f32| match element.action {
+            Some(SpringAction::Pull) => *tension > 0.0,
+            Some(SpringAction::Push) => *tension < 0.0,
+            None | Some(SpringAction::Both) => true,
+        };
+        let tension = weight
+            .filter(carries)
+            .map_or(0.0, |weight| weight - element.preload.unwrap_or_default().0);
+        let least = if element.axis.is_some() {
+            f32::NEG_INFINITY
+        } else {
+            0.0
+        };
+        if let Some(Some(rest)) = element.part.rest_mut() {
+            let moved = *rest + tension * (before.recip() - stiffness.recip());
+            if moved.is_finite() {
+                *rest = moved.max(least);
+            }
+        }
+        if let Some(mine) = element.part.stiffness_mut() {
+            *mine = stiffness;
+        }
+    }
 }
 
 /// The chosen element.
@@ -76,4 +119,71 @@ pub(crate) struct Subject {
     /// As it is, or will be before the next tick.
     pub now: Snapshot,
     pub facts: Facts,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::element::{Preload, SpringAxis, SpringDamper};
+    use crate::workbench::model::snapshot::Part;
+    use crate::workbench::model::verdict::tests::scene;
+
+    /// Rest length and stiffness for a sag of 0.2 m, of an element with 100 N/m and 1 m under 1 kg at 10 m/s².
+    fn tuned(slope: Option<f32>, change: impl Fn(&mut Snapshot)) -> (f32, f32) {
+        let (now, mut facts) = scene();
+        let [a, b] = now.part.ends();
+        let pair = SpringDamper::new(a, b)
+            .with_stiffness(100.0)
+            .with_rest_length(1.0);
+        let mut element = Snapshot::new(Part::SpringDamper(pair));
+        change(&mut element);
+        (facts.gravity, facts.slope) = (10.0, slope);
+        facts.set_sag(&mut element, 0.2);
+        let rest = element.part.rest().expect("a rest length");
+        (rest, element.part.stiffness().expect("a spring"))
+    }
+
+    #[test]
+    fn the_load_stays_where_it_rests() {
+        let near = |(rest, stiffness): (f32, f32), expected: f32| {
+            assert!((rest - expected).abs() < 1e-6, "{rest} m for {expected} m");
+            assert!((stiffness - 50.0).abs() < 1e-4, "{stiffness} N/m");
+        };
+        // It hangs 0.1 m below the rest length, and shall be 0.2 m below another.
+        near(tuned(Some(1.0), |_| ()), 0.9);
+        near(tuned(Some(-1.0), |_| ()), 1.1);
+        near(tuned(Some(0.0), |_| ()), 1.0);
+        near(tuned(None, |_| ()), 1.0);
+        // A preload carries all of it, or half.
+        near(tuned(Some(1.0), |it| it.preload = Some(Preload(10.0))), 1.0);
+        near(tuned(Some(1.0), |it| it.preload = Some(Preload(5.0))), 0.95);
+        // A rope below its load does not carry it.
+        near(
+            tuned(Some(-1.0), |it| it.action = Some(SpringAction::Pull)),
+            1.0,
+        );
+        // No length is below zero, but along an axis.
+        let short = |it: &mut Snapshot| {
+            if let Some(rest) = it.part.rest_mut() {
+                *rest = Some(0.05);
+            }
+        };
+        near(tuned(Some(1.0), short), 0.0);
+        let along = |it: &mut Snapshot| {
+            short(it);
+            it.axis = Some(SpringAxis::World(Vec3::NEG_Y));
+        };
+        near(tuned(Some(1.0), along), -0.05);
+    }
+
+    #[test]
+    fn a_sag_that_is_no_length_changes_nothing() {
+        let (now, mut facts) = scene();
+        facts.slope = Some(1.0);
+        for sag in [0.0, -1.0, f32::NAN, f32::INFINITY] {
+            let mut element = now.clone();
+            facts.set_sag(&mut element, sag);
+            assert_eq!(element, now, "{sag}");
+        }
+    }
 }

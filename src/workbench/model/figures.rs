@@ -52,7 +52,8 @@ impl Load {
 
     /// The damping that has a damping ratio, N s/m.
     pub fn damping_for_ratio(&self, stiffness: f32, ratio: f32) -> f32 {
-        ratio * self.critical(stiffness)
+        let tuning = SpringTuning::frequency(self.frequency(stiffness), ratio);
+        tuning.coefficients(self.mass, self.gravity).1
     }
 }
 

@@ -241,7 +241,7 @@ fn metres(length: f32) -> String {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use crate::element::*;
     use crate::readout::SpringReadout;
@@ -249,7 +249,7 @@ mod tests {
     use crate::workbench::model::snapshot::Part;
     use bevy::prelude::Entity;
 
-    fn scene() -> (Snapshot, Facts) {
+    pub(crate) fn scene() -> (Snapshot, Facts) {
         let [a, b] = [1, 2].map(|i| Entity::from_raw_u32(i).expect("a number of an entity"));
         let pair = SpringDamper::new(a, b)
             .with_stiffness(500.0)
@@ -269,6 +269,7 @@ mod tests {
             fault: None,
             ends: [end(EndKind::Fixed), end(EndKind::Dynamic)],
             gravity: 9.81,
+            slope: None,
             stepping: Stepping {
                 dt: 1.0 / 60.0,
                 microsteps: 1,

@@ -166,9 +166,10 @@ fn figures(ui: &mut Ui, draft: &mut Snapshot, facts: &Facts) {
     }
     if !torsion && load.gravity > 0.0 {
         let mut sag = load.sag(stiffness);
-        ui.label("sag");
-        if number(ui, &mut sag, " m", Drag::Share).changed() && sag > 0.0 {
-            set(draft.part.stiffness_mut(), load.stiffness_for_sag(sag));
+        ui.label("sag")
+            .on_hover_text("The rest length goes with it: the load stays where it rests");
+        if number(ui, &mut sag, " m", Drag::Share).changed() {
+            facts.set_sag(draft, sag);
         }
         ui.end_row();
     }
