@@ -71,6 +71,11 @@ impl Kept {
         if let ([known], Some(only), None) =
             (&mut self.contexts[..], contexts.next(), contexts.next())
         {
+            let left = self.left.iter_mut().map(|(context, _)| context);
+            let unloaded = self.unloaded.iter_mut().map(|(context, ..)| context);
+            for context in left.chain(unloaded).filter(|c| **c == known.entity) {
+                *context = only;
+            }
             known.entity = only;
         }
     }
@@ -79,7 +84,8 @@ impl Kept {
     fn place_rows(&mut self, scene: &mut Scene, world: &World) {
         if !self.engine_stays {
             scene.left.clear();
-            scene.unloaded.clear();
+            // Rows that are made anew add bodies whose elements are at fault now.
+            scene.unloaded.clone_from(&self.unloaded);
         }
         let mut before = EntityHashMap::default();
         for mut row in scene.elements.drain(..) {
@@ -210,7 +216,6 @@ impl Kept {
             scene.left = left
                 .map(|(context, inside)| (*context, inside.put(*context)))
                 .collect();
-            scene.unloaded.clone_from(&self.unloaded);
             // What elements had that are at fault now.
             if let [context] = &self.contexts[..] {
                 for kept in &self.elements {
