@@ -1,7 +1,7 @@
 //! The chosen element: what it is, its numbers, and what is to be said of it.
 
 use super::companions;
-use super::field::{Drag, brief, line, number, vector};
+use super::field::{Drag, brief, is_changed, line, number, vector};
 use crate::element::SpringLaw;
 use crate::readout::SpringReadout;
 use crate::workbench::bench::{Ask, Bench};
@@ -146,7 +146,7 @@ fn figures(ui: &mut Ui, draft: &mut Snapshot, facts: &Facts) {
     let damping = draft.part.damping().filter(|_| draft.damper_is_linear());
     let mut frequency = load.frequency(stiffness);
     ui.label("frequency");
-    if number(ui, &mut frequency, " Hz", Drag::Share).changed() && frequency > 0.0 {
+    if is_changed(ui, &mut frequency, " Hz", Drag::Share) && frequency > 0.0 {
         set(
             draft.part.stiffness_mut(),
             load.stiffness_for_frequency(frequency),
@@ -156,7 +156,7 @@ fn figures(ui: &mut Ui, draft: &mut Snapshot, facts: &Facts) {
     if let Some(damping) = damping {
         let mut ratio = load.ratio(stiffness, damping);
         ui.label("damping ratio");
-        if number(ui, &mut ratio, "", Drag::Positive(0.005)).changed() {
+        if is_changed(ui, &mut ratio, "", Drag::Positive(0.005)) {
             set(
                 draft.part.damping_mut(),
                 load.damping_for_ratio(stiffness, ratio),
@@ -168,7 +168,7 @@ fn figures(ui: &mut Ui, draft: &mut Snapshot, facts: &Facts) {
         let mut sag = load.sag(stiffness);
         ui.label("sag")
             .on_hover_text("The rest length goes with it: the load stays where it rests");
-        if number(ui, &mut sag, " m", Drag::Share).changed() {
+        if is_changed(ui, &mut sag, " m", Drag::Share) {
             facts.set_sag(draft, sag);
         }
         ui.end_row();

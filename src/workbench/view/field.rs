@@ -79,6 +79,15 @@ pub(super) fn number(ui: &mut Ui, value: &mut f32, unit: &str, drag: Drag) -> Re
     )
 }
 
+/// The same for a number that others are made from; says whether it is another one now. The response says so too when a
+/// letter is typed that is not taken yet: numbers that were made anew from the same one would differ by their rounding, and
+/// what shows a number that has changed forgets what is being typed.
+pub(super) fn is_changed(ui: &mut Ui, value: &mut f32, unit: &str, drag: Drag) -> bool {
+    let before = *value;
+    number(ui, value, unit, drag);
+    *value != before
+}
+
 /// A line of a grid with a name and a number.
 pub(super) fn line(ui: &mut Ui, name: &str, value: &mut f32, unit: &str, drag: Drag) {
     ui.label(name);
