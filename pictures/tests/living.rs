@@ -7,12 +7,14 @@ use pictures::command;
 use std::process::Stdio;
 
 /// Scenes, and the minutes that each is watched.
-const SCENES: [(&str, &str); 23] = [
+const SCENES: [(&str, &str); 25] = [
     ("trampoline", "1"),
     // Cloth and bridge are much to compute; a bridge crossed once shows what ten crossings would.
     ("flag", "5"),
     ("rope_bridge", "5"),
     ("crane", "5"),
+    ("jelly", "5"),
+    ("catapult", "5"),
     ("tensegrity", "5"),
     ("newtons_chain", "10"),
     ("showcase", "10"),

@@ -7,7 +7,7 @@
 use image::{RgbImage, imageops};
 use pictures::{command, root};
 
-const SCENES: [&str; 20] = [
+const SCENES: [&str; 22] = [
     "linear_spring",
     "nonlinear_spring",
     "spring_3d",
@@ -25,6 +25,8 @@ const SCENES: [&str; 20] = [
     "flag",
     "rope_bridge",
     "crane",
+    "jelly",
+    "catapult",
     "tensegrity",
     "newtons_chain",
     "showcase",

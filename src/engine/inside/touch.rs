@@ -22,27 +22,27 @@ const NEAR: f32 = 0.005;
 /// has to know before the first.
 pub(in crate::engine) struct Crowd {
     tree: Bvh,
-    parents: Vec<Option<RigidBodyHandle>>,
+    bounded: Vec<ColliderHandle>,
     /// Those without bounds, such as half-spaces.
     boundless: Vec<ColliderHandle>,
 }
 
 impl Crowd {
     pub(in crate::engine) fn new(colliders: &ColliderSet) -> Self {
-        let (mut parents, mut boundless, mut bounds) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut bounded, mut boundless, mut bounds) = (Vec::new(), Vec::new(), Vec::new());
         let solid = |c: &Collider| c.is_enabled() && !c.is_sensor();
         for (handle, collider) in colliders.iter().filter(|(_, c)| solid(c)) {
             let own = collider.compute_aabb();
             if own.extents().max_element() < BOUNDLESS {
                 bounds.push(own);
-                parents.push(collider.parent());
+                bounded.push(handle);
             } else {
                 boundless.push(handle);
             }
         }
         Self {
             tree: Bvh::from_leaves(BvhBuildStrategy::Binned, &bounds),
-            parents,
+            bounded,
             boundless,
         }
     }
@@ -55,24 +55,23 @@ impl Crowd {
         way: f32,
         all: &ColliderSet,
     ) -> bool {
-        let others = |parent: Option<RigidBodyHandle>| parent != Some(handle);
-        body.colliders()
-            .iter()
-            .filter_map(|own| all.get(*own))
-            .any(|own| {
-                let bounds = own.compute_aabb().loosened(way);
-                let mut near = self.tree.intersect_aabb(&bounds);
-                near.any(|leaf| others(self.parents[leaf as usize]))
-                    || self
-                        .boundless
-                        .iter()
-                        .filter_map(|other| all.get(*other))
-                        .any(|other| {
-                            let [a, b] = [own, other].map(|c| (c.position(), c.shape()));
-                            let touches = parry::query::contact(a.0, a.1, b.0, b.1, way);
-                            others(other.parent()) && !matches!(touches, Ok(None))
-                        })
+        let own = body.colliders().iter().filter_map(|own| all.get(*own));
+        let mut own = own.map(|own| (own, own.compute_aabb().loosened(way)));
+        own.any(|(own, bounds)| {
+            let near = self.tree.intersect_aabb(&bounds);
+            let bounded = near.map(|leaf| self.bounded[leaf as usize]);
+            let mut others = bounded.chain(self.boundless.iter().copied());
+            others.any(|other| {
+                let Some(other) = all.get(other) else {
+                    return false;
+                };
+                let groups = [own, other].map(Collider::collision_groups);
+                let [a, b] = [own, other].map(|c| (c.position(), c.shape()));
+                other.parent() != Some(handle)
+                    && groups[0].test(groups[1])
+                    && !matches!(parry::query::contact(a.0, a.1, b.0, b.1, way), Ok(None))
             })
+        })
     }
 }
 

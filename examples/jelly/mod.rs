@@ -1,0 +1,31 @@
+//! The jelly in its parts: lattice, skin, the ball, what is measured, and statics to measure against.
+
+mod ball;
+mod findings;
+mod lattice;
+mod skin;
+mod statics;
+
+use crate::stage::{Begin, fresh};
+use bevy::prelude::*;
+use bevy_coilover::prelude::*;
+use bevy_rapier3d::prelude::*;
+
+pub use findings::check;
+
+/// When the ball falls, s: the cube has come to rest.
+const BALL: f32 = 8.0;
+pub const SECONDS: f32 = 18.0;
+/// The ball is in the jelly.
+pub const PICTURE: f32 = BALL + 0.52;
+
+pub fn setup(app: &mut App) {
+    app.add_systems(Begin, (fresh::<findings::Seen>, lattice::spawn))
+        .add_systems(
+            FixedUpdate,
+            (
+                ball::drop_it.before(PhysicsSet::SyncBackend),
+                findings::record.after(CoiloverSystems::Readout),
+            ),
+        );
+}
