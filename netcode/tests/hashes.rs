@@ -92,10 +92,10 @@ impl Scene {
         for body in &self.bodies {
             let at = world.get::<Transform>(*body).expect("a body");
             let velocity = world.get::<Velocity>(*body).expect("a body");
-            at.translation.to_array().map(&mut take);
-            at.rotation.to_array().map(&mut take);
-            velocity.linear.to_array().map(&mut take);
-            velocity.angular.to_array().map(&mut take);
+            at.translation.to_array().into_iter().for_each(&mut take);
+            at.rotation.to_array().into_iter().for_each(&mut take);
+            velocity.linear.to_array().into_iter().for_each(&mut take);
+            velocity.angular.to_array().into_iter().for_each(&mut take);
         }
         hash
     }
