@@ -1,5 +1,5 @@
 //! Do the examples still look as they should after ten minutes in their windows? Nothing is drawn for that: each
-//! example watches where its bodies are. A fifth of that time by default, all of it with `MINUTES=all`.
+//! example watches where its bodies are. A minute of it by default, all of it with `MINUTES=all`.
 
 #![allow(missing_docs, reason = "a test")]
 
@@ -44,11 +44,7 @@ fn after_ten_minutes_nothing_has_left_the_picture_or_lies_askew() {
         let begin = |(scene, minutes): &(&'static str, &str)| {
             let mut watched = command(scene);
             let minutes: f32 = minutes.parse().expect("a number");
-            let minutes = if all {
-                minutes
-            } else {
-                (minutes / 5.0).max(1.0)
-            };
+            let minutes = if all { minutes } else { 1.0 };
             watched.args(["--minutes", &minutes.to_string()]);
             watched.stdout(Stdio::piped()).stderr(Stdio::piped());
             (*scene, watched.spawn().expect("the example starts"))
