@@ -20,11 +20,12 @@ pub fn missing(options: &Options, scene: &Scene, table: &Table) -> Vec<Vec<Setti
         Method::Joint | Method::Avian => !nonlinear,
         Method::AvianBare => damped && !nonlinear,
     });
+    let quick = options.quick || scene.few;
     let mut chunks = Vec::new();
-    for rate in rates(options.quick) {
+    for rate in rates(quick) {
         let mut chunk = Vec::new();
         for method in methods.clone() {
-            for dial in method.dials(options.quick) {
+            for dial in method.dials(quick) {
                 let setting = Setting {
                     method: *method,
                     dial,

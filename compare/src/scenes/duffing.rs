@@ -25,6 +25,7 @@ pub const SCENE: Scene = Scene {
         energy: Some(36.0 * (0.5 + 0.25)),
         truth: truth(),
     },
+    few: false,
 };
 
 fn truth() -> Truth {

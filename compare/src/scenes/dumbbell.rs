@@ -10,6 +10,7 @@ pub const SCENE: Scene = Scene {
     note: "Two free bricks of 2 kg and 0.5 kg, spinning, on one undamped spring of 20 N/m with off-centre \
            anchors, no gravity; both centres over 3 s against DOP853.",
     make: dumbbell,
+    few: false,
 };
 
 fn dumbbell() -> Problem {

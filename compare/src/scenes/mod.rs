@@ -2,6 +2,7 @@
 
 mod duffing;
 mod dumbbell;
+mod large;
 mod networks;
 pub mod oscillator;
 mod pendulum;
@@ -18,9 +19,11 @@ pub struct Scene {
     /// A sentence on what moves, and on where the truth comes from.
     pub note: &'static str,
     pub make: fn() -> Problem,
+    /// So large that a few settings at two rates must do.
+    pub few: bool,
 }
 
-pub const SCENES: [Scene; 13] = [
+pub const SCENES: [Scene; 16] = [
     oscillator::SCENE,
     pendulum::SOFT,
     pendulum::DAMPED,
@@ -34,6 +37,9 @@ pub const SCENES: [Scene; 13] = [
     praised::SPRING_RATIO,
     praised::HEAVY_ROPE,
     praised::CLOTH,
+    large::CLOTH,
+    large::BRIDGE,
+    large::TOWER,
 ];
 
 /// Standard gravity as the references have it, m/s².

@@ -10,6 +10,7 @@ pub const CHAIN: Scene = Scene {
     note: "Ten points of 0.1 kg, 0.2 m apart, hung from a fixed one and released level, 100 N/m and 0.5 N s/m; \
            points 5 and 10 over 1 s against DOP853.",
     make: chain,
+    few: false,
 };
 
 pub const LATTICE: Scene = Scene {
@@ -18,6 +19,7 @@ pub const LATTICE: Scene = Scene {
     note: "Points of 0.05 kg, 0.1 m apart, springs of 100 N/m and 0.5 N s/m along edges and diagonals, hung at \
            two corners; points 14, 33 and 35 over 1 s against DOP853.",
     make: lattice,
+    few: false,
 };
 
 fn chain() -> Problem {

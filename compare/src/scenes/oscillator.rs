@@ -13,6 +13,7 @@ pub const SCENE: Scene = Scene {
     note: "1 kg on a fixed point, along the line, ω = 18 rad/s (ω·dt = 0.3 at 60 Hz), ζ = 0.1, stretched by \
            0.1 m and pushed outwards, no gravity; 5 s against the formula.",
     make: || oscillator(18.0, 0.1, 5.0),
+    few: false,
 };
 
 /// A body of 1 kg with this angular frequency (rad/s) and damping ratio.

@@ -12,6 +12,7 @@ pub const SOFT: Scene = Scene {
         let rows = include_str!("../../../tests/data/pendulum_k50.csv");
         pendulum(50.0, 0.0, rows)
     },
+    few: false,
 };
 
 pub const DAMPED: Scene = Scene {
@@ -22,6 +23,7 @@ pub const DAMPED: Scene = Scene {
         let rows = include_str!("../../../tests/data/pendulum_k500_c5.csv");
         pendulum(500.0, 5.0, rows)
     },
+    few: false,
 };
 
 pub const STIFF: Scene = Scene {
@@ -32,6 +34,7 @@ pub const STIFF: Scene = Scene {
         let rows = include_str!("../../../tests/data/pendulum_k50000_c100.csv");
         pendulum(50e3, 100.0, rows)
     },
+    few: false,
 };
 
 fn pendulum(stiffness: f32, damping: f32, rows: &str) -> Problem {

@@ -14,6 +14,7 @@ pub const SPRING_RATIO: Scene = Scene {
            30 N s/m, stretched from 1.1 m to 4 m, g = 10 m/s²; points 2 to 4 over 3 s against an implicit Runge–Kutta \
            method (Radau, 1e-10).",
     make: spring_ratio,
+    few: false,
 };
 
 pub const HEAVY_ROPE: Scene = Scene {
@@ -22,6 +23,7 @@ pub const HEAVY_ROPE: Scene = Scene {
     note: "Nineteen links of 1 m, 1 MN/m and 500 N s/m, eighteen points of 0.5 kg between them and 900 kg at the end, \
            let go level; the load over 3 s against an implicit Runge–Kutta method (Radau, 1e-10).",
     make: heavy_rope,
+    few: false,
 };
 
 pub const CLOTH: Scene = Scene {
@@ -31,9 +33,10 @@ pub const CLOTH: Scene = Scene {
            and let go as a slanted sheet; the middle and two corners over 0.5 s against DOP853. Later it folds, and where it goes then depends on \
            the last digit.",
     make: cloth,
+    few: false,
 };
 
-fn point(mass: f32, at: Vec3) -> Body {
+pub(super) fn point(mass: f32, at: Vec3) -> Body {
     if mass > 0.0 {
         Body::point(mass, at)
     } else {
@@ -41,7 +44,7 @@ fn point(mass: f32, at: Vec3) -> Body {
     }
 }
 
-fn problem(
+pub(super) fn problem(
     bodies: Vec<Body>,
     links: Vec<Link>,
     gravity: f32,
@@ -88,7 +91,11 @@ fn heavy_rope() -> Problem {
 }
 
 fn cloth() -> Problem {
-    const SIDE: usize = 32;
+    sheet::<32>(include_str!("../../data/cloth.csv"), 0.5)
+}
+
+/// A square of so many points each way, hung at two corners, with the truth about its middle and its lower corners.
+pub(super) fn sheet<const SIDE: usize>(truth: &str, seconds: f64) -> Problem {
     let at: Vec<Vec3> = (0..SIDE * SIDE)
         .map(|p| {
             let (column, row) = ((p % SIDE) as f64, (p / SIDE) as f64);
@@ -117,6 +124,6 @@ fn cloth() -> Problem {
         SIDE * (SIDE - 1),
         SIDE * SIDE - 1,
     ];
-    let truth = Truth::rows(include_str!("../../data/cloth.csv"), &watched, 3);
-    problem(bodies.collect(), links, GRAVITY, 0.5, truth)
+    let truth = Truth::rows(truth, &watched, 3);
+    problem(bodies.collect(), links, GRAVITY, seconds, truth)
 }

@@ -13,6 +13,7 @@ pub const SCENE: Scene = Scene {
     note: "A free hub of 5 kg with 50 satellites of 0.1 kg all round it on springs of 100 N/m and 0.2 N s/m, \
            stretched and swinging, no gravity; the hub and three satellites over 2 s against DOP853.",
     make: star,
+    few: false,
 };
 
 fn star() -> Problem {
