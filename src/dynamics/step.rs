@@ -20,10 +20,12 @@ use bevy::math::DVec3;
 mod keep;
 mod kinks;
 mod remember;
+mod retake;
 mod warm_start;
 
 use kinks::Kinks;
 pub(crate) use remember::Remembered;
+use retake::Caution;
 
 /// Bodies that elements connect, with those elements: what has to be solved together. Kept from step to
 /// step by whoever fills it, so that nothing is allocated anew.
@@ -50,6 +52,7 @@ pub(super) struct Memory {
     carriable: Option<f64>,
     controller: Controller,
     kinks: Kinks,
+    caution: Caution,
     bound: Bound,
     saved: [Saved; 3],
     max_iterations: u32,
@@ -88,12 +91,14 @@ impl Component {
             // Held back there, energy has to be watched.
             self.load(0);
         }
+        let accuracy = self.memory.caution.pass(time, accuracy);
         if self.is_warm {
             self.memory.points.begin(self.memory.max_iterations);
         }
         if self.is_warm || self.is_of_points(time) {
-            let outcome =
-                self.advance_points(time, |motion| controller.drive(motion, time, accuracy));
+            let outcome = self.advance_points(time, accuracy, |motion| {
+                controller.drive(motion, time, accuracy)
+            });
             self.memory.controller = controller;
             return outcome;
         }
@@ -104,7 +109,7 @@ impl Component {
         self.memory.controller = controller;
         outcome.method = Method::ClosedForm;
         self.hold_back(time);
-        self.keep_bound(time);
+        self.keep_bound(time, accuracy, &mut outcome);
         if alone {
             return outcome;
         }

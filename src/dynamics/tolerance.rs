@@ -22,7 +22,7 @@ pub(crate) struct Accuracy {
 
 impl Accuracy {
     /// So many micro-steps, or as many as the cap lets, and whether it keeps a step from those.
-    fn cap(&self, asked: u32) -> (u32, bool) {
+    pub(super) fn cap(&self, asked: u32) -> (u32, bool) {
         let count = asked.min(self.most());
         (count, count < asked)
     }

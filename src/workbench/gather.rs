@@ -15,7 +15,7 @@ use bevy::prelude::*;
 use bevy_rapier3d::prelude::{RapierConfiguration, RigidBody, Sleeping, TimestepMode};
 
 /// Frames in which each number of the list has its turn once.
-const FRAMES: usize = 8;
+const FRAMES: usize = 16;
 
 /// Seconds between two sortings of the list, and between two looks at names.
 const SORT: f32 = 0.25;

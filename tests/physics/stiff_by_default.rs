@@ -113,6 +113,40 @@ fn networks_share_the_budget() {
     assert!(kicks <= 1024, "{kicks} kicks");
 }
 
+/// A thousand planks of 2 kg with 500 kg on the middle one, let go slack along a parabola; far too many for the budget.
+#[test]
+fn a_long_bridge_falls_as_it_should() {
+    const PLANKS: u16 = 1000;
+    let rows = reference(include_str!("../data/bridge1000.csv"));
+    let mut lab = Lab::new();
+    let place = |i: u16| {
+        let x = 0.2 * f64::from(i);
+        Vec3::new(x as f32, (-1e-3 * x * (200.0 - x)) as f32, 0.0)
+    };
+    let points: Vec<Entity> = (0..=PLANKS)
+        .map(|i| match i {
+            0 | PLANKS => lab.point(place(i)),
+            500 => lab.body(502.0, place(i)),
+            _ => lab.body(2.0, place(i)),
+        })
+        .collect();
+    for (i, ends) in points.windows(2).enumerate() {
+        let i = i as u16;
+        let spring = SpringDamper::new(ends[0], ends[1])
+            .with_stiffness(1e7)
+            .with_damping(2e3)
+            .with_rest_length(place(i).distance(place(i + 1)));
+        lab.spawn(spring);
+    }
+    for row in &rows[1..] {
+        lab.tick();
+        let at = lab.position(points[500]).as_dvec3();
+        let off = (at.x - row[1]).hypot(at.y - row[2]);
+        assert!(off < 0.01, "after {} s: {off} m", row[0]);
+    }
+    assert!(lab.position(points[500]).y < -20.0);
+}
+
 /// Kicks that the last step took.
 fn kicks(lab: &mut Lab) -> u32 {
     let mut readouts = lab.app.world_mut().query::<&SpringReadout>();

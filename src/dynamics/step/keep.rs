@@ -6,7 +6,7 @@ use crate::dynamics::body::{Body, is_within};
 use crate::dynamics::bound::Bound;
 use crate::dynamics::points::Points;
 use crate::dynamics::system::DENSE;
-use crate::dynamics::tolerance::{Method, Motion, Outcome};
+use crate::dynamics::tolerance::{Accuracy, Method, Motion, Outcome};
 
 /// Tries at moving less far; then nothing moves at all.
 const HALVINGS: i32 = 12;
@@ -34,6 +34,7 @@ impl Component {
     pub(super) fn advance_points(
         &mut self,
         time: f64,
+        accuracy: Accuracy,
         drive: impl FnOnce(&mut Points) -> Outcome,
     ) -> Outcome {
         let Memory { points, bound, .. } = &mut self.memory;
@@ -66,16 +67,18 @@ impl Component {
             .store_into(&mut self.elements, &mut self.bodies);
         if !kept {
             self.hold_back(time);
-            self.keep_bound(time);
+            self.keep_bound(time, accuracy, &mut outcome);
         }
         outcome
     }
 
     /// Takes what was gained in energy; where that cannot be had from its motion, the step is
-    /// taken again in the way that only loses energy.
-    pub(super) fn keep_bound(&mut self, time: f64) {
+    /// taken again: finer, or else in the way that only loses energy.
+    pub(super) fn keep_bound(&mut self, time: f64, accuracy: Accuracy, outcome: &mut Outcome) {
         let mut bound = std::mem::take(&mut self.memory.bound);
-        if !bound.hold(&self.elements, &mut self.bodies, time) {
+        if !bound.hold(&self.elements, &mut self.bodies, time)
+            && !self.retake(time, accuracy, outcome, &mut bound)
+        {
             self.load(0);
             self.settle(time, &mut bound);
         }

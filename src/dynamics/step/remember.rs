@@ -1,6 +1,6 @@
 //! What a component remembers from step to step, as plain data.
 
-use super::{Component, Kinks};
+use super::{Caution, Component, Kinks};
 use crate::dynamics::bound::Bound;
 use crate::dynamics::strut::Twists;
 use crate::dynamics::tolerance::Controller;
@@ -13,6 +13,7 @@ use bevy::math::DVec3;
 pub(crate) struct Remembered {
     controller: Controller,
     kinks: Kinks,
+    caution: Caution,
     bound: Bound,
     /// Accelerations from which iterations start: of a network of points,
     points: Vec<DVec3>,
@@ -26,6 +27,7 @@ impl Component {
         Remembered {
             controller: memory.controller,
             kinks: memory.kinks,
+            caution: memory.caution,
             bound: memory.bound,
             points: memory.points.solution().to_vec(),
             network: memory.network.start().cloned().unwrap_or_default(),
@@ -37,13 +39,15 @@ impl Component {
         let Remembered {
             controller,
             kinks,
+            caution,
             bound,
             points,
             network,
         } = remembered;
         self.forget_points();
         let memory = &mut self.memory;
-        (memory.controller, memory.kinks, memory.bound) = (*controller, *kinks, *bound);
+        (memory.controller, memory.kinks) = (*controller, *kinks);
+        (memory.caution, memory.bound) = (*caution, *bound);
         memory.points.start_from(points);
         memory.network.start_from(network);
     }

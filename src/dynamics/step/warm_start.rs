@@ -1,6 +1,6 @@
 //! A network of points from step to step, its bodies and elements left aside.
 
-use super::Component;
+use super::{Caution, Component};
 use crate::dynamics::body::Body;
 use crate::dynamics::points::Points;
 use crate::dynamics::tolerance::Controller;
@@ -22,6 +22,7 @@ impl Component {
         self.forget_points();
         self.memory.bound.forget();
         self.memory.controller = Controller::default();
+        self.memory.caution = Caution::default();
     }
 
     /// After a step that was [warm](Self::is_warm) to its end: what came of it.

@@ -2,8 +2,12 @@
 
 use super::field::brief;
 use crate::workbench::bench::Bench;
-use crate::workbench::model::rows::Order;
-use bevy_egui::egui::{Align, Layout, RichText, ScrollArea, Sense, TextEdit, Ui, UiBuilder};
+use crate::workbench::model::rows::{Order, Row};
+use bevy_egui::egui::text::{LayoutJob, TextWrapping};
+use bevy_egui::egui::{
+    Align2, Color32, Rect, ScrollArea, Sense, TextEdit, TextStyle, Ui, WidgetInfo, WidgetType,
+    pos2, vec2,
+};
 
 /// Width of a column of numbers.
 const NUMBER: f32 = 58.0;
@@ -30,33 +34,18 @@ pub(super) fn show(ui: &mut Ui, bench: &mut Bench) {
     if changed {
         rows.arrange();
     }
-    let height = ui.text_style_height(&bevy_egui::egui::TextStyle::Body) + 2.0;
-    columns(ui, height, None, |ui, column| {
-        let text = ["name", "force, N", "ω·dt", "energy, J"][column];
-        ui.label(RichText::new(text).weak());
-    });
+    let height = ui.text_style_height(&TextStyle::Body) + 2.0;
+    let (place, _) = ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::hover());
+    let weak = ui.visuals().weak_text_color();
+    let titles = ["force, N", "ω·dt", "energy, J"].map(String::from);
+    columns(ui, place, "name", titles, weak);
     ui.separator();
     let (mut chosen, selected, rows) = (None, bench.selected, &bench.rows);
     ScrollArea::vertical()
         .auto_shrink(false)
         .show_rows(ui, height, rows.len(), |ui, range| {
             for row in range.filter_map(|i| rows.get(i)) {
-                let is_selected = selected == Some(row.entity);
-                let clicked = columns(ui, height, Some(is_selected), |ui, column| {
-                    let value = [0.0, row.force, row.omega_dt, row.energy][column];
-                    if column == 0 {
-                        ui.add(
-                            bevy_egui::egui::Label::new(row.label.as_str())
-                                .truncate()
-                                .selectable(false),
-                        );
-                    } else {
-                        ui.add(
-                            bevy_egui::egui::Label::new(brief(f64::from(value))).selectable(false),
-                        );
-                    }
-                });
-                if clicked {
+                if line(ui, row, height, selected == Some(row.entity)) {
                     chosen = Some(row.entity);
                 }
             }
@@ -66,46 +55,44 @@ pub(super) fn show(ui: &mut Ui, bench: &mut Bench) {
     }
 }
 
-/// One row of the list; whether it was clicked.
-fn columns(
-    ui: &mut Ui,
-    height: f32,
-    selected: Option<bool>,
-    mut cell: impl FnMut(&mut Ui, usize),
-) -> bool {
-    let size = bevy_egui::egui::vec2(ui.available_width(), height);
-    let (rect, response) = ui.allocate_exact_size(size, Sense::click());
-    if let Some(selected) = selected {
-        if selected {
-            let fill = ui.visuals().selection.bg_fill;
-            ui.painter().rect_filled(rect, 2.0, fill);
-        } else if response.hovered() {
-            let fill = ui.visuals().widgets.hovered.weak_bg_fill;
-            ui.painter().rect_filled(rect, 2.0, fill);
-        }
+/// One row of the list; whether it was clicked. It is a single widget, with its texts painted: as widgets of their own they
+/// cost half of the panel.
+fn line(ui: &mut Ui, row: &Row, height: f32, is_selected: bool) -> bool {
+    let size = vec2(ui.available_width(), height);
+    let (place, response) = ui.allocate_exact_size(size, Sense::click());
+    response
+        .widget_info(|| WidgetInfo::selected(WidgetType::Button, true, is_selected, &row.label));
+    let visuals = ui.visuals();
+    let fill = if is_selected {
+        Some(visuals.selection.bg_fill)
+    } else if response.hovered() {
+        Some(visuals.widgets.hovered.weak_bg_fill)
+    } else {
+        None
+    };
+    let color = visuals.text_color();
+    if let Some(fill) = fill {
+        ui.painter().rect_filled(place, 2.0, fill);
     }
-    let mut right = rect.right();
-    for column in (1..=3).rev() {
-        let mut place = rect;
-        place.set_right(right);
-        place.set_left(right - NUMBER);
-        right -= NUMBER;
-        let layout = Layout::right_to_left(Align::Center);
-        let mut child = ui.new_child(
-            UiBuilder::new()
-                .max_rect(place.shrink2([2.0, 0.0].into()))
-                .layout(layout),
-        );
-        cell(&mut child, column);
-    }
-    let mut place = rect;
-    place.set_right(right);
-    let layout = Layout::left_to_right(Align::Center);
-    let mut child = ui.new_child(
-        UiBuilder::new()
-            .max_rect(place.shrink2([2.0, 0.0].into()))
-            .layout(layout),
-    );
-    cell(&mut child, 0);
+    let numbers = [row.force, row.omega_dt, row.energy].map(|number| brief(f64::from(number)));
+    columns(ui, place, &row.label, numbers, color);
     response.clicked()
+}
+
+/// A name, cut short where it is too long, and three numbers at the right.
+fn columns(ui: &Ui, place: Rect, name: &str, numbers: [String; 3], color: Color32) {
+    let font = TextStyle::Body.resolve(ui.style());
+    let mut right = place.right();
+    for number in numbers.into_iter().rev() {
+        let at = pos2(right - 2.0, place.center().y);
+        ui.painter()
+            .text(at, Align2::RIGHT_CENTER, number, font.clone(), color);
+        right -= NUMBER;
+    }
+    let mut job = LayoutJob::simple_singleline(name.into(), font, color);
+    job.wrap = TextWrapping::truncate_at_width((right - place.left() - 4.0).max(0.0));
+    let galley = ui.ctx().fonts_mut(|fonts| fonts.layout_job(job));
+    let top = place.center().y - 0.5 * galley.size().y;
+    ui.painter()
+        .galley(pos2(place.left() + 2.0, top), galley, color);
 }

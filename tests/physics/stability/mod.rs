@@ -72,9 +72,22 @@ impl Net {
     /// Comes to rest under drag, and compares with statics; returns the least energy.
     fn check_rest(&self, phase: f32, seconds: f64) -> f64 {
         let (mut lab, bodies) = self.build(phase, 0.1, 2.0);
-        lab.run(seconds);
         let statics = Statics::new(self, f64::from(Self::stiffness(phase)));
-        let settled = statics.settle(Self::places(&lab, &bodies));
+        // A lattice that has folded can linger where it only seems to rest, as a needle on its point.
+        for last in [false, false, false, true] {
+            lab.run(seconds);
+            let settled = statics.settle(Self::places(&lab, &bodies));
+            let [worst, bar] = self.compare(phase, &mut lab, &bodies, &settled);
+            if worst <= bar {
+                return statics.energy(&settled);
+            }
+            assert!(!last, "{} ω·dt {phase}: {worst}", self.name);
+        }
+        unreachable!("the last one returns or fails")
+    }
+
+    /// Error of strains in the mean of the next second, and what it may be.
+    fn compare(&self, phase: f32, lab: &mut Lab, bodies: &[Entity], settled: &[DVec3]) -> [f64; 2] {
         let strains = |at: &[DVec3]| -> Vec<f64> {
             let strain = |(a, b, rest): &(usize, usize, f32)| {
                 at[*a].distance(at[*b]) / f64::from(*rest) - 1.0
@@ -86,11 +99,11 @@ impl Net {
         let mut mean = vec![0.0; self.links.len()];
         for _ in 0..ticks {
             lab.tick();
-            for (mean, strain) in mean.iter_mut().zip(strains(&Self::places(&lab, &bodies))) {
+            for (mean, strain) in mean.iter_mut().zip(strains(&Self::places(lab, bodies))) {
                 *mean += strain / ticks as f64;
             }
         }
-        let wanted = strains(&settled);
+        let wanted = strains(settled);
         let largest = wanted.iter().fold(0.0_f64, |most, s| most.max(s.abs()));
         let (mut worst, mut far) = (0.0_f64, 0.0_f64);
         for ((mean, wanted), link) in mean.iter().zip(wanted).zip(&self.links) {
@@ -119,8 +132,7 @@ impl Net {
             "{}, ω·dt {phase}: at rest strains up to {largest:.2e}, error {worst:.1e} (bar {bar:.1e})",
             self.name
         );
-        assert!(worst <= bar, "{} ω·dt {phase}: {worst}", self.name);
-        statics.energy(&settled)
+        [worst, bar]
     }
 
     /// Runs free and watches the energy.

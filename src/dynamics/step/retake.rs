@@ -1,0 +1,73 @@
+//! A step that wins energy is taken again in finer micro-steps, before it is taken in the way that only loses energy.
+//!
+//! Where lines turn far within a step, the coupled step is right only to its order, however stiff the springs; a bridge of
+//! a thousand planks that falls is an example. Finer micro-steps follow it. They stay for a while: what turned too far once
+//! does so again.
+
+use super::Component;
+use crate::dynamics::bound::Bound;
+use crate::dynamics::tolerance::{Accuracy, Motion, Outcome};
+
+/// Times as many micro-steps as those that have won energy, and most of them where the budget is for fewer: four times the
+/// cost, for as long as they are needed. Pinned by `stiff_by_default::a_long_bridge_falls_as_it_should`.
+const FINER: u32 = 4;
+
+/// For how long they stay, or are not tried again where they won energy too, s.
+const STAYS: f64 = 0.5;
+
+/// Whether a network has won energy of late, and what was done about it.
+#[derive(Clone, Copy, Debug, Default)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct Caution {
+    /// s.
+    left: f64,
+    /// Micro-steps that did not win any; 0 where there were none such.
+    microsteps: u32,
+}
+
+impl Caution {
+    /// Goes on by a step, and says how finely it is to be taken.
+    pub(super) fn pass(&mut self, time: f64, accuracy: Accuracy) -> Accuracy {
+        if self.left <= 0.0 {
+            return accuracy;
+        }
+        self.left -= time;
+        Accuracy {
+            microsteps: accuracy.microsteps.max(self.microsteps),
+            ..accuracy
+        }
+    }
+}
+
+impl Component {
+    /// Takes a network's step again, finer; says whether that won nothing. Where as many micro-steps are taken as are
+    /// asked, it is left as it is.
+    pub(super) fn retake(
+        &mut self,
+        time: f64,
+        accuracy: Accuracy,
+        outcome: &mut Outcome,
+        bound: &mut Bound,
+    ) -> bool {
+        let caution = self.memory.caution;
+        let is_tried = caution.left > 0.0 && caution.microsteps == 0;
+        if is_tried || accuracy.resolve == 0 || self.is_alone() {
+            return false;
+        }
+        let most = accuracy.resolve.max(FINER);
+        let (count, _) = accuracy.cap(FINER.saturating_mul(outcome.microsteps.max(1)).min(most));
+        if count <= outcome.microsteps {
+            return false;
+        }
+        self.load(0);
+        self.run(time, count);
+        self.hold_back(time);
+        outcome.microsteps += count;
+        let wins_nothing = bound.hold(&self.elements, &mut self.bodies, time);
+        self.memory.caution = Caution {
+            left: STAYS,
+            microsteps: if wins_nothing { count } else { 0 },
+        };
+        wins_nothing
+    }
+}
