@@ -12,8 +12,8 @@ pub struct CoiloverSettings {
     pub microsteps: u32,
     /// Kicks of elements that all networks together may take in a step to follow springs that are too stiff for `microsteps`:
     /// the budget of time for that, at 0.3 to 0.5 µs a kick. 1 for none. A network needs three times its stiffest ω·dt or
-    /// more of each of its elements; where there are too many for that, it takes `microsteps`, and four times as many where
-    /// those win energy: stable, but the stiff motion is wrong in phase. A lone element takes ω·dt/2 of its own, up to 32. Under a tolerance it does not count.
+    /// more of each of its elements; where there are too many for that, it takes `microsteps`, and up to sixteen where those
+    /// win energy: stable, but the stiff motion is wrong in phase. A lone element takes ω·dt/2 of its own, up to 32. Under a tolerance it does not count.
     pub resolve: u32,
     /// Combine one and two times as many micro-steps to fourth order wherever the motion is resolved,
     /// and take three times as many plain ones elsewhere.

@@ -8,9 +8,12 @@ use super::Component;
 use crate::dynamics::bound::Bound;
 use crate::dynamics::tolerance::{Accuracy, Motion, Outcome};
 
-/// Times as many micro-steps as those that have won energy, and most of them where the budget is for fewer: four times the
-/// cost, for as long as they are needed. Pinned by `stiff_by_default::a_long_bridge_falls_as_it_should`.
+/// Times as many micro-steps as those that have won energy.
 const FINER: u32 = 4;
+
+/// Most of them where the budget is for fewer. A step of a stiff network takes hardly longer for that: its linear system
+/// is the easier to solve the shorter a micro-step is. Pinned by `stiff_by_default::a_long_bridge_falls_as_it_should`.
+const MOST: u32 = 16;
 
 /// For how long they stay, or are not tried again where they won energy too, s.
 const STAYS: f64 = 0.5;
@@ -54,7 +57,7 @@ impl Component {
         if is_tried || accuracy.resolve == 0 || self.is_alone() {
             return false;
         }
-        let most = accuracy.resolve.max(FINER);
+        let most = accuracy.resolve.max(MOST);
         let (count, _) = accuracy.cap(FINER.saturating_mul(outcome.microsteps.max(1)).min(most));
         if count <= outcome.microsteps {
             return false;
