@@ -23,7 +23,7 @@ pub enum SnapshotError {
     OtherHandle(Entity),
     /// This entity's body, collider or joint came after the snapshot: despawn it first.
     Unknown(Entity),
-    /// Rapier's joints are not those of the tick of the snapshot: put a [`RapierSnapshot`](crate::RapierSnapshot) of the same
+    /// Rapier's joints and solver iterations are not those of the tick of the snapshot: put a [`RapierSnapshot`](crate::RapierSnapshot) of the same
     /// tick back first, or see [`CoiloverSnapshot::without_engine`](crate::CoiloverSnapshot::without_engine).
     OtherEngine,
     /// What was read from a file or from the net names parts that it has not.
@@ -47,7 +47,7 @@ impl fmt::Display for SnapshotError {
                 write!(f, "{entity} came after the snapshot and is still in Rapier; despawn it first")
             }
             Self::OtherEngine => f.write_str(
-                "Rapier's joints are not those of the snapshot; put a RapierSnapshot of the same tick back first",
+                "Rapier's joints or solver iterations are not those of the snapshot; put a RapierSnapshot of the same tick back first",
             ),
             Self::Broken => f.write_str("the snapshot names parts that it has not"),
         }

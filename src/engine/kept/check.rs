@@ -1,6 +1,6 @@
 //! Whether a world is one that it can be put into.
 
-use super::{Kept, NONE};
+use super::{Kept, KeptBody, KeptContext, NONE};
 use crate::engine::held::is_ours;
 use crate::engine::parts::Acts;
 use crate::engine::scene::Scene;
@@ -11,7 +11,11 @@ use bevy_rapier3d::prelude::*;
 
 impl Kept {
     /// What does not fit; nothing is changed.
-    pub(super) fn check(&self, world: &mut World) -> Result<(), SnapshotError> {
+    pub(super) fn check(
+        &self,
+        world: &mut World,
+        engine_went_back: bool,
+    ) -> Result<(), SnapshotError> {
         if !world.contains_resource::<Scene>() {
             return Err(SnapshotError::NoPlugin);
         }
@@ -44,7 +48,8 @@ impl Kept {
         if self.engine_stays {
             return Ok(());
         }
-        self.check_engine(world)
+        self.check_engine(world)?;
+        self.check_orders(world, engine_went_back)
     }
 
     /// Whether the engine has just those joints of ours that are known.
@@ -67,6 +72,39 @@ impl Kept {
             contexts.any(|(set, joints)| inside.is_in(set, joints))
         };
         if there == known && insides().all(in_some) {
+            Ok(())
+        } else {
+            Err(SnapshotError::OtherEngine)
+        }
+    }
+
+    /// Whether bodies and contexts have what is known of them, such as solver iterations, and not what came later.
+    fn check_orders(&self, world: &World, engine_went_back: bool) -> Result<(), SnapshotError> {
+        let scene = world.get_resource::<Scene>().filter(|_| !engine_went_back);
+        let as_known = |known: &KeptBody| {
+            let body = world.get_entity(known.entity).ok()?;
+            let context = body.get::<RapierContextEntityLink>()?.0;
+            let set = world.get::<RapierRigidBodySet>(context)?;
+            let handle = body.get::<RapierRigidBodyHandle>()?.0;
+            let meanwhile = scene.and_then(|scene| {
+                let row = scene.index.get(&known.entity)?;
+                Some(scene.bodies[*row].raised)
+            });
+            let meanwhile = meanwhile.unwrap_or_default();
+            Some(known.raised.fits(set.bodies.get(handle)?, meanwhile))
+        };
+        let has_sweeps = |known: &KeptContext| {
+            let engine = world.get::<RapierContextSimulation>(known.entity)?;
+            let now = engine.integration_parameters.num_internal_pgs_iterations;
+            let meanwhile = scene.and_then(|scene| scene.sweeps.get(&known.entity).copied());
+            Some(known.sweeps.fits(now, meanwhile.unwrap_or_default()))
+        };
+        // Of what the engine does not know yet, nothing differs.
+        let bodies = self.bodies.iter();
+        let mut contexts = self.contexts.iter();
+        if bodies.map(as_known).all(|fits| fits.unwrap_or(true))
+            && contexts.all(|context| has_sweeps(context).unwrap_or(true))
+        {
             Ok(())
         } else {
             Err(SnapshotError::OtherEngine)

@@ -29,7 +29,7 @@ impl Kept {
     /// Has the springs of a world go on from there.
     pub(crate) fn put(&self, world: &mut World) -> Result<(), SnapshotError> {
         let engine_went_back = engine_went_back(world);
-        let fits = self.check(world);
+        let fits = self.check(world, engine_went_back);
         if fits.is_err() && engine_went_back {
             self.begin_anew(world);
         }

@@ -12,6 +12,11 @@ impl Sweeps {
     pub(in crate::engine) fn raise(&mut self, now: &mut usize, wanted: usize) {
         *now = Replaced::order(&mut self.0, *now, wanted);
     }
+
+    /// Whether this is what a context had been told when its substeps made so many; `meanwhile` it was told that.
+    pub(in crate::engine) fn fits(&self, now: usize, meanwhile: Self) -> bool {
+        Replaced::fits(self.0, now, meanwhile.0)
+    }
 }
 
 /// Such orders, and what stood there before.
@@ -40,6 +45,15 @@ impl<T: Copy + Default + PartialEq + PartialOrd> Replaced<T> {
         *known = (ours != users).then_some(Self { ours, users });
         ours
     }
+
+    /// Whether `known` tells of what stands there now, and not what was noted `meanwhile`.
+    fn fits(known: Option<Self>, now: T, meanwhile: Option<Self>) -> bool {
+        match (known, meanwhile) {
+            (Some(known), _) => known.ours == now,
+            (None, Some(meanwhile)) => meanwhile.ours != now,
+            (None, None) => true,
+        }
+    }
 }
 
 impl Raised {
@@ -59,6 +73,14 @@ impl Raised {
         if ours != now {
             body.set_soft_ccd_prediction(ours);
         }
+    }
+
+    /// Whether this is what the body had been given when it was as it is now; `meanwhile` it was given that.
+    pub(in crate::engine) fn fits(&self, body: &RapierBody, meanwhile: Self) -> bool {
+        let iterations = body.additional_solver_iterations();
+        let prediction = body.soft_ccd_prediction();
+        Replaced::fits(self.iterations, iterations, meanwhile.iterations)
+            && Replaced::fits(self.prediction, prediction, meanwhile.prediction)
     }
 
     /// Gives back what the user had ordered.

@@ -161,6 +161,26 @@ fn springs_alone_do_not_fit_a_rapier_that_has_gone_on() {
 }
 
 #[test]
+fn springs_alone_do_not_fit_a_rapier_that_solves_their_bodies_more_finely_now() {
+    let mut film = played();
+    let then = Both::take(&film);
+    let expected = film.watch(60);
+    let element = element(&mut film);
+    let stiffness = film.lab.get::<SpringDamper>(element).stiffness;
+    // The same joints, in more iterations.
+    film.lab.get_mut::<SpringDamper>(element).stiffness = 1e3 * stiffness;
+    film.run(5);
+    assert_eq!(
+        springs(&mut film, &then.springs),
+        Err(SnapshotError::OtherEngine)
+    );
+    film.lab.get_mut::<SpringDamper>(element).stiffness = stiffness;
+    assert_eq!(engine(&mut film, &then.engine), Ok(()));
+    assert_eq!(springs(&mut film, &then.springs), Ok(()));
+    assert_same("car", &expected, &film.watch(60));
+}
+
+#[test]
 fn what_is_not_put_back_makes_another_future() {
     // Or else nothing that these tests compare would depend on what springs remember.
     for name in [
