@@ -18,6 +18,8 @@ pub struct Peers {
     pub apps: [App; 2],
     /// What their sockets did.
     pub counts: [Counts; 2],
+    /// Frames that each ran again before each of its own.
+    pub again: [Vec<u32>; 2],
     clock: Clock,
 }
 
@@ -67,6 +69,7 @@ impl Peers {
         let mut peers = Self {
             apps: [a, b],
             counts,
+            again: default(),
             clock,
         };
         let start = Instant::now();
@@ -122,8 +125,12 @@ impl Peers {
 
     fn update(&mut self) -> Result<(), Box<dyn Error>> {
         self.clock.advance();
-        for app in &mut self.apps {
+        for (app, again) in self.apps.iter_mut().zip(&mut self.again) {
+            let before = app.world().resource::<Cost>().ticked;
             app.update();
+            let ticks = app.world().resource::<Cost>().ticked - before;
+            // One of them is the frame itself; there is none while it waits for the other peer.
+            again.extend(ticks.checked_sub(1));
             let Session::P2P(session) = &mut *app.world_mut().resource_mut::<Session<Net>>() else {
                 return Err("no session".into());
             };
