@@ -89,49 +89,12 @@ impl Assembly {
         if self.continue_warm(step, members, elements, bodies, set) {
             return;
         }
-        let component = &mut self.component;
-        component.forget_points();
-        component.elements.clear();
-        self.start.clear();
-        self.warm.centers.clear();
-        component.perturbed = self.warm.perturbed;
-        for b in members.bodies {
-            let row = &mut bodies[*b];
-            let Some(body) = step.movable(set, row.handle, stale) else {
-                return;
-            };
-            row.can_touch = !body.colliders().is_empty();
-            self.warm.centers.push(body.local_center_of_mass());
-            let mut free = read(body, step.engine.gravity, &row.user, row.turns);
-            if row.turns {
-                free.farthest_turn = step.farthest_turn(body);
-            }
-            let pulled = pull_mark(free.acceleration);
-            component.perturbed |= row.was_perturbed(body, free.position);
-            component.perturbed |= replace(&mut row.pulled, pulled) != pulled;
-            self.start.push(free);
+        if !self.gather_bodies(step, members, bodies, set, stale) {
+            return;
         }
         let sound = self.start.iter().all(Body::is_finite);
-        let (mut disturbed, mut omega) = (false, 0.0_f32);
-        self.warm.ends.clear();
-        for (index, e) in members.elements.iter().enumerate() {
-            let row = &mut elements[*e];
-            let has_moved = step.has_moved(row, set);
-            component.perturbed |= has_moved || take(&mut row.refitted);
-            disturbed |= row.changed || has_moved;
-            let ends = [0, 1].map(|end| step.end(row, end, bodies, set));
-            if let Some(element) = element(row, ends, &self.start) {
-                if has_moved {
-                    row.account_for_leap(element.distance(&self.start).0);
-                }
-                omega = omega.max(omega_of(row));
-                for (end, _) in ends.iter().enumerate().filter(|(_, end)| end.is_path()) {
-                    self.warm.ends.push((index, end));
-                }
-                component.elements.push(element);
-            }
-        }
-        self.warm.omega = omega;
+        let disturbed = self.gather_elements(step, members, elements, bodies, set);
+        let omega = self.warm.omega;
         let awake = step.is_awake(bodies, members.bodies, omega, set, disturbed);
         for e in members.elements {
             elements[*e].active = awake;
@@ -146,6 +109,72 @@ impl Assembly {
         } else {
             State::Powerless
         };
+    }
+
+    /// Reads its bodies; says whether all can be moved.
+    fn gather_bodies(
+        &mut self,
+        step: &Step,
+        members: &Members,
+        bodies: &mut [BodyRow],
+        set: &mut RigidBodySet,
+        stale: &mut bool,
+    ) -> bool {
+        let component = &mut self.component;
+        component.forget_points();
+        component.elements.clear();
+        self.start.clear();
+        self.warm.centers.clear();
+        component.perturbed = self.warm.perturbed;
+        for b in members.bodies {
+            let row = &mut bodies[*b];
+            let Some(body) = step.movable(set, row.handle, stale) else {
+                return false;
+            };
+            row.can_touch = !body.colliders().is_empty();
+            self.warm.centers.push(body.local_center_of_mass());
+            let mut free = read(body, step.engine.gravity, &row.user, row.turns);
+            if row.turns {
+                free.farthest_turn = step.farthest_turn(body);
+            }
+            let pulled = pull_mark(free.acceleration);
+            component.perturbed |= row.was_perturbed(body, free.position);
+            component.perturbed |= replace(&mut row.pulled, pulled) != pulled;
+            self.start.push(free);
+        }
+        true
+    }
+
+    /// Reads its elements, whose bodies have been read; says whether anything has been done to them.
+    fn gather_elements(
+        &mut self,
+        step: &Step,
+        members: &Members,
+        elements: &mut [ElementRow],
+        bodies: &[BodyRow],
+        set: &RigidBodySet,
+    ) -> bool {
+        let (mut disturbed, mut omega) = (false, 0.0_f32);
+        self.warm.ends.clear();
+        for (index, e) in members.elements.iter().enumerate() {
+            let row = &mut elements[*e];
+            let has_moved = step.has_moved(row, set);
+            self.component.perturbed |= has_moved || take(&mut row.refitted);
+            disturbed |= row.changed || has_moved;
+            let ends = [0, 1].map(|end| step.end(row, end, bodies, set));
+            if let Some(element) = element(row, ends, &self.start) {
+                if has_moved {
+                    row.account_for_leap(element.distance(&self.start).0);
+                }
+                omega = omega.max(omega_of(row));
+                for (end, _) in ends.iter().enumerate().filter(|(_, end)| end.is_path()) {
+                    self.warm.ends.push((index, end));
+                }
+                self.component.elements.push(element);
+            }
+        }
+        self.warm.omega = omega;
+        disturbed
     }
 
     /// Integrates over the step, and works out what takes the bodies there.

@@ -57,6 +57,19 @@ pub(crate) fn prepare(
         return;
     }
     scene.renew(&elements, &companions, &mut finder, modified, &mut commands);
+    enter_loads(scene, &mut loads, &finder, &mut commands);
+}
+
+/// Gives each body that elements load the components that show it, and reads which force is the user's.
+fn enter_loads(
+    scene: &mut Scene,
+    loads: &mut Query<
+        (Option<&mut SpringLoad>, Option<&ExternalForce>),
+        With<RapierRigidBodyHandle>,
+    >,
+    finder: &Finder,
+    commands: &mut Commands,
+) {
     for (slot, row) in scene.bodies.iter_mut().enumerate() {
         let Ok((load, force)) = loads.get_mut(row.entity) else {
             continue;

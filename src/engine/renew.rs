@@ -1,10 +1,10 @@
 //! All rows anew: elements and bodies entered, what was known of both carried over.
 
-use super::check::Parameters;
+use super::check::{Fault, Parameters};
 use super::companions::Companions;
 use super::ends::Place;
-use super::find::{Finder, Wanted};
-use super::parts::{Acts, Parts};
+use super::find::{Finder, Found, Wanted};
+use super::parts::{Acts, Parts, PartsItem};
 use super::report::report;
 use super::rows::{BodyRow, ElementRow, mix};
 use super::scene::{Scene, Scratch};
@@ -30,60 +30,14 @@ impl Scene {
         self.followed.clear();
         self.walls.clear();
         for (index, parts) in elements.iter().enumerate() {
-            let entity = parts.entity;
-            let is_new = self.place_row(entity, index);
+            let is_new = self.place_row(parts.entity, index);
             let row = &mut self.elements[index];
             // What changed while nothing was stepped has yet to act.
             row.changed &= !row.has_acted(&self.bodies, &self.stepped);
-            row.changed |= is_new;
-            row.reset();
+            row.changed |= is_new || companions.is_new(&parts);
+            row.changed |= companions.touched.contains(&parts.entity);
             let held_by = row.parameters;
-            let parameters = parts.parameters();
-            if parameters.is_err() {
-                row.parameters = Parameters::NONE;
-            }
-            let found = parameters.and_then(|parameters| {
-                if !parameters.is_held_like(&row.parameters) {
-                    // What is remembered belongs to other ends.
-                    row.memory.places = [None; 2];
-                    row.memory.scales = [None; 2];
-                    row.memory.direction = None;
-                    row.memory.angle = 0.0;
-                }
-                row.refitted |=
-                    parameters != row.parameters || companions.touched.contains(&entity);
-                row.change(|row| row.parameters = parameters);
-                parameters.check()?;
-                let mut companion = companions.of(entity, &parameters)?;
-                if companion.guide != row.companion.guide {
-                    row.memory.places = [None; 2];
-                }
-                let guide = companion.guide;
-                let found = finder.find(&parameters, guide, &mut row.memory.scales, modified)?;
-                if let Some(tuning) = companions.tuning(entity) {
-                    let mut tuned = parameters;
-                    let can_touch = finder.tune(tuning, guide, &found.places, &mut tuned)?;
-                    tuned.check()?;
-                    companion = companions.of(entity, &tuned)?;
-                    row.parameters = tuned;
-                    row.tuned = true;
-                    row.tuned_again = can_touch && !row.tuned_again;
-                }
-                if let Some(pose) = companions.pose(entity) {
-                    let places = &found.places;
-                    let held =
-                        companions.hold(entity, pose, &row.parameters, guide, places, finder)?;
-                    companion = held.0;
-                    let mut element = commands.entity(entity);
-                    element.try_insert(Preload(held.1));
-                    if !row.tuned_again {
-                        element.try_remove::<HoldPose>();
-                    }
-                }
-                row.change(|row| row.companion = companion);
-                Ok(found)
-            });
-            row.changed |= companions.is_new(&parts) || companions.touched.contains(&entity);
+            let found = row.read_anew(&parts, companions, finder, modified, commands);
             row.trouble.set_lasting(found.as_ref().err().copied());
             report(row, commands);
             if row.changed {
@@ -102,11 +56,26 @@ impl Scene {
             self.left.extend(gone.take_inside());
         }
         self.enter_bodies(&mut scratch, modified);
+        self.let_bodies_go(&scratch);
+        self.hold_ends(&scratch);
+        self.leave_what_moves_nothing();
+        self.groups.find(&self.elements, &self.bodies);
+        self.number_groups();
+        scratch.clear();
+        self.scratch = scratch;
+    }
+
+    /// Notes what bodies that no element moves any more have besides forces.
+    fn let_bodies_go(&mut self, scratch: &Scratch) {
         let entered = |body: &&BodyRow| self.index.contains_key(&body.entity);
         let gone = scratch.bodies.iter().filter(|body| !entered(body));
         let raised = gone.filter(|row| row.raised.is_any());
         self.unloaded
             .extend(raised.map(|row| (row.context, row.handle, row.raised)));
+    }
+
+    /// Ties rows of elements to those of their bodies.
+    fn hold_ends(&mut self, scratch: &Scratch) {
         let found_all = self.elements.iter_mut().zip(&scratch.found);
         for (index, (row, found)) in found_all.enumerate() {
             let Some(found) = found else { continue };
@@ -132,8 +101,11 @@ impl Scene {
                 body.clear = 0;
             }
         }
+    }
+
+    /// What moves nothing any more is in no component.
+    fn leave_what_moves_nothing(&mut self) {
         for row in &mut self.elements {
-            // What moves nothing any more is in no component.
             if row.moves() == 0 {
                 self.left.extend(row.take_inside());
             }
@@ -142,10 +114,6 @@ impl Scene {
             .elements
             .iter()
             .any(|row| row.trouble.lasting().is_none() && row.moves() == 0);
-        self.groups.find(&self.elements, &self.bodies);
-        self.number_groups();
-        scratch.clear();
-        self.scratch = scratch;
     }
 
     /// Tells bodies of their components, and gives these what they are solved in.
@@ -222,5 +190,60 @@ impl Scene {
             row.context = body.context;
             row.disturbed |= modified.contains(&row.entity);
         }
+    }
+}
+
+impl ElementRow {
+    /// Reads an element's components as if it were new; says where its ends are, or what is wrong with it.
+    fn read_anew(
+        &mut self,
+        parts: &PartsItem,
+        companions: &Companions,
+        finder: &mut Finder,
+        modified: &EntityHashSet,
+        commands: &mut Commands,
+    ) -> Result<Found, Fault> {
+        let entity = parts.entity;
+        self.reset();
+        let parameters = parts
+            .parameters()
+            .inspect_err(|_| self.parameters = Parameters::NONE)?;
+        if !parameters.is_held_like(&self.parameters) {
+            // What is remembered belongs to other ends.
+            self.memory.places = [None; 2];
+            self.memory.scales = [None; 2];
+            self.memory.direction = None;
+            self.memory.angle = 0.0;
+        }
+        self.refitted |= parameters != self.parameters || companions.touched.contains(&entity);
+        self.change(|row| row.parameters = parameters);
+        parameters.check()?;
+        let mut companion = companions.of(entity, &parameters)?;
+        if companion.guide != self.companion.guide {
+            self.memory.places = [None; 2];
+        }
+        let guide = companion.guide;
+        let found = finder.find(&parameters, guide, &mut self.memory.scales, modified)?;
+        if let Some(tuning) = companions.tuning(entity) {
+            let mut tuned = parameters;
+            let can_touch = finder.tune(tuning, guide, &found.places, &mut tuned)?;
+            tuned.check()?;
+            companion = companions.of(entity, &tuned)?;
+            self.parameters = tuned;
+            self.tuned = true;
+            self.tuned_again = can_touch && !self.tuned_again;
+        }
+        if let Some(pose) = companions.pose(entity) {
+            let places = &found.places;
+            let held = companions.hold(entity, pose, &self.parameters, guide, places, finder)?;
+            companion = held.0;
+            let mut element = commands.entity(entity);
+            element.try_insert(Preload(held.1));
+            if !self.tuned_again {
+                element.try_remove::<HoldPose>();
+            }
+        }
+        self.change(|row| row.companion = companion);
+        Ok(found)
     }
 }

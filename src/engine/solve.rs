@@ -10,6 +10,7 @@ use super::timestep::Plan;
 use crate::settings::CoiloverSettings;
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
+use bevy_rapier3d::rapier::dynamics::IntegrationParameters;
 use std::sync::atomic::AtomicBool;
 
 /// What of a Rapier context the step needs.
@@ -59,30 +60,18 @@ pub(crate) fn solve(
         }
         scene.time = plan.time;
         scene.stepped.push(context);
-        let here = scene.groups.list().iter().any(|g| g.context == context);
-        let left = scene.left.iter().any(|(of, _)| *of == context)
-            || scene.unloaded.iter().any(|(of, ..)| *of == context);
         let Ok(mut set) = sets.get_mut(context) else {
             continue;
         };
-        let quiet = scene.changed.is_empty() && !scene.loaded && !scene.renewed && !left;
-        if !(here || left)
-            || (quiet && !scene.shifted && scene.still.holds(context, &simulation, &set))
-        {
+        let Some(quiet) = scene.is_to_step(context, &simulation, &set) else {
             continue;
-        }
+        };
         let simulation = &mut *simulation;
-        let parameters = simulation.integration_parameters;
+        let engine = Engine::of(&simulation.integration_parameters, configuration, &plan);
         let mut step = Step {
             plan,
-            schedule: plan.schedule(parameters.num_solver_iterations),
-            engine: Engine {
-                iterations: parameters.num_solver_iterations,
-                fastest: f64::from(parameters.max_linear_velocity()),
-                farthest_turn: FARTHEST_TURN * f64::from(plan.pipeline_steps),
-                length_unit: parameters.length_unit,
-                gravity: configuration.gravity,
-            },
+            schedule: plan.schedule(engine.iterations),
+            engine,
             accuracy: settings.accuracy(),
             most_substeps: settings.max_substeps.max(1),
             alike: None,
@@ -95,20 +84,7 @@ pub(crate) fn solve(
             islands: &mut simulation.islands,
             colliders: &mut colliders.colliders,
         };
-        scene.left.retain_mut(|(of, inside)| {
-            let here = *of == context;
-            if here {
-                inside.remove(&mut engine);
-            }
-            !here
-        });
-        scene.unloaded.retain_mut(|(of, handle, raised)| {
-            let here = *of == context;
-            if let Some(body) = engine.bodies.get_mut(*handle).filter(|_| here) {
-                raised.give_back(body);
-            }
-            !here
-        });
+        scene.take_out_what_is_left(context, &mut engine);
         let finest = users.iter().map(|users| users.0).max().unwrap_or(0);
         let spare = &mut *spare;
         let view = View {
@@ -128,4 +104,56 @@ pub(crate) fn solve(
         scene.delivered |= step.delivered.into_inner();
     }
     forces::show(scene, &mut loads);
+}
+
+impl Engine {
+    fn of(
+        parameters: &IntegrationParameters,
+        configuration: &RapierConfiguration,
+        plan: &Plan,
+    ) -> Self {
+        Self {
+            iterations: parameters.num_solver_iterations,
+            fastest: f64::from(parameters.max_linear_velocity()),
+            farthest_turn: FARTHEST_TURN * f64::from(plan.pipeline_steps),
+            length_unit: parameters.length_unit,
+            gravity: configuration.gravity,
+        }
+    }
+}
+
+impl Scene {
+    /// Whether there is anything to do in a context, and then, whether nothing has been changed in it since the last step.
+    fn is_to_step(
+        &self,
+        context: Entity,
+        simulation: &RapierContextSimulation,
+        set: &Mut<RapierRigidBodySet>,
+    ) -> Option<bool> {
+        let here = self.groups.list().iter().any(|g| g.context == context);
+        let left = self.left.iter().any(|(of, _)| *of == context)
+            || self.unloaded.iter().any(|(of, ..)| *of == context);
+        let quiet = self.changed.is_empty() && !self.loaded && !self.renewed && !left;
+        let still = || self.still.holds(context, simulation, set);
+        let idle = !(here || left) || (quiet && !self.shifted && still());
+        (!idle).then_some(quiet)
+    }
+
+    /// Takes out of a context what elements that are gone have left there, and gives back what bodies had.
+    fn take_out_what_is_left(&mut self, context: Entity, engine: &mut EngineParts) {
+        self.left.retain_mut(|(of, inside)| {
+            let here = *of == context;
+            if here {
+                inside.remove(engine);
+            }
+            !here
+        });
+        self.unloaded.retain_mut(|(of, handle, raised)| {
+            let here = *of == context;
+            if let Some(body) = engine.bodies.get_mut(*handle).filter(|_| here) {
+                raised.give_back(body);
+            }
+            !here
+        });
+    }
 }

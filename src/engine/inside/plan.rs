@@ -109,54 +109,7 @@ impl Plan {
         let time = step.plan.time;
         self.jointed = members.bodies.iter().any(|b| bodies[*b].jointed);
         for e in members.elements {
-            let row = &mut elements[*e];
-            let has_moved = step.has_moved(row, set);
-            self.disturbed |= row.changed || has_moved;
-            take(&mut row.refitted);
-            let ends = [0, 1].map(|end| step.end(row, end, bodies, set));
-            let is_twist = row.companion.guide.is_twist();
-            let found = element(row, ends, &self.bodies).and_then(|element| {
-                let line = element.line(&self.bodies)?;
-                let turn = Turn::of(&element, &line, &self.bodies, time);
-                (turn.is_some() || !is_twist).then_some((element, line, turn))
-            });
-            let Some((element, line, turn)) = found else {
-                if let Some(inside) = &mut row.inside {
-                    // Where a twist has no meaning, it keeps the one that it had.
-                    inside.slipped = is_twist;
-                }
-                continue;
-            };
-            if has_moved {
-                row.account_for_leap(line.distance());
-            }
-            let on = row.on.iter().flatten();
-            let touched = on.fold(false, |any, b| any | bodies[*b as usize].touched);
-            let inside = row.inside.get_or_insert_default();
-            inside.context = members.bodies.first().map(|b| bodies[*b].context);
-            let by = row.on.map(|on| {
-                on.map_or((false, false), |b| {
-                    let body = &bodies[b as usize];
-                    (body.jointed, body.pressed)
-                })
-            });
-            if by != [(false, false); 2] {
-                // Before its first step the engine knows no contacts.
-                if inside.leeway.is_due(by, inside.rates.is_some()) {
-                    let on = |body: usize| bodies[members.bodies[body]].handle;
-                    inside.leeway.left = inverse_mass(&line, on, all);
-                    inside.leeway.jointed = if by[0].0 || by[1].0 {
-                        let contacts = false;
-                        inverse_mass(&line, on, Holding { contacts, ..all }) / line.inverse_mass
-                    } else {
-                        1.0
-                    };
-                }
-                row.inverse_mass = inside.leeway.left;
-            }
-            let mut order = self.order(*e, inside, (element, line, turn), touched, time);
-            order.apart = self.jointed && !touched;
-            self.orders.push(order);
+            self.read_element(*e, step, members, elements, bodies, all);
         }
         self.balance(members, elements, bodies, time);
         for at in 0..self.orders.len() {
@@ -164,6 +117,67 @@ impl Plan {
         }
         self.bound(members, bodies);
         true
+    }
+
+    /// Reads an element, whose bodies have been read: what is to be ordered of the engine for it.
+    fn read_element(
+        &mut self,
+        e: usize,
+        step: &Step,
+        members: &Members,
+        elements: &mut [ElementRow],
+        bodies: &[BodyRow],
+        all: Holding,
+    ) {
+        let (set, time) = (all.bodies, step.plan.time);
+        let row = &mut elements[e];
+        let has_moved = step.has_moved(row, set);
+        self.disturbed |= row.changed || has_moved;
+        take(&mut row.refitted);
+        let ends = [0, 1].map(|end| step.end(row, end, bodies, set));
+        let is_twist = row.companion.guide.is_twist();
+        let found = element(row, ends, &self.bodies).and_then(|element| {
+            let line = element.line(&self.bodies)?;
+            let turn = Turn::of(&element, &line, &self.bodies, time);
+            (turn.is_some() || !is_twist).then_some((element, line, turn))
+        });
+        let Some((element, line, turn)) = found else {
+            if let Some(inside) = &mut row.inside {
+                // Where a twist has no meaning, it keeps the one that it had.
+                inside.slipped = is_twist;
+            }
+            return;
+        };
+        if has_moved {
+            row.account_for_leap(line.distance());
+        }
+        let on = row.on.iter().flatten();
+        let touched = on.fold(false, |any, b| any | bodies[*b as usize].touched);
+        let inside = row.inside.get_or_insert_default();
+        inside.context = members.bodies.first().map(|b| bodies[*b].context);
+        let by = row.on.map(|on| {
+            on.map_or((false, false), |b| {
+                let body = &bodies[b as usize];
+                (body.jointed, body.pressed)
+            })
+        });
+        if by != [(false, false); 2] {
+            // Before its first step the engine knows no contacts.
+            if inside.leeway.is_due(by, inside.rates.is_some()) {
+                let on = |body: usize| bodies[members.bodies[body]].handle;
+                inside.leeway.left = inverse_mass(&line, on, all);
+                inside.leeway.jointed = if by[0].0 || by[1].0 {
+                    let contacts = false;
+                    inverse_mass(&line, on, Holding { contacts, ..all }) / line.inverse_mass
+                } else {
+                    1.0
+                };
+            }
+            row.inverse_mass = inside.leeway.left;
+        }
+        let mut order = self.order(e, inside, (element, line, turn), touched, time);
+        order.apart = self.jointed && !touched;
+        self.orders.push(order);
     }
 
     /// Finds which bodies are pressed, hang in balance, or are taken along by joints: where they go, others take them.

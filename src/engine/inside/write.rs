@@ -183,26 +183,15 @@ impl Solver {
                     Default::default()
                 };
             }
-            let excess = plan.orders.iter().filter_map(|o| o.excess_torque());
-            for (slot, b) in members.bodies.iter().enumerate() {
+            for b in members.bodies {
                 let row = &mut bodies[*b];
                 row.substep = h;
                 (row.is_fresh, row.is_alone) = (true, false);
-                let Some(body) = engine.bodies.get_mut(row.handle) else {
-                    continue;
-                };
-                row.raised.raise(body, chosen - own);
-                let too_much = excess.clone().filter(|(of, _)| *of == slot);
-                let torque = -too_much.map(|(_, torque)| torque.as_vec3()).sum::<Vec3>();
-                if torque != Vec3::ZERO || row.carries_share {
-                    let push = Push {
-                        share: [Vec3::ZERO, torque],
-                        ..Push::default()
-                    };
-                    row.give(&push, body);
-                    row.carries_share = torque != Vec3::ZERO;
+                if let Some(body) = engine.bodies.get_mut(row.handle) {
+                    row.raised.raise(body, chosen - own);
                 }
             }
+            take_back_excess(plan, &members, bodies, engine.bodies);
             groups.at(plan.group).inside = true;
             step.delivered.store(true, Ordering::Relaxed);
         }
@@ -227,6 +216,32 @@ impl Solver {
         stagger(plan, 0.5 * substep, &members, bodies, engine.bodies);
         leave(&members, elements, bodies, engine);
         groups.at(plan.group).inside = false;
+    }
+}
+
+/// Takes back by what Rapier's joints along axes of the world turn bodies too much.
+fn take_back_excess(
+    plan: &Plan,
+    members: &Members,
+    bodies: &mut [BodyRow],
+    set: &mut RigidBodySet,
+) {
+    let excess = plan.orders.iter().filter_map(|o| o.excess_torque());
+    for (slot, b) in members.bodies.iter().enumerate() {
+        let row = &mut bodies[*b];
+        let Some(body) = set.get_mut(row.handle) else {
+            continue;
+        };
+        let too_much = excess.clone().filter(|(of, _)| *of == slot);
+        let torque = -too_much.map(|(_, torque)| torque.as_vec3()).sum::<Vec3>();
+        if torque != Vec3::ZERO || row.carries_share {
+            let push = Push {
+                share: [Vec3::ZERO, torque],
+                ..Push::default()
+            };
+            row.give(&push, body);
+            row.carries_share = torque != Vec3::ZERO;
+        }
     }
 }
 
@@ -277,6 +292,34 @@ fn stagger(plan: &Plan, by: f64, members: &Members, bodies: &[BodyRow], set: &mu
     }
 }
 
+/// Takes all joints of a component out, unless each is of the kind that is wanted; says whether they are.
+fn leave_misfits(
+    plan: &Plan,
+    wanted: &[Option<Wanted>],
+    members: &Members,
+    elements: &mut [ElementRow],
+    engine: &mut Engine,
+) -> bool {
+    let set = &mut engine.joints.impulse_joints;
+    let mut fit = true;
+    for (order, wanted) in plan.orders.iter().zip(wanted) {
+        if let Some(inside) = &elements[order.row].inside {
+            fit &= match wanted {
+                Some(wanted) => inside.joints.fit(wanted, set),
+                None => inside.joints.count() == 0,
+            };
+        }
+    }
+    for e in members.elements {
+        if let Some(inside) = &mut elements[*e].inside
+            && !(fit && inside.active)
+        {
+            inside.joints.remove(set);
+        }
+    }
+    fit
+}
+
 /// Makes or changes the joints of a component.
 fn join(
     plan: &mut Plan,
@@ -303,23 +346,8 @@ fn join(
             inside.turn = order.turn;
         }
     }
+    let fit = leave_misfits(plan, wanted, members, elements, engine);
     let set = &mut engine.joints.impulse_joints;
-    let mut fit = true;
-    for (order, wanted) in plan.orders.iter().zip(&*wanted) {
-        if let Some(inside) = &elements[order.row].inside {
-            fit &= match wanted {
-                Some(wanted) => inside.joints.fit(wanted, set),
-                None => inside.joints.count() == 0,
-            };
-        }
-    }
-    for e in members.elements {
-        if let Some(inside) = &mut elements[*e].inside
-            && !(fit && inside.active)
-        {
-            inside.joints.remove(set);
-        }
-    }
     let mut each = |act: &mut dyn FnMut(&mut Inside, &Wanted)| {
         for (order, wanted) in plan.orders.iter().zip(&*wanted) {
             if let (Some(inside), Some(wanted)) = (&mut elements[order.row].inside, wanted) {
