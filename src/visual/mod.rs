@@ -34,7 +34,7 @@ pub use skin::SpringSkin;
 pub use telescope::Telescope;
 pub use torsion_coil::TorsionCoil;
 
-use bevy::asset::{AssetServer, Assets};
+use bevy::asset::{AssetEventSystems, AssetServer, Assets};
 use bevy::camera::visibility::VisibilitySystems;
 use bevy::mesh::Mesh;
 use bevy::pbr::StandardMaterial;
@@ -80,6 +80,8 @@ impl Plugin for CoiloverVisualPlugin {
                     .after(VisibilitySystems::UpdateFrusta)
                     .before(VisibilitySystems::VisibilityPropagate)
                     .before(VisibilitySystems::CalculateBounds)
+                    // Or a mesh that is new in a frame, as that of a spiral that turns, is missing in its picture.
+                    .before(AssetEventSystems)
                     .run_if(can_draw),
             )
             .add_systems(

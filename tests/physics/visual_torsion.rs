@@ -7,6 +7,7 @@ use bevy::mesh::VertexAttributeValues;
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
+use std::collections::HashSet;
 use std::f32::consts::TAU;
 
 /// Radius of the spiral and of its arbor, m.
@@ -102,6 +103,36 @@ fn its_outer_end_goes_around_with_body_b_and_its_inner_end_stays() {
             assert!(off < 0.51_f32.to_radians(), "{degrees}: off by {off} rad");
         }
     }
+}
+
+/// Meshes that a renderer has been told of.
+#[derive(Resource)]
+struct Known(HashSet<AssetId<Mesh>>);
+
+#[test]
+fn a_renderer_hears_of_a_new_strip_in_the_frame_that_shows_it() {
+    let mut door = Door::new(TorsionCoil::new(RADIUS, 4.0));
+    let app = &mut door.lab.app;
+    let hear = |mut news: MessageReader<AssetEvent<Mesh>>, mut known: ResMut<Known>| {
+        for one in news.read() {
+            if let AssetEvent::Added { id } = one {
+                known.0.insert(*id);
+            }
+        }
+    };
+    let there: HashSet<_> = app.world().resource::<Assets<Mesh>>().ids().collect();
+    app.insert_resource(Known(there)).add_systems(Last, hear);
+    for step in 1..=300 {
+        // Some degrees in each frame: every one shows a strip of its own.
+        door.turn((3.0 * step as f32).to_radians());
+        let world = door.lab.app.world();
+        let known = &world.resource::<Known>().0;
+        for part in world.get::<Children>(door.element).expect("parts") {
+            let mesh = world.get::<Mesh3d>(*part).expect("a mesh");
+            assert!(known.contains(&mesh.id()), "frame {step}");
+        }
+    }
+    assert!(door.lab.app.world().resource::<Known>().0.len() > 300);
 }
 
 #[test]

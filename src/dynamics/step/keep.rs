@@ -106,10 +106,11 @@ impl Component {
             }
         }
         if any {
-            // From where they were: on the way that is not taken, turns may have been counted.
+            // From where they were: on the way that is not taken, turns may have been counted, and heat.
             let start = &self.memory.saved[0].elements;
             for (element, start) in self.elements.iter_mut().zip(start) {
                 (element.angle, element.direction) = (start.angle, start.direction);
+                (element.heat, element.work) = (start.heat, start.work);
             }
             self.aim(time);
         }

@@ -3,6 +3,7 @@
 use super::{Kept, KeptBody, KeptContext, NONE};
 use crate::engine::held::is_ours;
 use crate::engine::parts::Acts;
+use crate::engine::rows::{BodyRow, Raised};
 use crate::engine::scene::Scene;
 use crate::snapshot::SnapshotError;
 use bevy::ecs::entity::EntityHashSet;
@@ -99,10 +100,19 @@ impl Kept {
             let meanwhile = scene.and_then(|scene| scene.sweeps.get(&known.entity).copied());
             Some(known.sweeps.fits(now, meanwhile.unwrap_or_default()))
         };
+        // What no element moved then had nothing.
+        let then: EntityHashSet = self.bodies.iter().map(|body| body.entity).collect();
+        let had_nothing = |row: &BodyRow| {
+            let set = world.get::<RapierRigidBodySet>(row.context)?;
+            Some(Raised::default().fits(set.bodies.get(row.handle)?, row.raised))
+        };
+        let new = scene.iter().flat_map(|scene| &scene.bodies);
+        let mut new = new.filter(|row| !then.contains(&row.entity));
         // Of what the engine does not know yet, nothing differs.
         let bodies = self.bodies.iter();
         let mut contexts = self.contexts.iter();
         if bodies.map(as_known).all(|fits| fits.unwrap_or(true))
+            && new.all(|row| had_nothing(row).unwrap_or(true))
             && contexts.all(|context| has_sweeps(context).unwrap_or(true))
         {
             Ok(())

@@ -181,6 +181,23 @@ fn springs_alone_do_not_fit_a_rapier_that_solves_their_bodies_more_finely_now() 
 }
 
 #[test]
+fn springs_alone_do_not_fit_a_rapier_that_solves_other_bodies_more_finely_now() {
+    let mut film = Film::new(CoiloverPlugin::default());
+    let frame = film.spawn((RigidBody::Fixed, Transform::default()));
+    let arm = film.brick(1.0, Vec3::X * 0.5);
+    let hinge = RevoluteJointBuilder::new(Vec3::Z).local_anchor2(Vec3::NEG_X * 0.5);
+    film.insert(arm, ImpulseJoint::new(frame, hinge));
+    film.run(5);
+    let then = Both::take(&film);
+    film.spawn(TorsionSpringDamper::new(frame, arm, Vec3::Z).with_stiffness(1e5));
+    film.run(5);
+    assert_eq!(
+        springs(&mut film, &then.springs),
+        Err(SnapshotError::OtherEngine)
+    );
+}
+
+#[test]
 fn what_is_not_put_back_makes_another_future() {
     // Or else nothing that these tests compare would depend on what springs remember.
     for name in [
