@@ -197,3 +197,42 @@ fn a_spring_between_two_links_of_a_multibody_keeps_its_frequency_and_its_energy(
         assert!(worst < 0.02, "k {k} c {c}: {worst}");
     }
 }
+
+/// Two bodies on a hinge with such locks fall on a tilted block. The fastest that they become, m/s, with Rapier alone.
+fn fastest_without_springs(locks: LockedAxes) -> f32 {
+    let mut lab = Lab::without_plugin(Engine::default());
+    let tilt = Transform::from_rotation(Quat::from_rotation_z(0.6));
+    lab.spawn((RigidBody::Fixed, Collider::cuboid(0.5, 0.5, 0.5), tilt));
+    let lower = lab.body(1.0, Vec3::new(-1.0, 0.8, 0.2));
+    let upper = lab.body(10.0, Vec3::new(-1.0, 1.8, 0.4));
+    let hinge = RevoluteJointBuilder::new(Vec3::Z)
+        .local_anchor1(Vec3::new(0.0, 0.5, 0.1))
+        .local_anchor2(Vec3::new(0.0, -0.5, -0.1));
+    let joint = ImpulseJoint::new(lower, hinge);
+    let solid = || (Collider::cuboid(0.3, 0.3, 0.3), locks);
+    lab.app.world_mut().entity_mut(lower).insert(solid());
+    lab.app
+        .world_mut()
+        .entity_mut(upper)
+        .insert((solid(), joint));
+    lab.get_mut::<Velocity>(lower).linear = Vec3::new(5.0, -3.0, 0.0);
+    let mut fastest = 0.0_f32;
+    for _ in 0..60 {
+        lab.tick();
+        fastest = fastest.max(lab.get::<Velocity>(lower).linear.length());
+    }
+    fastest
+}
+
+/// It is told in `docs/limits.md`. When this fails, Rapier has been mended, and the entry can go.
+#[test]
+fn planar_bodies_on_a_hinge_are_thrown_by_rapier_alone() {
+    let turns = LockedAxes::ROTATION_LOCKED_X | LockedAxes::ROTATION_LOCKED_Y;
+    let planar = fastest_without_springs(turns | LockedAxes::TRANSLATION_LOCKED_Z);
+    for locks in [LockedAxes::empty(), LockedAxes::TRANSLATION_LOCKED_Z] {
+        let fastest = fastest_without_springs(locks);
+        println!("{locks:?}: {fastest} m/s; planar: {planar} m/s");
+        assert!(fastest < 30.0, "{locks:?}: {fastest}");
+    }
+    assert!(planar > 100.0, "{planar}");
+}
