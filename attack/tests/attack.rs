@@ -68,10 +68,10 @@ fn search() -> Result<bool, lexopt::Error> {
                 let kind = kind(&wrong);
                 let count = ours.entry(kind.clone()).or_default();
                 *count += 1;
+                println!("seed {seed}: {wrong}");
                 if *count > 1 {
                     continue;
                 }
-                println!("seed {seed}: {wrong}");
                 let smallest = shrink(&mut tree, &kind);
                 println!("as small as can be: {smallest}\n");
             }

@@ -59,7 +59,9 @@ pub(crate) fn measure(
                 commands.entity(row.entity).try_remove::<SpringTuning>();
             }
             let wound = row.memory.angle;
-            let seen = row.extent(points, time, &sets);
+            let (length, rate) = row.extent(points, time, &sets);
+            // In a step that its solver loses, Rapier gives kinematic bodies a velocity that is no number.
+            let seen = (length, if rate.is_finite() { rate } else { 0.0 });
             let seen = row.arrive(seen, wound, points, time, &mut look);
             if led {
                 row.account_for_moved(seen, time);
