@@ -163,7 +163,8 @@ impl Lanes {
         })
     }
 
-    /// Takes all of them over the step.
+    /// Takes all of them over the step. In one piece, for it is the recipe of `Moving`, line by line: the test below holds
+    /// them to the same bits.
     pub(crate) fn run(&mut self, time: f64, count: u32) {
         let step = time / f64::from(count);
         let half = all(0.5 * step);

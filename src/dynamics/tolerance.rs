@@ -203,13 +203,12 @@ impl Controller {
         [least, most]: [u32; 2],
     ) -> Outcome {
         let before = self.known;
-        let m = match before {
-            Some(known) => match cheapest(known, tolerance, [least, most]).0 {
+        let m = before.map_or(least, |known| {
+            match cheapest(known, tolerance, [least, most]).0 {
                 Plan::Plain(n) => (n / 4).max(least),
                 Plan::Extrapolated(m) => (m / 2).max(least),
-            },
-            None => least,
-        };
+            }
+        });
         motion.save(0);
         motion.run(time, m);
         motion.save(1);
@@ -234,16 +233,10 @@ impl Controller {
             self.known = Some((plain, Some(fine)));
         }
         let known = self.known.unwrap_or_default();
-        let before = before.map_or(0.0, |known| known.0);
-        self.span = if known.0 > GROWTH * before {
-            (self.span / 2).max(1)
-        } else {
-            (2 * self.span).min(BUSY)
-        };
         let (plan, capped) = cheapest(known, tolerance, [least, most]);
         let calm = plan == Plan::Plain(least) && error_of(known, plan) < 0.25 * tolerance;
-        self.calm = if calm { self.calm + 1 } else { 0 };
-        self.age = if self.calm > 2 { CALM } else { self.span };
+        let grows = known.0 > GROWTH * before.map_or(0.0, |known| known.0);
+        self.put_off(grows, calm);
         let taken = match known.1 {
             Some(_) => Plan::Extrapolated(2 * m),
             None => Plan::Plain(2 * m),
@@ -261,6 +254,17 @@ impl Controller {
             capped: capped && error > tolerance,
             ..Outcome::default()
         }
+    }
+
+    /// Until when the next probe can wait: the sooner, the more the error grows.
+    fn put_off(&mut self, grows: bool, calm: bool) {
+        self.span = if grows {
+            (self.span / 2).max(1)
+        } else {
+            (2 * self.span).min(BUSY)
+        };
+        self.calm = if calm { self.calm + 1 } else { 0 };
+        self.age = if self.calm > 2 { CALM } else { self.span };
     }
 
     /// As many micro-steps as are asked for, or those that follow what moves.

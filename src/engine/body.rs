@@ -129,7 +129,6 @@ pub(super) fn read(body: &RapierBody, gravity: Vec3, user: &ExternalForce, turns
         LockedAxes::ROTATION_LOCKED_Z,
     ]);
     let moves = DVec3::select(inverse_mass.cmpgt(DVec3::ZERO), DVec3::ONE, DVec3::ZERO);
-    let angular_velocity = body.angvel().as_dvec3();
     let mut out = Body {
         position: body.position().translation.as_dvec3()
             + rotation * properties.local_com.as_dvec3(),
@@ -152,20 +151,26 @@ pub(super) fn read(body: &RapierBody, gravity: Vec3, user: &ExternalForce, turns
         turned: None,
     };
     if turns {
-        // No inertia about an axis means to the engine that nothing turns the body about it.
-        if rotation_locked == [false; 3] && out.inertia.min_element() > 0.0 {
-            out.spin = Spin::Free {
-                momentum: DVec3::ZERO,
-            };
-            out.set_angular_velocity(angular_velocity);
-        } else if rotation_locked != [true; 3] || angular_velocity != DVec3::ZERO {
-            out.spin = Spin::Locked {
-                velocity: angular_velocity,
-            };
-        }
+        set_spin(&mut out, body.angvel().as_dvec3());
         out.note_turn();
     }
     out
+}
+
+/// Lets a body turn as its locks and its inertia allow.
+fn set_spin(body: &mut Body, angular_velocity: DVec3) {
+    let locked = body.rotation_locked;
+    // No inertia about an axis means to the engine that nothing turns the body about it.
+    if locked == [false; 3] && body.inertia.min_element() > 0.0 {
+        body.spin = Spin::Free {
+            momentum: DVec3::ZERO,
+        };
+        body.set_angular_velocity(angular_velocity);
+    } else if locked != [true; 3] || angular_velocity != DVec3::ZERO {
+        body.spin = Spin::Locked {
+            velocity: angular_velocity,
+        };
+    }
 }
 
 /// What the engine is given for a step, so that a body ends it where the integrator did.

@@ -72,6 +72,14 @@ impl ElementRow {
         (elastic.force + elastic.stiffness + elastic.energy + drag).is_finite()
     }
 
+    /// Whether it can lose energy.
+    pub(super) fn is_damped(&self) -> bool {
+        match &self.companion.law {
+            Some(law) => law.damps(),
+            None => self.parameters.damping > 0.0,
+        }
+    }
+
     /// Slope of the spring's force as of the last step, N/m.
     pub(super) fn slope(&self) -> f64 {
         if self.companion.law.is_none() {

@@ -60,6 +60,22 @@ fn root(parent: &mut [usize], mut at: usize) -> usize {
     at
 }
 
+fn is_sound(row: &&ElementRow) -> bool {
+    row.trouble.lasting().is_none()
+}
+
+/// The bodies as a forest of parents: those that elements join have the same root.
+fn join(elements: &[ElementRow], bodies: usize) -> Vec<usize> {
+    let mut parent: Vec<usize> = (0..bodies).collect();
+    for row in elements.iter().filter(is_sound) {
+        if let [Some(a), Some(b)] = [0, 1].map(|end| row.movable(end)) {
+            let (a, b) = (root(&mut parent, a), root(&mut parent, b));
+            parent[a.max(b)] = a.min(b);
+        }
+    }
+    parent
+}
+
 /// An order of elements that does not depend on when they or their bodies were spawned.
 fn rank(row: &ElementRow, bodies: &[BodyRow]) -> impl Ord + use<> {
     let p = &row.parameters;
@@ -74,15 +90,7 @@ fn rank(row: &ElementRow, bodies: &[BodyRow]) -> impl Ord + use<> {
 impl Groups {
     /// Finds the components of a scene, in the order of their first bodies.
     pub(super) fn find(&mut self, elements: &[ElementRow], bodies: &[BodyRow]) {
-        let mut parent: Vec<usize> = (0..bodies.len()).collect();
-        let movable = |row: &ElementRow| [0, 1].map(|end| row.movable(end));
-        let sound = |row: &&ElementRow| row.trouble.lasting().is_none();
-        for row in elements.iter().filter(sound) {
-            if let [Some(a), Some(b)] = movable(row) {
-                let (a, b) = (root(&mut parent, a), root(&mut parent, b));
-                parent[a.max(b)] = a.min(b);
-            }
-        }
+        let mut parent = join(elements, bodies.len());
         // A root is the least of its component, so it is met first.
         let mut of_body = Vec::with_capacity(bodies.len());
         let mut count = 0;
@@ -92,8 +100,8 @@ impl Groups {
             count += usize::from(r == body);
         }
         let of_element = |(e, row): (usize, &ElementRow)| {
-            let body = movable(row).into_iter().flatten().next()?;
-            sound(&row).then_some((e, of_body[body]))
+            let body = row.movable(0).or(row.movable(1))?;
+            is_sound(&row).then_some((e, of_body[body]))
         };
         let body_starts = sort(
             count,

@@ -168,10 +168,7 @@ impl Step {
         row.trouble.set_passing(None);
         row.inverse_mass = pair.inverse_mass;
         // What is lost is what its damper took: exact for a linear one at any damping.
-        let damped = match &row.companion.law {
-            Some(law) => law.damps(),
-            None => row.parameters.damping > 0.0,
-        };
+        let damped = row.is_damped();
         let energy = damped.then(|| row.energy_of(&pair, &start, row.memory.length));
         let plain = self.put_in_lane(row, batch, &pair, &start);
         batch.pending.push(PendingPair {

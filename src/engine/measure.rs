@@ -49,27 +49,17 @@ pub(crate) fn measure(
     };
     let mut show = |row: &mut ElementRow, readout: Option<&mut Mut<SpringReadout>>| {
         let led = row.moves() == 0 && row.memory.places[0].is_some();
-        if let Some(points) = row.see(time, &mut scene.bodies, &mut look) {
-            report(row, &mut commands);
-            let tuned = std::mem::take(&mut row.tuned);
-            if (std::mem::take(&mut row.captured) && row.trouble.passing().is_none()) || tuned {
-                write_back(row, tuned, &mut springs);
-            }
-            if tuned && !row.tuned_again {
-                commands.entity(row.entity).try_remove::<SpringTuning>();
-            }
-            let wound = row.memory.angle;
-            let (length, rate) = row.extent(points, time, &sets);
-            // In a step that its solver loses, Rapier gives kinematic bodies a velocity that is no number.
-            let seen = (length, if rate.is_finite() { rate } else { 0.0 });
-            let seen = row.arrive(seen, wound, points, time, &mut look);
-            if led {
-                row.account_for_moved(seen, time);
-            }
-            row.memory.length = seen.0;
-            if let Some(readout) = readout {
-                readout.set_if_neq(row.read_out(seen, time));
-            }
+        let Some(points) = row.see(time, &mut scene.bodies, &mut look) else {
+            return;
+        };
+        tell(row, &mut springs, &mut commands);
+        let seen = row.seen(points, time, &mut look);
+        if led {
+            row.account_for_moved(seen, time);
+        }
+        row.memory.length = seen.0;
+        if let Some(readout) = readout {
+            readout.set_if_neq(row.read_out(seen, time));
         }
     };
     // The rows stand in the query's order; if something came, went or got other components since they were
@@ -77,12 +67,9 @@ pub(crate) fn measure(
     let mut unordered = false;
     let mut rows = scene.elements.iter_mut();
     for (entity, mut readout) in &mut readouts {
-        if rows
-            .as_slice()
-            .first()
-            .is_none_or(|row| row.entity != entity)
-        {
-            unordered = true;
+        let next = rows.as_slice().first();
+        unordered = next.is_none_or(|row| row.entity != entity);
+        if unordered {
             break;
         }
         if let Some(row) = rows.next() {
@@ -97,6 +84,19 @@ pub(crate) fn measure(
         scene.unordered = unordered;
     }
     scene.stale |= look.stale || (unordered && !scene.unordered);
+}
+
+/// Tells what was found in this tick: faults, captured rest lengths, coefficients that were worked out.
+#[inline(always)]
+fn tell(row: &mut ElementRow, springs: &mut Query<Springs, IsElement>, commands: &mut Commands) {
+    report(row, commands);
+    let tuned = std::mem::take(&mut row.tuned);
+    if (std::mem::take(&mut row.captured) && row.trouble.passing().is_none()) || tuned {
+        write_back(row, tuned, springs);
+    }
+    if tuned && !row.tuned_again {
+        commands.entity(row.entity).try_remove::<SpringTuning>();
+    }
 }
 
 /// Writes a captured rest length into the element's component, and coefficients that were worked out.
@@ -245,6 +245,16 @@ impl ElementRow {
                 .body(context, handle)
                 .map_or((DVec3::ZERO, DVec3::ZERO), |body| point_of(body, local)),
         }
+    }
+
+    /// Length or twist after the step, and its rate.
+    #[inline(always)]
+    fn seen(&mut self, points: [(DVec3, DVec3); 2], time: f64, look: &mut Look) -> (f64, f64) {
+        let wound = self.memory.angle;
+        let (length, rate) = self.extent(points, time, look.sets);
+        // In a step that its solver loses, Rapier gives kinematic bodies a velocity that is no number.
+        let seen = (length, if rate.is_finite() { rate } else { 0.0 });
+        self.arrive(seen, wound, points, time, look)
     }
 
     /// Length and its rate; of a guided element the distance along its axis, or its twist, whose turns are counted.

@@ -1,7 +1,7 @@
 //! Before the step: is the scene still the one we know? Mostly it is, and only what can move is read.
 
 use super::check::{Fault, Parameters};
-use super::companions::Companions;
+use super::companions::{Companion, Companions};
 use super::ends::{Ends, Place};
 use super::find::Finder;
 use super::forces::SpringLoad;
@@ -142,25 +142,13 @@ fn refresh(
         if !std::mem::replace(&mut row.changed, true) {
             marked.push(*index);
         }
-        let Ok(new) = parts.parameters().and_then(|new| {
+        let new = parts.parameters().and_then(|new| {
             new.check()?;
             Ok((companions.of(entity, &new)?, new))
-        }) else {
-            return false;
-        };
-        let (companion, parameters) = new;
-        if !parameters.is_held_like(&row.parameters)
-            || companion.guide != row.companion.guide
-            || companions.tuning(entity).is_some()
-            || companions.pose(entity).is_some()
-        {
+        });
+        if !new.is_ok_and(|new| refit(row, new, companions)) {
             return false;
         }
-        row.refitted |= parameters != row.parameters || companions.touched.contains(&entity);
-        row.change(|row| {
-            row.parameters = parameters;
-            row.companion = companion;
-        });
     }
     if !marked.is_empty() {
         for assembly in assemblies {
@@ -171,6 +159,28 @@ fn refresh(
         let row = &mut rows[*index];
         row.trouble.lasting().is_some() || follow(row, *end, ends, bodies, shifted)
     })
+}
+
+/// Gives an element new numbers and laws; says whether its row can be as it is otherwise.
+fn refit(
+    row: &mut ElementRow,
+    (companion, parameters): (Companion, Parameters),
+    companions: &Companions,
+) -> bool {
+    let entity = row.entity;
+    if !parameters.is_held_like(&row.parameters)
+        || companion.guide != row.companion.guide
+        || companions.tuning(entity).is_some()
+        || companions.pose(entity).is_some()
+    {
+        return false;
+    }
+    row.refitted |= parameters != row.parameters || companions.touched.contains(&entity);
+    row.change(|row| {
+        row.parameters = parameters;
+        row.companion = companion;
+    });
+    true
 }
 
 /// Looks for an end again; says whether it is still the same kind of end, and if it has moved.

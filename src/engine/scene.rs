@@ -13,7 +13,8 @@ use bevy::prelude::*;
 use bevy_rapier3d::prelude::RapierRigidBodySet;
 use bevy_rapier3d::rapier::dynamics::RigidBodyHandle;
 
-/// The scene as the engine's step sees it.
+/// The scene as the engine's step sees it. It has a field for all that one stage of a step leaves for another, and no more:
+/// a stage takes those that it needs by their names.
 #[derive(Resource, Default)]
 pub struct Scene {
     /// In the order of the query that finds them, inert ones too.

@@ -47,10 +47,7 @@ pub(crate) fn solve(
     if scene.renewed {
         forces::release(scene, &mut loads, &mut sets, &mut commands);
     }
-    scene.time = 0.0;
-    scene.stepped.clear();
-    scene.delivered = false;
-    scene.engine_went_back = false;
+    scene.begin();
     for (context, mut simulation, mut colliders, mut joints, configuration, lag) in &mut contexts {
         let plan = Plan::new(*mode, time.delta_secs(), lag.diff);
         if plan.time <= 0.0 || !configuration.physics_pipeline_active {
@@ -68,16 +65,7 @@ pub(crate) fn solve(
         };
         let simulation = &mut *simulation;
         let engine = Engine::of(&simulation.integration_parameters, configuration, &plan);
-        let mut step = Step {
-            plan,
-            schedule: plan.schedule(engine.iterations),
-            engine,
-            accuracy: settings.accuracy(),
-            most_substeps: settings.max_substeps.max(1),
-            alike: None,
-            quiet,
-            delivered: AtomicBool::new(false),
-        };
+        let mut step = Step::new(plan, engine, &settings, quiet);
         let mut engine = EngineParts {
             bodies: &mut set.bodies,
             joints: &mut joints,
@@ -95,11 +83,8 @@ pub(crate) fn solve(
         let held_asleep = scene.step_held(view, &mut step, &mut engine, finest, &mut spare.inside);
         let free_asleep = scene.step_free(context, &step, engine.bodies, &mut spare.free);
         let all_asleep = held_asleep && free_asleep;
-        let sweeps = &mut simulation
-            .integration_parameters
-            .num_internal_pgs_iterations;
-        let told = scene.sweeps.entry(context).or_default();
-        told.raise(sweeps, spare.inside.sweeps());
+        let sweeps = spare.inside.sweeps();
+        scene.raise_sweeps(context, &mut simulation.integration_parameters, sweeps);
         scene.still.note(context, all_asleep);
         scene.delivered |= step.delivered.into_inner();
     }
@@ -122,7 +107,41 @@ impl Engine {
     }
 }
 
+impl Step {
+    fn new(plan: Plan, engine: Engine, settings: &CoiloverSettings, quiet: bool) -> Self {
+        Self {
+            plan,
+            schedule: plan.schedule(engine.iterations),
+            engine,
+            accuracy: settings.accuracy(),
+            most_substeps: settings.max_substeps.max(1),
+            alike: None,
+            quiet,
+            delivered: AtomicBool::new(false),
+        }
+    }
+}
+
 impl Scene {
+    /// Forgets what was so of the last step alone.
+    fn begin(&mut self) {
+        self.time = 0.0;
+        self.stepped.clear();
+        self.delivered = false;
+        self.engine_went_back = false;
+    }
+
+    /// Tells a context how many sweeps over all joints and contacts a substep takes.
+    fn raise_sweeps(
+        &mut self,
+        context: Entity,
+        parameters: &mut IntegrationParameters,
+        sweeps: usize,
+    ) {
+        let told = self.sweeps.entry(context).or_default();
+        told.raise(&mut parameters.num_internal_pgs_iterations, sweeps);
+    }
+
     /// Whether there is anything to do in a context, and then, whether nothing has been changed in it since the last step.
     fn is_to_step(
         &self,

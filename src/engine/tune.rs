@@ -103,18 +103,23 @@ impl Finder<'_, '_> {
         inverse_mass(&line, |body| lever.handles[body], all)
     }
 
+    /// Gravity of the context in which an element's ends are, m/s².
+    fn gravity_at(&self, places: &[Place; 2]) -> Vec3 {
+        let on = |place: &Place| match place {
+            Place::OnBody { context, .. } => Some(*context),
+            Place::Point(_) => None,
+        };
+        let context = places.iter().find_map(on);
+        let configuration = context.and_then(|context| self.configurations.get(context).ok());
+        configuration.map_or(Vec3::ZERO, |configuration| configuration.gravity)
+    }
+
     /// An element's line as it is now, if it has one and either end can move.
     pub(super) fn lever(&self, guide: Guide, places: &[Place; 2]) -> Option<Lever> {
         let (mut bodies, mut handles) = (Vec::new(), Vec::new());
         let mut context = None;
         let mut can_touch = false;
-        let on = |place: &Place| match place {
-            Place::OnBody { context, .. } => Some(*context),
-            Place::Point(_) => None,
-        };
-        let gravity = places.iter().find_map(on);
-        let gravity = gravity.and_then(|context| self.configurations.get(context).ok());
-        let gravity = gravity.map_or(Vec3::ZERO, |configuration| configuration.gravity);
+        let gravity = self.gravity_at(places);
         let ends = places.map(|place| match place {
             Place::Point(at) => End::Path(Path::straight(at, DVec3::ZERO)),
             Place::OnBody {

@@ -6,7 +6,7 @@ use crate::dynamics::network::{damper_placement, placement, settling};
 use bevy::math::DVec3;
 
 /// One element within a kick.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Bar {
     pub ends: [u32; 2],
     wire: u32,
@@ -114,13 +114,7 @@ impl Points {
                 direction: u,
                 length,
                 axial,
-                load: DVec3::ZERO,
-                turning: 0.0,
-                turns: 0.0,
-                drag: 0.0,
-                damping: 0.0,
-                along: 0.0,
-                across: 0.0,
+                ..Bar::default()
             };
             bar.turns = bar.turning_at(lateral_square, step);
             let stiffest = wire

@@ -50,6 +50,30 @@ struct Frame {
     along: Along,
 }
 
+impl Frame {
+    /// A joint here, of these stiffness and damping, force and its limit.
+    fn joint(
+        &self,
+        substep: f64,
+        [stiffness, damping]: [f64; 2],
+        target: f64,
+        [force, most]: [f64; 2],
+    ) -> SoftJoint {
+        SoftJoint {
+            bodies: self.bodies,
+            anchors: self.anchors,
+            rotations: self.rotations,
+            along: self.along,
+            substep: single(substep),
+            stiffness: single(stiffness),
+            damping: single(damping),
+            target: single(target),
+            force: single(force),
+            most: single(most),
+        }
+    }
+}
+
 impl Order {
     /// How much more the joint's own coordinate weighs than the element's: that of a twist is an angle about its gradient.
     fn leverage(&self) -> f64 {
@@ -79,19 +103,11 @@ impl Order {
         let scale = self.leverage();
         let inverse_mass: f64 = self.line.holds.iter().map(|h| h.most_inverse_mass()).sum();
         let nothing = NOTHING / (inverse_mass * substep).max(f64::MIN_POSITIVE);
-        let joint =
-            |[stiffness, damping]: [f64; 2], target: f64, [force, most]: [f64; 2]| SoftJoint {
-                bodies: frame.bodies,
-                anchors: frame.anchors,
-                rotations: frame.rotations,
-                along: frame.along,
-                substep: substep as f32,
-                stiffness: single(scale * scale * stiffness),
-                damping: single((scale * scale * damping).max(nothing)),
-                target: single(target),
-                force: single(scale * force),
-                most: single(scale * most),
-            };
+        let joint = |[stiffness, damping]: [f64; 2], target: f64, forces: [f64; 2]| {
+            let square = scale * scale;
+            let rates = [square * stiffness, (square * damping).max(nothing)];
+            frame.joint(substep, rates, target, forces.map(|force| scale * force))
+        };
         let mut wanted = Wanted::default();
         for (i, piece) in self.pieces.iter().enumerate() {
             let Tangent {

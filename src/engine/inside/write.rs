@@ -166,22 +166,12 @@ impl Solver {
             if !group.inside {
                 stagger(plan, -0.5 * h, &members, bodies, engine.bodies);
             }
-            join(
-                plan,
-                &mut self.wanted,
-                &members,
-                elements,
-                engine,
-                [h, time],
-            );
+            let wanted = &mut self.wanted;
+            join(plan, wanted, &members, elements, engine, [h, time]);
             for e in members.elements {
                 let row = &mut elements[*e];
-                let active = row.inside.as_ref().is_some_and(|inside| inside.active);
-                row.outcome = if active {
-                    fineness.outcome(substeps)
-                } else {
-                    Default::default()
-                };
+                let acts = row.inside.as_ref().is_some_and(|inside| inside.active);
+                row.outcome = acts.then(|| fineness.outcome(substeps)).unwrap_or_default();
             }
             for b in members.bodies {
                 let row = &mut bodies[*b];

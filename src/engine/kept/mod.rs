@@ -77,7 +77,7 @@ struct KeptElement {
     memory: Memory,
 }
 
-/// A body that elements move.
+/// A body that elements move: all fields of its row that are not found anew.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 struct KeptBody {

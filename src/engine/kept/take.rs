@@ -126,6 +126,7 @@ fn take_element(row: &ElementRow, places: &[u32], world: &World) -> KeptElement 
     }
 }
 
+/// All fields by their names, a line each, so that none of a body is forgotten.
 fn take_body(row: &BodyRow, world: &World) -> KeptBody {
     let BodyRow {
         entity,

@@ -30,7 +30,8 @@ pub(in crate::engine) struct Rest {
     pub is_long: bool,
 }
 
-/// One movable body that elements act on. What every step needs stands first: see [`ElementRow`].
+/// One movable body that elements act on. What every step needs stands first, and all of a body in one row, so that it comes from
+/// memory at once: see [`ElementRow`].
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub(in crate::engine) struct BodyRow {
