@@ -4,6 +4,7 @@ use super::linkage::Holding;
 use super::plan::Plan;
 use crate::compat;
 use crate::dynamics::soft::Fineness;
+use crate::dynamics::tolerance::Outcome;
 use crate::engine::body::Push;
 use crate::engine::group::Groups;
 use crate::engine::held::Inside;
@@ -171,7 +172,11 @@ impl Solver {
             for e in members.elements {
                 let row = &mut elements[*e];
                 let acts = row.inside.as_ref().is_some_and(|inside| inside.active);
-                row.outcome = acts.then(|| fineness.outcome(substeps)).unwrap_or_default();
+                row.outcome = if acts {
+                    fineness.outcome(substeps)
+                } else {
+                    Outcome::default()
+                };
             }
             for b in members.bodies {
                 let row = &mut bodies[*b];
