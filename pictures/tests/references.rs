@@ -6,6 +6,7 @@
 
 use image::{RgbImage, imageops};
 use pictures::{command, root};
+use std::process::Stdio;
 
 const SCENES: [&str; 22] = [
     "linear_spring",
@@ -57,15 +58,23 @@ fn likeness(a: &RgbImage, b: &RgbImage) -> f64 {
 #[test]
 fn the_examples_look_as_they_did_and_their_checks_hold() {
     let kept = root().join("pictures/references");
-    for scene in SCENES {
-        let shot = std::env::temp_dir().join(format!("{scene}_{}.png", std::process::id()));
-        let run = command(scene)
-            .arg("--screenshot")
-            .arg(&shot)
-            .output()
-            .expect("the example runs");
+    let shot =
+        |scene: &str| std::env::temp_dir().join(format!("{scene}_{}.png", std::process::id()));
+    // Two at a time: what is computed is one thread's work.
+    let seen = SCENES.chunks(2).flat_map(|pair| {
+        let begin = |scene: &&'static str| {
+            let mut seen = command(scene);
+            seen.arg("--screenshot").arg(shot(scene));
+            seen.stdout(Stdio::piped()).stderr(Stdio::piped());
+            (*scene, seen.spawn().expect("the example starts"))
+        };
+        pair.iter().map(begin).collect::<Vec<_>>()
+    });
+    for (scene, running) in seen {
+        let run = running.wait_with_output().expect("the example runs");
         let told = String::from_utf8_lossy(&run.stdout);
         assert!(run.status.success(), "{scene}: {told}");
+        let shot = shot(scene);
         if !shot.exists() {
             eprintln!("SKIPPED: {scene} finds no graphics adapter on this machine: {told}");
             return;

@@ -1,7 +1,7 @@
 //! Light bodies that springs and stops drive as fast as the engine lets anything fly or spin: what the engine cuts
 //! off never comes back as energy.
 
-use crate::dice::Dice;
+use crate::dice::{Dice, seeds};
 use crate::harness::*;
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
@@ -116,14 +116,14 @@ fn what_spins_as_fast_as_it_may_wins_no_energy() {
     let mut fastest = 0.0_f64;
     for (light, phase) in [(1e-2, 0.3), (1e-2, 2.0), (1e-4, 5.0), (1e-4, 20.0)] {
         let mut most = 0.0_f64;
-        for seed in 0..24 {
+        for seed in seeds(0..24) {
             let tangle = Tangle::new(seed, mild(light, 0.2, phase), CoiloverPlugin::default());
             let [here, _, spin, _] = tangle.let_go(10.0);
             most = most.max(here);
             fastest = fastest.max(spin);
         }
         println!(
-            "24 tangles, every other body of {light:e} kg, ω·dt {phase}: at most {most:.3} of the energy"
+            "tangles, every other body of {light:e} kg, ω·dt {phase}: at most {most:.3} of the energy"
         );
         assert!(most < 1.05, "{most}");
     }
@@ -143,13 +143,13 @@ fn at_any_setting_too_much_lasts_no_longer_than_a_moment() {
     for (name, plugin) in settings {
         for (light, phase) in [(1e-2, 2.0), (1e-4, 0.3), (1e-4, 20.0)] {
             let (mut most, mut last) = (0.0_f64, 0.0_f64);
-            for seed in 104..120 {
+            for seed in seeds(104..120) {
                 let tangle = Tangle::new(seed, mild(light, 0.05, phase), plugin);
                 let [here, end, ..] = tangle.let_go(3.0);
                 (most, last) = (most.max(here), last.max(end));
             }
             println!(
-                "16 tangles, {light:e} kg, ω·dt {phase}, {name}: at most {most:.3} of the energy, {last:.3} in the end"
+                "tangles, {light:e} kg, ω·dt {phase}, {name}: at most {most:.3} of the energy, {last:.3} in the end"
             );
             assert!(most < 1.25 && last < 1.05, "{most}, {last}");
         }
@@ -160,14 +160,14 @@ fn at_any_setting_too_much_lasts_no_longer_than_a_moment() {
 fn what_flies_as_fast_as_it_may_wins_no_energy() {
     for microsteps in [1, 4] {
         let (mut most, mut fastest) = (0.0_f64, 0.0_f64);
-        for seed in 0..24 {
+        for seed in seeds(0..24) {
             let plugin = CoiloverPlugin::default().with_microsteps(microsteps);
             let tangle = Tangle::new(seed, [1e-2, 0.0, 100.0, 3.0], plugin);
             let [here, _, _, speed] = tangle.let_go(3.0);
             (most, fastest) = (most.max(here), fastest.max(speed));
         }
         println!(
-            "24 tangles, {microsteps} micro-steps: {fastest:.0} m/s, at most {most:.3} of the energy"
+            "tangles, {microsteps} micro-steps: {fastest:.0} m/s, at most {most:.3} of the energy"
         );
         assert!(most < 1.05, "{most}");
         assert!(fastest > 399.0, "{fastest} m/s");

@@ -1,6 +1,6 @@
 //! Random networks of mixed laws: whatever is put together stays bounded.
 
-use crate::dice::Dice;
+use crate::dice::{Dice, seeds};
 use crate::harness::*;
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
@@ -170,11 +170,12 @@ fn scene(seed: u64, phase: f32) -> f64 {
 }
 
 #[test]
-fn two_hundred_networks_of_mixed_laws_stay_bounded() {
+fn networks_of_mixed_laws_stay_bounded() {
     for (i, phase) in [0.1, 1.0, 10.0, 100.0].into_iter().enumerate() {
-        let gains: Vec<f64> = (0..50).map(|n| scene(4 * n + i as u64, phase)).collect();
+        let seeds = seeds(0..50).into_iter();
+        let gains: Vec<f64> = seeds.map(|n| scene(4 * n + i as u64, phase)).collect();
         let most = gains.iter().copied().fold(0.0, f64::max);
-        println!("50 random networks at ω·dt {phase}: energy gained at most {most:.1e}");
+        println!("random networks at ω·dt {phase}: energy gained at most {most:.1e}");
         assert!(most < 0.05, "{most}");
     }
 }
