@@ -15,6 +15,11 @@ use bevy_rapier3d::rapier::dynamics::RigidBodyHandle;
 /// Damping that is nothing, as a share of mass over substep: the engine divides by it.
 const NOTHING: f64 = 1e-6;
 
+/// Speed that an element may give its ends in one substep, m/s or rad/s: far more than the engine lets anything have, so
+/// that a light hook can carry a heavy load. Without a bound, joints that contradict each other have it push until numbers
+/// overflow. Pinned by `attack`.
+const SWIFTEST: f64 = 1e7;
+
 /// One element that acts.
 pub(super) struct Order {
     /// Index of its row.
@@ -102,11 +107,13 @@ impl Order {
             .map_or(0.0, |turn| turn.across_damping(time));
         let scale = self.leverage();
         let inverse_mass: f64 = self.line.holds.iter().map(|h| h.most_inverse_mass()).sum();
-        let nothing = NOTHING / (inverse_mass * substep).max(f64::MIN_POSITIVE);
-        let joint = |[stiffness, damping]: [f64; 2], target: f64, forces: [f64; 2]| {
+        let per_speed = (inverse_mass * substep).max(f64::MIN_POSITIVE).recip();
+        let (nothing, bound) = (NOTHING * per_speed, SWIFTEST * per_speed);
+        let joint = |[stiffness, damping]: [f64; 2], target: f64, [force, most]: [f64; 2]| {
             let square = scale * scale;
             let rates = [square * stiffness, (square * damping).max(nothing)];
-            frame.joint(substep, rates, target, forces.map(|force| scale * force))
+            let forces = [scale * force, (scale * most).min(bound)];
+            frame.joint(substep, rates, target, forces)
         };
         let mut wanted = Wanted::default();
         for (i, piece) in self.pieces.iter().enumerate() {

@@ -95,7 +95,7 @@ impl Scene {
         let narrow = view.narrow;
         let awake = solver.read(step, g, &members, elements, bodies, engine, narrow, stale);
         if !held && awake {
-            solver.release(groups, elements, bodies, engine);
+            solver.release(step, groups, elements, bodies, engine);
         }
         if let Some(index) = groups.list()[g].assembly {
             assemblies[index].forget();

@@ -165,7 +165,7 @@ impl Solver {
             let substeps = chosen as u32 * calls;
             self.sweeps = self.sweeps.max(plan.sweeps(h));
             if !group.inside {
-                stagger(plan, -0.5 * h, &members, bodies, engine.bodies);
+                stagger(plan, -0.5 * h, step, &members, bodies, engine.bodies);
             }
             let wanted = &mut self.wanted;
             join(plan, wanted, &members, elements, engine, [h, time]);
@@ -196,6 +196,7 @@ impl Solver {
     /// Takes a component out of the engine's solver again; it has been read last.
     pub(in crate::engine) fn release(
         &mut self,
+        step: &Step,
         groups: &mut Groups,
         elements: &mut [ElementRow],
         bodies: &mut [BodyRow],
@@ -208,7 +209,7 @@ impl Solver {
         let plan = &mut self.plans[used];
         let members = groups.members(&groups.list()[plan.group]);
         let substep = members.bodies.first().map_or(0.0, |b| bodies[*b].substep);
-        stagger(plan, 0.5 * substep, &members, bodies, engine.bodies);
+        stagger(plan, 0.5 * substep, step, &members, bodies, engine.bodies);
         leave(&members, elements, bodies, engine);
         groups.at(plan.group).inside = false;
     }
@@ -261,8 +262,16 @@ pub(in crate::engine) fn leave(
 }
 
 /// In the engine's solver velocities are those of half a substep ago. Takes those of a component there, or back again, by
-/// what acts on its bodies; but for bodies that contacts press, of which only the engine knows what acts.
-fn stagger(plan: &Plan, by: f64, members: &Members, bodies: &[BodyRow], set: &mut RigidBodySet) {
+/// what acts on its bodies, as far as the engine lets them move; but for bodies that contacts press, of which only the
+/// engine knows what acts.
+fn stagger(
+    plan: &Plan,
+    by: f64,
+    step: &Step,
+    members: &Members,
+    bodies: &[BodyRow],
+    set: &mut RigidBodySet,
+) {
     let mut moved = plan.bodies.clone();
     for body in &mut moved {
         let inverse_inertia = body.inverse_inertia();
@@ -276,12 +285,15 @@ fn stagger(plan: &Plan, by: f64, members: &Members, bodies: &[BodyRow], set: &mu
     }
     for (b, moved) in members.bodies.iter().zip(&moved) {
         let row = &bodies[*b];
+        let Some(body) = set.get_mut(row.handle).filter(|_| !row.pressed) else {
+            continue;
+        };
+        let velocity = moved.velocity.clamp_length_max(step.engine.fastest);
+        let fastest_spin = step.farthest_turn(body) / step.plan.time;
         let spin = moved.angular_velocity();
-        if let Some(body) = set.get_mut(row.handle)
-            && !row.pressed
-            && (moved.velocity + spin).is_finite()
-        {
-            body.set_linvel(moved.velocity.as_vec3(), false);
+        let spin = spin.clamp_length_max(fastest_spin.min(f64::from(f32::MAX)));
+        if (velocity + spin).is_finite() {
+            body.set_linvel(velocity.as_vec3(), false);
             body.set_angvel(spin.as_vec3(), false);
         }
     }

@@ -150,3 +150,41 @@ fn a_torsion_spring_on_bodies_that_cannot_turn_says_so_once() {
     assert!(lab.app.world().get::<SpringFault>(torsion).is_none());
     assert!(lab.get::<Velocity>(b).angular.length() > 0.1);
 }
+
+/// A joint holds it, so that the engine solves it.
+#[test]
+fn a_cubic_torsion_spring_wound_beyond_all_numbers_does_no_harm_beside_it() {
+    let mut lab = Lab::new();
+    let still = (RigidBody::KinematicPositionBased, Velocity::default());
+    let post = lab.spawn((still, Transform::default()));
+    let rest = lab.spawn((still, Transform::from_xyz(0.0, 3.0, 0.0)));
+    let wheel = lab.spawn((
+        brick(2.0, Vec3::splat(0.1), Vec3::X),
+        ImpulseJoint::new(post, SphericalJointBuilder::new().local_anchor1(Vec3::X)),
+    ));
+    lab.spawn((
+        TorsionSpringDamper::new(post, wheel, Vec3::Y)
+            .with_stiffness(7.5e4)
+            .with_damping(7.6)
+            .with_rest_angle(1e12),
+        SpringLaw::Cubic,
+    ));
+    lab.spawn((
+        SpringDamper::new(rest, wheel)
+            .with_stiffness(500.0)
+            .with_damping(5.0)
+            .with_rest_length(1.0),
+        Anchors::new(Vec3::ZERO, Vec3::Z * 0.2),
+    ));
+    for tick in 0..120 {
+        lab.tick();
+        for body in [post, rest, wheel] {
+            let now = lab.get::<Velocity>(body);
+            let sound = now.linear.is_finite() && now.angular.is_finite();
+            assert!(
+                sound && lab.position(body).is_finite(),
+                "tick {tick}: {now:?}"
+            );
+        }
+    }
+}
