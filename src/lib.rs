@@ -7,17 +7,19 @@
 mod compat {
     include!(concat!(env!("CARGO_MANIFEST_DIR"), "/src/compat.rs"));
 }
+mod backend;
 mod diagnostics;
 mod dynamics;
 mod element;
-mod engine;
 mod functions;
 #[cfg(feature = "gltf")]
 mod gltf;
+mod input;
 mod mouse_spring;
 mod plugin;
 mod readout;
 mod recommend;
+mod scene;
 mod settings;
 mod snapshot;
 #[cfg(feature = "visual")]
@@ -25,6 +27,7 @@ mod visual;
 #[cfg(feature = "workbench")]
 mod workbench;
 
+pub use backend::rapier::forces::SpringLoad;
 pub use diagnostics::CoiloverDiagnosticsPlugin;
 pub use element::{
     Anchors, Breakable, CustomDampingLaw, CustomSpringLaw, Damper, DampingLaw, EndNames, ForceLaw,
@@ -32,7 +35,6 @@ pub use element::{
     SpringBroke, SpringDamper, SpringFault, SpringLaw, SpringTravel, SpringTuning, TorsionDamper,
     TorsionSpring, TorsionSpringDamper, WhenBroken, WorldAnchors, wire_stiffness,
 };
-pub use engine::SpringLoad;
 #[cfg(feature = "gltf")]
 pub use gltf::{CoiloverGltfPlugin, ExportedGltf, export_gltf};
 pub use mouse_spring::MouseSpring;

@@ -1,9 +1,12 @@
 //! The physics plugin: schedule and system sets.
 
+use crate::backend::rapier::forces::SpringLoad;
+use crate::backend::rapier::setup::Watched;
 use crate::element::*;
-use crate::engine::{self, Role, Scene, SpringLoad, Strays, Watched};
+use crate::input::strays::{Role, Strays};
 use crate::mouse_spring::{self, Grip, MouseSpring};
 use crate::readout::SpringReadout;
+use crate::scene::state::Scene;
 use crate::settings::CoiloverSettings;
 use bevy::ecs::schedule::ScheduleLabel;
 use bevy::prelude::*;
@@ -144,14 +147,17 @@ impl Plugin for CoiloverPlugin {
             .init_resource::<Scene>()
             .init_resource::<Watched>()
             .init_resource::<Strays>()
-            .add_systems(PreStartup, engine::check_schedule);
+            .add_systems(PreStartup, crate::backend::rapier::setup::check_schedule);
         if let Some(hertz) = self.rate {
             set_rates(app, hertz);
         }
         notice_strays(app);
 
         let schedule = self.settings.schedule;
-        app.add_systems(schedule, engine::tell_strays.run_if(engine::any_strays));
+        app.add_systems(
+            schedule,
+            crate::input::strays::tell_strays.run_if(crate::input::strays::any_strays),
+        );
         let any_held = any_with_component::<MouseSpring>.or_else(any_with_component::<Grip>);
         app.add_systems(
             schedule,
@@ -174,23 +180,31 @@ impl Plugin for CoiloverPlugin {
             schedule,
             (
                 (
-                    engine::check_timestep,
-                    engine::find_named_ends.run_if(any_with_component::<AwaitsEnds>),
-                    engine::anchor.run_if(any_with_component::<WorldAnchors>),
-                    engine::prepare,
+                    crate::backend::rapier::setup::check_timestep,
+                    crate::input::named_ends::find_named_ends
+                        .run_if(any_with_component::<AwaitsEnds>),
+                    crate::input::anchoring::anchor.run_if(any_with_component::<WorldAnchors>),
+                    crate::backend::rapier::prepare::prepare,
                 )
                     .chain_ignore_deferred()
                     .in_set(CoiloverSystems::Prepare),
-                (engine::read_users, engine::solve)
+                (
+                    crate::backend::rapier::forces::read_users,
+                    crate::backend::rapier::solve::solve,
+                )
                     .chain()
                     .in_set(CoiloverSystems::Solve),
-                (engine::mark, engine::measure, engine::break_overloaded)
+                (
+                    crate::backend::rapier::solve::mark,
+                    crate::backend::rapier::measure::measure,
+                    crate::scene::breaking::break_overloaded,
+                )
                     .chain()
                     .in_set(CoiloverSystems::Readout),
             )
                 // Without Rapier there is nothing to do, and a message has said so.
                 .run_if(resource_exists::<TimestepMode>)
-                .run_if(engine::in_place),
+                .run_if(crate::backend::rapier::setup::in_place),
         );
     }
 }
@@ -238,7 +252,7 @@ fn set_rates(app: &mut App, hertz: f64) {
 
 /// What stands where no element is does nothing, and that is told.
 fn notice_strays(app: &mut App) {
-    use engine::notice;
+    use crate::input::strays::notice;
     notice::<Anchors>(app, Role::Companion, "Anchors");
     notice::<WorldAnchors>(app, Role::Companion, "WorldAnchors");
     notice::<EndNames>(app, Role::Companion, "EndNames");

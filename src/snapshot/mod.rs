@@ -6,7 +6,7 @@ mod rapier;
 pub use error::SnapshotError;
 pub use rapier::RapierSnapshot;
 
-use crate::engine::Kept;
+use crate::scene::kept::Kept;
 use bevy::ecs::entity::{EntityMapper, MapEntities};
 use bevy::prelude::*;
 

@@ -1,8 +1,7 @@
 //! What the view asks for and cannot do itself: the clock, the clipboard, files.
 
-use super::CoiloverWorkbench;
 use super::bench::{Ask, Bench};
-use super::clipboard;
+use super::{CoiloverWorkbench, clipboard};
 use bevy::prelude::*;
 use bevy::render::view::screenshot::{Screenshot, save_to_disk};
 use std::path::{Path, PathBuf};

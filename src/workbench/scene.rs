@@ -6,7 +6,7 @@ use super::handles::Handles;
 use super::model::snapshot::Snapshot;
 use super::pointer::{Pointer, STILL};
 use super::{CoiloverWorkbench, commands, is_open, view};
-use crate::engine::IsElement;
+use crate::input::parts::IsElement;
 use bevy::gizmos::AppGizmoBuilder;
 use bevy::gizmos::config::{GizmoConfigGroup, GizmoConfigStore};
 use bevy::gizmos::gizmos::Gizmos;

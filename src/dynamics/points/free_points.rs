@@ -2,8 +2,7 @@
 //! nothing but its points' places has to be read again.
 
 use super::{Point, Points, Wire};
-use crate::dynamics::body::Body;
-use crate::dynamics::body::is_within;
+use crate::dynamics::body::{Body, is_within};
 use crate::dynamics::element::{Element, End};
 use bevy::math::DVec3;
 

@@ -3,7 +3,7 @@
 use super::figures::Load;
 use super::snapshot::Snapshot;
 use crate::element::SpringAction;
-use crate::engine::Curve;
+use crate::input::curve::Curve;
 use crate::readout::SpringReadout;
 use bevy::prelude::*;
 

@@ -1,0 +1,92 @@
+//! What an end is: a body, a point below a body, or a point that the game moves.
+
+use super::body::id;
+use crate::backend::Place;
+use crate::input::check::Fault;
+use bevy::ecs::system::SystemParam;
+use bevy::math::{DAffine3, DVec3};
+use bevy::prelude::*;
+use bevy_rapier3d::prelude::*;
+
+/// Finds ends.
+#[derive(SystemParam)]
+pub(crate) struct Ends<'w, 's> {
+    bodies: Query<
+        'w,
+        's,
+        (
+            &'static RapierRigidBodyHandle,
+            &'static RapierContextEntityLink,
+            Option<&'static GlobalTransform>,
+        ),
+    >,
+    places: Query<'w, 's, (Option<&'static Transform>, Option<&'static ChildOf>)>,
+}
+
+impl Ends<'_, '_> {
+    /// Walks up from the entity to the first body, or to the root.
+    ///
+    /// Local transforms are composed here rather than read from `GlobalTransform`, which is stale
+    /// for children within a fixed tick and interpolated for bodies.
+    pub(crate) fn find(
+        &self,
+        end: Entity,
+        anchor: Vec3,
+        field: &'static str,
+        scale: &mut Option<DVec3>,
+    ) -> Result<Place, Fault> {
+        let mut point = anchor.as_dvec3();
+        let mut current = end;
+        loop {
+            if let Ok((handle, link, global)) = self.bodies.get(current) {
+                if point != DVec3::ZERO {
+                    point *= steady_scale(global, scale);
+                }
+                return Ok(Place::OnBody {
+                    entity: current,
+                    body: id(handle.0),
+                    context: link.0,
+                    local: point,
+                });
+            }
+            let (transform, parent) = self.places.get(current).map_err(|_| {
+                Fault::new(field, "is an entity that does not exist or is disabled")
+            })?;
+            let Some(transform) = transform else {
+                if current == end {
+                    return Err(Fault::new(
+                        field,
+                        "has neither a rigid body (on itself or above it) nor a Transform",
+                    ));
+                }
+                break;
+            };
+            point = DAffine3::from_scale_rotation_translation(
+                transform.scale.as_dvec3(),
+                transform.rotation.as_dquat(),
+                transform.translation.as_dvec3(),
+            )
+            .transform_point3(point);
+            match parent {
+                Some(parent) => current = parent.parent(),
+                None => break,
+            }
+        }
+        if point.is_finite() {
+            Ok(Place::Point(point))
+        } else {
+            Err(Fault::new(field, "has a Transform that is not finite"))
+        }
+    }
+}
+
+/// The body's global scale. A rotating transform's scale flickers in the last bits, which would make
+/// the anchor tremble, so a change below 1e-4 is none.
+fn steady_scale(global: Option<&GlobalTransform>, last: &mut Option<DVec3>) -> DVec3 {
+    let now = global.map_or(DVec3::ONE, |g| g.scale().as_dvec3());
+    let known = last.unwrap_or(DVec3::ONE);
+    let same = (now - known).abs().cmple(known.abs() * 1e-4).all();
+    let scale = if same { known } else { now };
+    *last = Some(scale);
+    scale
+}

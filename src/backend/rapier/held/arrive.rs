@@ -1,0 +1,49 @@
+//! How a step inside the engine's solver went.
+
+use crate::scene::rows::ElementRow;
+use bevy::math::DVec3;
+
+/// Share of what a law owes its bodies that is kept from step to step: lost energy is given back only soon after.
+const KEPT: f64 = 0.8;
+
+impl ElementRow {
+    /// Takes in how a step went that ended with such a length. `moved` are ends that something else moves, and how far it
+    /// moved or turned them.
+    pub(crate) fn arrive_inside(
+        &mut self,
+        length: f64,
+        moved: [Option<DVec3>; 2],
+        time: f64,
+    ) -> (f64, f64) {
+        let Some(inside) = &self.inside else {
+            return (length, 0.0);
+        };
+        let (from, pieces, direction) = (inside.from, inside.pieces, inside.direction);
+        let rate = (length - from) / time;
+        let middle = 0.5 * (from + length);
+        let drag = self.drag(middle, rate);
+        let heat = drag * rate * time;
+        let won = if self.companion.law.is_some() {
+            let stored = |length: f64| self.elastic(length).energy;
+            stored(length) - stored(from) - pieces.work([from, length])
+        } else {
+            0.0
+        };
+        let tension = pieces.tension(middle, 0.0) + drag;
+        let mut work = 0.0;
+        for (by, sign) in moved.into_iter().zip([-1.0, 1.0]) {
+            work += sign * tension * by.map_or(0.0, |by| by.dot(direction));
+        }
+        if heat.is_finite() && work.is_finite() {
+            self.ledger.dissipated += heat.max(0.0);
+            self.ledger.work += work;
+        }
+        if let Some(inside) = &mut self.inside {
+            let owed = inside.debt + won;
+            inside.debt = if owed < 0.0 { KEPT * owed } else { owed };
+            let last = inside.rates.map_or(rate, |rates| rates[0]);
+            inside.rates = Some([rate, last]);
+        }
+        (length, rate)
+    }
+}

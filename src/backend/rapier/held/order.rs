@@ -1,0 +1,207 @@
+//! What one element is to do inside the engine's solver, and the joints that make it do so.
+
+use crate::backend::BodyId;
+use crate::dynamics::element::Element;
+use crate::dynamics::guide::Guide;
+use crate::dynamics::line::Line;
+use crate::dynamics::pieces::{Outreach, Pieces};
+use crate::dynamics::single;
+use crate::dynamics::soft::{self, Tangent};
+use crate::scene::held::{Along, SoftJoint, Turn, Wanted};
+use crate::scene::rows::{ElementRow, Held};
+use bevy::math::{DQuat, DVec3, Quat, Vec3};
+
+/// Damping that is nothing, as a share of mass over substep: the engine divides by it.
+const NOTHING: f64 = 1e-6;
+
+/// Speed that an element may give its ends in one substep, m/s or rad/s: far more than the engine lets anything have, so
+/// that a light hook can carry a heavy load. Without a bound, joints that contradict each other have it push until numbers
+/// overflow. Pinned by `attack`.
+const SWIFTEST: f64 = 1e7;
+
+/// One element that acts.
+pub(crate) struct Order {
+    /// Index of its row.
+    pub row: usize,
+    pub element: Element,
+    pub line: Line,
+    /// Length at the start of the step.
+    pub from: f64,
+    /// Rotations of what holds both ends.
+    pub facings: [DQuat; 2],
+    pub pieces: Pieces,
+    /// How far it may come over the step.
+    pub reach: Outreach,
+    /// Bound on the stiffest mode that it takes part in, rad/s.
+    pub omega: f64,
+    /// Bound on that mode where contacts hold still what they press, rad/s.
+    pub lively: f64,
+    /// A contact touches what it holds.
+    pub touched: bool,
+    /// Its damper is solved before all springs. Joints answer a spring only after it is solved, so a damper must not see
+    /// what springs do to bodies that joints hold. Contacts are warm-started: they have answered by then.
+    pub apart: bool,
+    /// Of a torsion element.
+    pub turn: Option<Turn>,
+    /// Share that joints leave of its inverse mass.
+    pub jointed: f64,
+}
+
+struct Frame {
+    bodies: [BodyId; 2],
+    anchors: [Vec3; 2],
+    rotations: [Quat; 2],
+    along: Along,
+}
+
+impl Frame {
+    /// A joint here, of these stiffness and damping, force and its limit.
+    fn joint(
+        &self,
+        substep: f64,
+        [stiffness, damping]: [f64; 2],
+        target: f64,
+        [force, most]: [f64; 2],
+    ) -> SoftJoint {
+        SoftJoint {
+            bodies: self.bodies,
+            anchors: self.anchors,
+            rotations: self.rotations,
+            along: self.along,
+            substep: single(substep),
+            stiffness: single(stiffness),
+            damping: single(damping),
+            target: single(target),
+            force: single(force),
+            most: single(most),
+        }
+    }
+}
+
+impl Order {
+    /// How much more the joint's own coordinate weighs than the element's: that of a twist is an angle about its gradient.
+    fn leverage(&self) -> f64 {
+        self.turn.as_ref().map_or(1.0, |turn| turn.leverage)
+    }
+
+    /// Stiffness of the joint's coordinate.
+    pub(crate) fn stiffness(&self) -> f64 {
+        self.leverage().powi(2) * self.pieces.stiffness()
+    }
+
+    /// The joints that make it act in substeps of so long; none where there is no force. `holders` are the bodies at
+    /// both ends.
+    pub(crate) fn joints(
+        &mut self,
+        row: &ElementRow,
+        holders: [BodyId; 2],
+        substep: f64,
+        time: f64,
+    ) -> Option<Wanted> {
+        let frame = self.frame(row, holders);
+        let law = self.element.law.as_ref();
+        let across = self
+            .turn
+            .as_ref()
+            .map_or(0.0, |turn| turn.across_damping(time));
+        let scale = self.leverage();
+        let inverse_mass: f64 = self.line.holds.iter().map(|h| h.most_inverse_mass()).sum();
+        let per_speed = (inverse_mass * substep).max(f64::MIN_POSITIVE).recip();
+        let (nothing, bound) = (NOTHING * per_speed, SWIFTEST * per_speed);
+        let joint = |[stiffness, damping]: [f64; 2], target: f64, [force, most]: [f64; 2]| {
+            let square = scale * scale;
+            let rates = [square * stiffness, (square * damping).max(nothing)];
+            let forces = [scale * force, (scale * most).min(bound)];
+            frame.joint(substep, rates, target, forces)
+        };
+        let mut wanted = Wanted::default();
+        for (i, piece) in self.pieces.iter().enumerate() {
+            let Tangent {
+                stiffness, damping, ..
+            } = piece.tangent;
+            let force = piece.tangent.elastic(self.from);
+            if stiffness == 0.0 && damping == 0.0 && force == 0.0 {
+                continue;
+            }
+            let (middle, most) = piece.middle();
+            let apart = self.apart && i == 0 && damping > 0.0 && most == f64::INFINITY;
+            let left = Tangent {
+                damping: if apart { 0.0 } else { damping },
+                ..piece.tangent
+            };
+            let acting = soft::damping(&left, [self.omega, self.lively], substep)
+                .max(across * stiffness.abs());
+            if let Some(turn) = self.turn.as_mut().filter(|_| i == 0) {
+                turn.damping = acting + if apart { damping } else { 0.0 };
+            }
+            // A linear force is the same in every step; others are measured from where they are now.
+            let (target, offset) = match (law, self.turn.is_some()) {
+                (_, true) => (0.0, force),
+                (None, false) => (self.element.rest_length, 0.0),
+                (Some(_), false) => (self.from, force),
+            };
+            if apart {
+                wanted.damper = Some(joint([0.0, damping], target, [0.0, most]));
+            }
+            if middle != 0.0 {
+                // A motor's range lies evenly about zero. One that is always at its limit moves that of the spring.
+                wanted.push(joint([0.0; 2], target, [2.0 * middle, middle.abs()]));
+            }
+            wanted.push(joint([stiffness, acting], target, [offset - middle, most]));
+        }
+        (!wanted.is_empty()).then_some(wanted)
+    }
+
+    fn frame(&self, row: &ElementRow, holders: [BodyId; 2]) -> Frame {
+        let anchors = row.held.map(|held| match held {
+            Held::Body { local, .. } => local.as_vec3(),
+            Held::Path { .. } => Vec3::ZERO,
+        });
+        let mut frame = Frame {
+            bodies: holders,
+            anchors,
+            rotations: [Quat::IDENTITY; 2],
+            along: Along::Distance,
+        };
+        let x_to = |axis: DVec3| DQuat::from_rotation_arc(DVec3::X, axis);
+        match self.element.guide {
+            Guide::Centres => {}
+            Guide::OfA(axis) => {
+                frame.along = Along::Slide;
+                frame.rotations[0] = x_to(axis).as_quat();
+            }
+            Guide::World(axis) => {
+                frame.along = Along::Slide;
+                let [a, b] = self.facings;
+                // Rapier pushes both bodies at the second anchor, so that one is on a body that can be turned.
+                if self.line.holds[1].body.is_none() {
+                    frame.bodies.swap(0, 1);
+                    frame.anchors.swap(0, 1);
+                    frame.rotations[0] = x_to(b.inverse() * -axis).as_quat();
+                } else {
+                    frame.rotations[0] = x_to(a.inverse() * axis).as_quat();
+                }
+            }
+            Guide::Twist(_) => {
+                frame.along = Along::Twist;
+                if let Some(turn) = &self.turn {
+                    let first = x_to(turn.axis);
+                    let second = turn.relative.inverse() * first;
+                    frame.rotations = [first.as_quat(), second.as_quat()];
+                }
+            }
+        }
+        frame
+    }
+
+    /// What Rapier's joint along an axis of the world turns body A too much by, N m: it pushes it where body B is.
+    pub(crate) fn excess_torque(&self) -> Option<(usize, DVec3)> {
+        let Guide::World(axis) = self.element.guide else {
+            return None;
+        };
+        let [a, b] = &self.line.holds;
+        let (index, _) = (a.body?, b.body?);
+        let force = self.pieces.tension(self.line.distance(), 0.0) * axis;
+        Some((index, (b.position - a.position).cross(force)))
+    }
+}

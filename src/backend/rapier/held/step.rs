@@ -1,0 +1,217 @@
+//! The components of a context that contacts or joints hold, through the step.
+
+use super::ahead::look_ahead;
+use crate::backend::rapier::body::{handle, id};
+use crate::backend::rapier::held::near::Outlook;
+use crate::backend::rapier::held::touch::{Crowd, Surroundings};
+use crate::backend::rapier::held::write::{Engine, Solver};
+use crate::scene::rows::{BodyRow, ElementRow};
+use crate::scene::state::Scene;
+use crate::scene::step::Step;
+use bevy::prelude::Entity;
+use bevy_rapier3d::rapier::geometry::{DefaultBroadPhase, NarrowPhase};
+
+/// What is known of contacts in a context.
+#[derive(Clone, Copy)]
+pub(crate) struct View<'a> {
+    pub context: Entity,
+    pub narrow: &'a NarrowPhase,
+    pub broad: &'a DefaultBroadPhase,
+}
+
+impl Scene {
+    /// Finds what contacts or joints hold, and has the engine solve it; says whether all of that is asleep. `finest` are the
+    /// most iterations that any body has by its user.
+    pub(crate) fn step_held(
+        &mut self,
+        view: View,
+        step: &mut Step,
+        engine: &mut Engine,
+        finest: usize,
+        solver: &mut Solver,
+    ) -> bool {
+        solver.clear();
+        if !self.changed.is_empty() || self.renewed {
+            add_up(&self.elements, &mut self.bodies);
+        }
+        let new = |row: &BodyRow| row.is_new && row.context == view.context;
+        let any_new = self.bodies.iter().any(new);
+        let crowd = any_new.then(|| Crowd::new(engine.colliders));
+        let mut all_asleep = true;
+        for g in 0..self.groups.list().len() {
+            let group = &self.groups.list()[g];
+            if group.context != view.context {
+                continue;
+            }
+            let members = self.groups.members(group);
+            let (elements, bodies) = (&self.elements, &self.bodies);
+            if group.inside
+                && group.is_asleep
+                && step.quiet
+                && step.is_left_alone(&members, elements, bodies, &engine.sight())
+            {
+                continue;
+            }
+            all_asleep &= self.step_group(g, view, step, engine, crowd.as_ref(), solver);
+        }
+        let Self {
+            elements,
+            bodies,
+            groups,
+            ..
+        } = self;
+        solver.write(step, groups, elements, bodies, engine, finest);
+        let links = engine.joints.multibody_joints.multibodies().next();
+        step.alike = links.map(|_| {
+            let more = |row: &BodyRow| row.raised.substeps();
+            bodies.iter().map(more).max().unwrap_or(0).max(finest)
+        });
+        all_asleep
+    }
+
+    /// Takes a component in if it is held, and lets go of one that no longer is; says whether it needs no solving here.
+    fn step_group(
+        &mut self,
+        g: usize,
+        view: View,
+        step: &Step,
+        engine: &mut Engine,
+        crowd: Option<&Crowd>,
+        solver: &mut Solver,
+    ) -> bool {
+        let held = self.is_held(g, view, step, engine, crowd, solver);
+        let Self {
+            elements,
+            bodies,
+            groups,
+            assemblies,
+            stale,
+            ..
+        } = self;
+        let members = groups.members(&groups.list()[g]);
+        let held = held && !members.elements.is_empty();
+        if !(held || groups.list()[g].inside) {
+            groups.at(g).held = false;
+            return true;
+        }
+        let narrow = view.narrow;
+        let awake = solver.read(step, g, &members, elements, bodies, engine, narrow, stale);
+        if !held && awake {
+            solver.release(step, groups, elements, bodies, engine);
+        }
+        if let Some(index) = groups.list()[g].assembly {
+            assemblies[index].forget();
+        }
+        let group = groups.at(g);
+        group.held = held || !awake;
+        group.is_asleep = !awake;
+        !awake || !held
+    }
+
+    /// Whether contacts or joints hold some body of a component, or may within the step.
+    fn is_held(
+        &mut self,
+        g: usize,
+        view: View,
+        step: &Step,
+        engine: &mut Engine,
+        crowd: Option<&Crowd>,
+        solver: &mut Solver,
+    ) -> bool {
+        let Self {
+            elements,
+            bodies,
+            groups,
+            changed,
+            ..
+        } = self;
+        let members = groups.members(&groups.list()[g]);
+        // What is new may touch something already: the engine does not know before its first step.
+        let any_new = members.bodies.iter().any(|b| bodies[*b].is_new);
+        if any_new {
+            solver.find_pushes(step, &members, elements, bodies, &engine.sight());
+        }
+        let around = Surroundings::new(view.narrow, engine.joints, engine.colliders, crowd);
+        let time = step.plan.time / f64::from(step.plan.calls.max(1));
+        let (mut held, mut stiff, mut clear) = (false, false, u8::MAX);
+        for (slot, b) in members.bodies.iter().enumerate() {
+            let row = &mut bodies[*b];
+            clear = clear.min(row.clear);
+            let push = if any_new { solver.pushes[slot] } else { 0.0 };
+            if (row.can_touch || around.any_joints || row.lingers > 0.0)
+                && let Some(body) = engine.bodies.get_mut(handle(row.id))
+            {
+                held |= around.look(row, body, step.plan.time, push);
+                stiff |= look_ahead(row, body, time);
+            }
+        }
+        // Other numbers may push it elsewhere.
+        let is_changed =
+            !changed.is_empty() && members.elements.iter().any(|e| elements[*e].changed);
+        if is_changed {
+            clear = 0;
+        }
+        if stiff && !held && clear == 0 {
+            if !any_new {
+                solver.find_pushes(step, &members, elements, bodies, &engine.sight());
+            }
+            return self.meets_soon(g, view, step, engine, &solver.pushes);
+        }
+        let left = clear.saturating_sub(1);
+        for b in members.bodies {
+            // Mostly zero, and what is not written need not go back to memory.
+            if bodies[*b].clear != left {
+                bodies[*b].clear = left;
+            }
+        }
+        held
+    }
+
+    /// Whether a component may meet something within the step; notes for how many steps more it cannot.
+    fn meets_soon(
+        &mut self,
+        g: usize,
+        view: View,
+        step: &Step,
+        engine: &Engine,
+        pushes: &[f32],
+    ) -> bool {
+        let outlook = Outlook {
+            broad: view.broad,
+            bodies: engine.bodies,
+            colliders: engine.colliders,
+            time: step.plan.time as f32,
+        };
+        let (bodies, handles) = (&self.bodies, &self.handles);
+        let members = self.groups.members(&self.groups.list()[g]);
+        let rows: Vec<_> = members.bodies.iter().map(|b| &bodies[*b]).collect();
+        let (near, clear) = outlook.look(&rows, pushes, |handle| {
+            let row = handles.get(&(view.context, id(handle)));
+            row.is_some_and(|b| bodies[*b as usize].group == g as u32)
+        });
+        for b in members.bodies {
+            self.bodies[*b].clear = clear;
+        }
+        near
+    }
+}
+
+/// Of each body the stiffness of all its elements.
+pub(crate) fn add_up(elements: &[ElementRow], bodies: &mut [BodyRow]) {
+    for row in bodies.iter_mut() {
+        row.stiffness = 0.0;
+    }
+    for row in elements
+        .iter()
+        .filter(|row| !row.companion.guide.is_twist())
+    {
+        for body in row.on.iter().flatten() {
+            let stiffness = match row.companion.law {
+                // It may be anything where it kinks.
+                Some(_) => f64::INFINITY,
+                None => f64::from(row.parameters.stiffness),
+            };
+            bodies[*body as usize].stiffness += stiffness;
+        }
+    }
+}

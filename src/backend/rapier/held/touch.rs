@@ -1,0 +1,169 @@
+//! Whether contacts or joints hold a body.
+
+use super::joint::is_ours;
+use crate::backend::rapier::body;
+use crate::backend::rapier::held::near::speed_of;
+use crate::scene::rows::BodyRow;
+use bevy::math::Vec3;
+use bevy_rapier3d::parry;
+use bevy_rapier3d::parry::bounding_volume::BoundingVolume;
+use bevy_rapier3d::parry::partitioning::{Bvh, BvhBuildStrategy};
+use bevy_rapier3d::prelude::RapierContextJoints;
+use bevy_rapier3d::rapier::dynamics::{RigidBody as RapierBody, RigidBodyHandle};
+use bevy_rapier3d::rapier::geometry::{Collider, ColliderHandle, ColliderSet, NarrowPhase};
+
+/// How long a body counts as held after the last contact, s: a wheel that hops and a foot that drums need not change
+/// between the two predicted_travel of being solved in every step. Pinned by `ground::drumming`.
+const LINGER: f32 = 0.1;
+
+/// Nearer than this counts as touching before the first step, m.
+const NEAR: f32 = 0.005;
+
+/// All colliders, for bodies that the engine has not stepped yet: it finds contacts only within a step, and a stiff spring
+/// has to know before the first.
+pub(crate) struct Crowd {
+    tree: Bvh,
+    bounded: Vec<ColliderHandle>,
+    /// Those without bounds, such as half-spaces.
+    boundless: Vec<ColliderHandle>,
+}
+
+impl Crowd {
+    pub(crate) fn new(colliders: &ColliderSet) -> Self {
+        let (mut bounded, mut boundless, mut bounds) = (Vec::new(), Vec::new(), Vec::new());
+        let solid = |c: &Collider| c.is_enabled() && !c.is_sensor();
+        for (handle, collider) in colliders.iter().filter(|(_, c)| solid(c)) {
+            let own = collider.compute_aabb();
+            if own.extents().max_element() < BOUNDLESS {
+                bounds.push(own);
+                bounded.push(handle);
+            } else {
+                boundless.push(handle);
+            }
+        }
+        Self {
+            tree: Bvh::from_leaves(BvhBuildStrategy::Binned, &bounds),
+            bounded,
+            boundless,
+        }
+    }
+
+    /// Whether anything else is so near that it may touch a body in its first step.
+    fn is_near(
+        &self,
+        handle: RigidBodyHandle,
+        body: &RapierBody,
+        way: f32,
+        all: &ColliderSet,
+    ) -> bool {
+        let own = body.colliders().iter().filter_map(|own| all.get(*own));
+        let mut own = own.map(|own| (own, own.compute_aabb().loosened(way)));
+        own.any(|(own, bounds)| {
+            let near = self.tree.intersect_aabb(&bounds);
+            let bounded = near.map(|leaf| self.bounded[leaf as usize]);
+            let mut others = bounded.chain(self.boundless.iter().copied());
+            others.any(|other| {
+                let Some(other) = all.get(other) else {
+                    return false;
+                };
+                let groups = [own, other].map(Collider::collision_groups);
+                let [a, b] = [own, other].map(|c| (c.position(), c.shape()));
+                other.parent() != Some(handle)
+                    && groups[0].test(groups[1])
+                    && !matches!(parry::query::contact(a.0, a.1, b.0, b.1, way), Ok(None))
+            })
+        })
+    }
+}
+
+/// Steps of a body's motion within which a contact that the engine has seen ahead counts.
+const REACH: f32 = 3.0;
+
+/// Extents above which a collider counts as boundless, m.
+const BOUNDLESS: f32 = 1e6;
+
+/// What can hold bodies in a Rapier context.
+pub(crate) struct Surroundings<'a> {
+    narrow: &'a NarrowPhase,
+    joints: &'a RapierContextJoints,
+    colliders: &'a ColliderSet,
+    crowd: Option<&'a Crowd>,
+    /// There are joints at all.
+    pub any_joints: bool,
+}
+
+impl<'a> Surroundings<'a> {
+    pub(crate) fn new(
+        narrow: &'a NarrowPhase,
+        joints: &'a RapierContextJoints,
+        colliders: &'a ColliderSet,
+        crowd: Option<&'a Crowd>,
+    ) -> Self {
+        let links = joints.multibody_joints.multibodies().next().is_some();
+        Self {
+            narrow,
+            joints,
+            colliders,
+            crowd,
+            any_joints: links || !joints.impulse_joints.is_empty(),
+        }
+    }
+
+    /// Whether a joint other than ours acts on a body.
+    pub(crate) fn is_jointed(&self, handle: RigidBodyHandle) -> bool {
+        if !self.any_joints {
+            return false;
+        }
+        let RapierContextJoints {
+            impulse_joints,
+            multibody_joints,
+            ..
+        } = self.joints;
+        multibody_joints.rigid_body_link(handle).is_some()
+            || impulse_joints
+                .attached_enabled_joints(handle)
+                .any(|(_, _, _, joint)| !is_ours(joint))
+    }
+
+    /// Whether anything touches a body, or will in the coming step of `time` seconds as far as the engine has looked
+    /// ahead; and whether it has pushed it in the last one.
+    fn touch(&self, body: &RapierBody, time: f64) -> (bool, bool) {
+        let (mut touched, mut pressed) = (false, false);
+        // Distances are those at the start of the last step, and the other body moves too.
+        let way = NEAR + REACH * body.linvel().length() * time as f32;
+        for collider in body.colliders() {
+            for pair in self.narrow.contact_pairs_with(*collider) {
+                touched |= pair.has_any_active_contact()
+                    && pair
+                        .find_deepest_contact()
+                        .is_some_and(|(_, contact)| contact.dist < way);
+                pressed |= pair.total_impulse() != Vec3::ZERO;
+            }
+        }
+        (touched, pressed)
+    }
+
+    /// Looks what holds a body at the start of a step of `time` seconds; says whether anything does, or did a moment ago.
+    /// `push` is how much faster springs can make it in the step, m/s.
+    pub(crate) fn look(&self, row: &mut BodyRow, body: &RapierBody, time: f64, push: f32) -> bool {
+        row.can_touch = !body.colliders().is_empty();
+        let handle = body::handle(row.id);
+        row.jointed = self.is_jointed(handle);
+        (row.touched, row.pressed) = self.touch(body, time);
+        if row.jointed || row.touched {
+            row.lingers = LINGER;
+        } else {
+            row.lingers = (row.lingers - time as f32).max(0.0);
+        }
+        if !std::mem::take(&mut row.is_new) {
+            return row.lingers > 0.0;
+        }
+        let near = |way: f32| {
+            self.crowd
+                .is_some_and(|crowd| crowd.is_near(handle, body, way, self.colliders))
+        };
+        row.pressed |= near(NEAR);
+        let way = NEAR + 2.0 * (speed_of(body) + push) * time as f32;
+        row.lingers > 0.0 || row.pressed || near(way)
+    }
+}

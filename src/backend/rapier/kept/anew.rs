@@ -1,0 +1,62 @@
+//! When Rapier has gone back and springs cannot: what they had in it then is given back, and they begin anew.
+
+use super::check::is_in;
+use crate::backend::rapier::body::id;
+use crate::scene::kept::Kept;
+use crate::scene::rows::Raised;
+use crate::scene::state::Scene;
+use bevy::prelude::*;
+use bevy_rapier3d::prelude::*;
+use std::mem::take;
+
+impl Kept {
+    /// Has the next step take out of the engine what springs had in it when this was taken.
+    pub(crate) fn begin_anew(&self, world: &mut World) {
+        let mut contexts = world.query::<(Entity, &RapierRigidBodySet, &RapierContextJoints)>();
+        let elements = self.elements.iter().filter_map(|e| e.inside.as_deref());
+        let left = self.left.iter().map(|(_, inside)| inside);
+        let insides = elements.chain(left).filter_map(|inside| {
+            let mut contexts = contexts.iter(world);
+            let (context, ..) = contexts.find(|(_, set, joints)| is_in(inside, set, joints))?;
+            Some((context, inside.put(context)))
+        });
+        let insides: Vec<_> = insides.collect();
+        let place = |entity: Entity| {
+            let body = world.get_entity(entity).ok()?;
+            let handle = body.get::<RapierRigidBodyHandle>()?.0;
+            Some((body.get::<RapierContextEntityLink>()?.0, id(handle)))
+        };
+        let raised = self.bodies.iter().filter(|body| body.raised.is_any());
+        let raised = raised.filter_map(|body| {
+            let (context, id) = place(body.entity)?;
+            Some((context, id, body.raised))
+        });
+        let raised: Vec<_> = raised.chain(self.unloaded.iter().copied()).collect();
+        let Some(mut scene) = world.get_resource_mut::<Scene>() else {
+            return;
+        };
+        // What they have now, the engine does not know any more.
+        for row in &mut scene.elements {
+            let _ = row.take_inside();
+        }
+        for row in &mut scene.bodies {
+            row.raised = Raised::default();
+        }
+        scene.left = insides;
+        scene.unloaded = raised;
+        scene.stale = true;
+    }
+}
+
+/// Whether Rapier's snapshot was put back after the last step; asked once.
+pub(crate) fn engine_went_back(world: &mut World) -> bool {
+    let scene = world.get_resource_mut::<Scene>();
+    scene.is_some_and(|mut scene| take(&mut scene.engine_went_back))
+}
+
+/// Notes that Rapier's snapshot was put back.
+pub(crate) fn note_engine(world: &mut World) {
+    if let Some(mut scene) = world.get_resource_mut::<Scene>() {
+        scene.engine_went_back = true;
+    }
+}

@@ -1,0 +1,151 @@
+//! Whether a world is one that it can be put into.
+
+use crate::backend::rapier::body::{handle, joint_handle};
+use crate::backend::rapier::held::{fits, is_ours};
+use crate::input::parts::Acts;
+use crate::scene::held::KeptJoint;
+use crate::scene::kept::{Kept, KeptBody, KeptContext, KeptInside, NONE};
+use crate::scene::rows::{BodyRow, Raised};
+use crate::scene::state::Scene;
+use crate::snapshot::SnapshotError;
+use bevy::ecs::entity::EntityHashSet;
+use bevy::prelude::*;
+use bevy_rapier3d::prelude::*;
+
+impl Kept {
+    /// What does not fit; nothing is changed.
+    pub(crate) fn check(
+        &self,
+        world: &mut World,
+        engine_went_back: bool,
+    ) -> Result<(), SnapshotError> {
+        if !world.contains_resource::<Scene>() {
+            return Err(SnapshotError::NoPlugin);
+        }
+        let body = |index: u32| index == NONE || (index as usize) < self.bodies.len();
+        let elements = self.elements.iter().flat_map(|element| element.on);
+        let groups = self.groups.iter().map(|group| group.body);
+        if !elements.chain(groups).all(body) {
+            return Err(SnapshotError::Broken);
+        }
+        let mut elements = world.query_filtered::<(), Acts>();
+        let mut seen = EntityHashSet::default();
+        for element in &self.elements {
+            if elements.get(world, element.entity).is_err() {
+                return Err(SnapshotError::NoElement(element.entity));
+            }
+            if !seen.insert(element.entity) {
+                return Err(SnapshotError::Twice(element.entity));
+            }
+        }
+        seen.clear();
+        let mut bodies = world.query::<(&RapierRigidBodyHandle, &RapierContextEntityLink)>();
+        for body in &self.bodies {
+            if bodies.get(world, body.entity).is_err() {
+                return Err(SnapshotError::NoBody(body.entity));
+            }
+            if !seen.insert(body.entity) {
+                return Err(SnapshotError::Twice(body.entity));
+            }
+        }
+        if self.engine_stays {
+            return Ok(());
+        }
+        self.check_engine(world)?;
+        self.check_orders(world, engine_went_back)
+    }
+
+    /// Whether the engine has just those joints of ours that are known.
+    fn check_engine(&self, world: &mut World) -> Result<(), SnapshotError> {
+        let insides = self.elements.iter().filter_map(|e| e.inside.as_deref());
+        let insides = || {
+            insides
+                .clone()
+                .chain(self.left.iter().map(|(_, inside)| inside))
+        };
+        let known: usize = insides().map(|inside| inside.joints.len()).sum();
+        let mut contexts = world.query::<(&RapierRigidBodySet, &RapierContextJoints)>();
+        let mut there = 0;
+        for (_, joints) in contexts.iter(world) {
+            let ours = joints.impulse_joints.iter().filter(|(_, j)| is_ours(j));
+            there += ours.count();
+        }
+        let in_some = |inside: &crate::scene::kept::KeptInside| {
+            let mut contexts = contexts.iter(world);
+            contexts.any(|(set, joints)| is_in(inside, set, joints))
+        };
+        if there == known && insides().all(in_some) {
+            Ok(())
+        } else {
+            Err(SnapshotError::OtherEngine)
+        }
+    }
+
+    /// Whether bodies and contexts have what is known of them, such as solver iterations, and not what came later.
+    fn check_orders(&self, world: &World, engine_went_back: bool) -> Result<(), SnapshotError> {
+        let scene = world.get_resource::<Scene>().filter(|_| !engine_went_back);
+        let as_known = |known: &KeptBody| {
+            let body = world.get_entity(known.entity).ok()?;
+            let context = body.get::<RapierContextEntityLink>()?.0;
+            let set = world.get::<RapierRigidBodySet>(context)?;
+            let of = body.get::<RapierRigidBodyHandle>()?.0;
+            let meanwhile = scene.and_then(|scene| {
+                let row = scene.index.get(&known.entity)?;
+                Some(scene.bodies[*row].raised)
+            });
+            let meanwhile = meanwhile.unwrap_or_default();
+            Some(fits(&known.raised, set.bodies.get(of)?, meanwhile))
+        };
+        let has_sweeps = |known: &KeptContext| {
+            let engine = world.get::<RapierContextSimulation>(known.entity)?;
+            let now = engine.integration_parameters.num_internal_pgs_iterations;
+            let meanwhile = scene.and_then(|scene| scene.sweeps.get(&known.entity).copied());
+            Some(known.sweeps.fits(now, meanwhile.unwrap_or_default()))
+        };
+        // What no element moved then had nothing.
+        let then: EntityHashSet = self.bodies.iter().map(|body| body.entity).collect();
+        let had_nothing = |row: &BodyRow| {
+            let set = world.get::<RapierRigidBodySet>(row.context)?;
+            let body = set.bodies.get(handle(row.id))?;
+            Some(fits(&Raised::default(), body, row.raised))
+        };
+        let new = scene.iter().flat_map(|scene| &scene.bodies);
+        let mut new = new.filter(|row| !then.contains(&row.entity));
+        // Of what the engine does not know yet, nothing differs.
+        let bodies = self.bodies.iter();
+        let mut contexts = self.contexts.iter();
+        if bodies.map(as_known).all(|fits| fits.unwrap_or(true))
+            && new.all(|row| had_nothing(row).unwrap_or(true))
+            && contexts.all(|context| has_sweeps(context).unwrap_or(true))
+        {
+            Ok(())
+        } else {
+            Err(SnapshotError::OtherEngine)
+        }
+    }
+
+    /// Leaves out what is in the engine: joints are made anew then.
+    pub(crate) fn forget_engine(&mut self) {
+        self.engine_stays = true;
+        for element in &mut self.elements {
+            if let Some(inside) = &mut element.inside {
+                inside.joints.clear();
+                inside.hidden = [None; 2];
+            }
+        }
+    }
+}
+
+/// Whether all of it is in the engine, as ours.
+pub(crate) fn is_in(
+    inside: &KeptInside,
+    set: &RapierRigidBodySet,
+    joints: &RapierContextJoints,
+) -> bool {
+    let there = |kept: &KeptJoint| {
+        let joint = joints.impulse_joints.get(joint_handle(kept.id));
+        joint.is_some_and(is_ours)
+    };
+    let mut hidden = inside.hidden.iter().flatten();
+    inside.joints.iter().all(there) && hidden.all(|body| set.bodies.contains(handle(*body)))
+}

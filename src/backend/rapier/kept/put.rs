@@ -1,0 +1,369 @@
+//! Into a scene.
+
+use super::anew::engine_went_back;
+use crate::backend::rapier::body::id;
+use crate::backend::rapier::find::RapierFinder;
+use crate::backend::rapier::forces::SpringLoad;
+use crate::backend::rapier::held::add_up;
+use crate::backend::{BodyId, Wrench};
+use crate::input::companions::Companions;
+use crate::input::parts::{Acts, Parts};
+use crate::readout::SpringReadout;
+use crate::scene::kept::{Kept, KeptBody, KeptElement, NONE};
+use crate::scene::rows::{BodyRow, ElementRow};
+use crate::scene::state::Scene;
+use crate::snapshot::SnapshotError;
+use bevy::ecs::change_detection::Tick;
+use bevy::ecs::entity::{EntityHashMap, EntityHashSet};
+use bevy::ecs::system::SystemState;
+use bevy::prelude::*;
+use bevy_rapier3d::prelude::*;
+
+/// What rows are made of.
+type Sources<'w, 's> = (
+    Query<'w, 's, Parts, Acts>,
+    Companions<'w, 's>,
+    RapierFinder<'w, 's>,
+    Commands<'w, 's>,
+);
+
+impl Kept {
+    /// Has the springs of a world go on from there.
+    pub(crate) fn put(&self, world: &mut World) -> Result<(), SnapshotError> {
+        let engine_went_back = engine_went_back(world);
+        let fits = self.check(world, engine_went_back);
+        if fits.is_err() && engine_went_back {
+            self.begin_anew(world);
+        }
+        fits?;
+        let mut kept = self.clone();
+        kept.name_contexts(world);
+        let Some(mut scene) = world.remove_resource::<Scene>() else {
+            return Err(SnapshotError::NoPlugin);
+        };
+        kept.place_rows(&mut scene, world);
+        let mut sources = SystemState::<Sources>::new(world);
+        if let Ok((elements, companions, mut finder, mut commands)) = sources.get_mut(world) {
+            let modified = EntityHashSet::default();
+            scene.renew(
+                &elements,
+                &companions,
+                &mut finder,
+                &modified,
+                &mut commands,
+            );
+            kept.fill_elements(&mut scene, &companions);
+        }
+        sources.apply(world);
+        kept.fill_bodies(&mut scene);
+        kept.fill_groups(&mut scene);
+        kept.fill_scene(&mut scene);
+        kept.show(&scene, world);
+        // What was written so far is what there was: only what comes after is a change.
+        scene.since = Some(world.change_tick());
+        world.insert_resource(scene);
+        world.increment_change_tick();
+        Ok(())
+    }
+
+    /// The one context of a world of one context is that of a snapshot of one context.
+    fn name_contexts(&mut self, world: &mut World) {
+        let mut contexts = world.query_filtered::<Entity, With<RapierContextSimulation>>();
+        let mut contexts = contexts.iter(world);
+        if let ([known], Some(only), None) =
+            (&mut self.contexts[..], contexts.next(), contexts.next())
+        {
+            let left = self.left.iter_mut().map(|(context, _)| context);
+            let unloaded = self.unloaded.iter_mut().map(|(context, ..)| context);
+            for context in left.chain(unloaded).filter(|c| **c == known.entity) {
+                *context = only;
+            }
+            known.entity = only;
+        }
+    }
+
+    /// Rows as there are to be, before anything is known of their ends.
+    fn place_rows(&mut self, scene: &mut Scene, world: &World) {
+        if !self.engine_stays {
+            scene.left.clear();
+            // Rows that are made anew add bodies whose elements are at fault now.
+            scene.unloaded.clone_from(&self.unloaded);
+        }
+        let mut before = EntityHashMap::default();
+        for mut row in scene.elements.drain(..) {
+            let inside = row.take_inside();
+            scene.left.extend(inside.filter(|_| self.engine_stays));
+            before.insert(row.entity, row);
+        }
+        scene.row_of.clear();
+        for (index, kept) in self.elements.iter().enumerate() {
+            let mut row = ElementRow::new(kept.entity);
+            if let Some(before) = before.remove(&kept.entity) {
+                // What has been said of it is not said again.
+                row.trouble = before.trouble;
+            }
+            row.memory = kept.memory;
+            scene.row_of.insert(kept.entity, index);
+            scene.elements.push(row);
+        }
+        let lent = scene.bodies.drain(..);
+        let lent = lent.map(|row| (row.entity, (row.context, row.id, row.raised)));
+        let mut lent: EntityHashMap<_> = lent.filter(|_| self.engine_stays).collect();
+        scene.index.clear();
+        for kept in &self.bodies {
+            let place = world.get_entity(kept.entity).ok().and_then(|body| {
+                let handle = body.get::<RapierRigidBodyHandle>()?.0;
+                Some((id(handle), body.get::<RapierContextEntityLink>()?.0))
+            });
+            if let Some((id, context)) = place {
+                let mut row = kept.row(id, context);
+                if self.engine_stays {
+                    let lent = lent.remove(&kept.entity);
+                    row.raised = lent.map(|lent| lent.2).unwrap_or_default();
+                }
+                scene.bodies.push(row);
+            }
+        }
+        let others = lent.values().filter(|(_, _, raised)| raised.is_any());
+        scene.unloaded.extend(others.copied());
+        scene.bodies.sort_by_key(|row| row.entity);
+        let rows = scene.bodies.iter().enumerate();
+        scene
+            .index
+            .extend(rows.map(|(slot, row)| (row.entity, slot)));
+        scene.assemblies.clear();
+        scene.pending.clear();
+    }
+
+    fn fill_elements(&self, scene: &mut Scene, companions: &Companions) {
+        for kept in &self.elements {
+            let Some(index) = scene.row_of.get(&kept.entity) else {
+                continue;
+            };
+            let row = &mut scene.elements[*index];
+            let body = row.movable(0).or(row.movable(1));
+            let context = body.map(|body| scene.bodies[body].context);
+            let differs = kept.fill(row, context);
+            let to_find =
+                companions.tuning(kept.entity).is_some() || companions.pose(kept.entity).is_some();
+            if differs || to_find {
+                scene.pending.push(kept.entity);
+            }
+        }
+        let rows = scene.elements.iter().enumerate();
+        let changed = rows.filter(|(_, row)| row.changed);
+        scene.changed = changed.map(|(index, _)| index).collect();
+    }
+
+    fn fill_bodies(&self, scene: &mut Scene) {
+        for kept in &self.bodies {
+            if let Some(row) = scene.index.get(&kept.entity)
+                && let Some(row) = scene.bodies.get_mut(*row)
+            {
+                (row.disturbed, row.clear) = (kept.disturbed, kept.clear);
+            }
+        }
+        add_up(&scene.elements, &mut scene.bodies);
+    }
+
+    /// In the order in which they were, and with what was known of them.
+    fn fill_groups(&self, scene: &mut Scene) {
+        let mut elements = vec![NONE; scene.elements.len()];
+        for (place, kept) in self.elements.iter().enumerate() {
+            if let Some(index) = scene.row_of.get(&kept.entity) {
+                elements[*index] = place as u32;
+            }
+        }
+        let mut bodies = vec![NONE; scene.bodies.len()];
+        for (place, kept) in self.bodies.iter().enumerate() {
+            if let Some(index) = scene.index.get(&kept.entity) {
+                bodies[*index] = place as u32;
+            }
+        }
+        scene.groups.arrange(&elements, &bodies, &scene.elements);
+        scene.assemblies.clear();
+        scene.number_groups();
+        for kept in &self.groups {
+            let body = self.bodies.get(kept.body as usize);
+            let row = body.and_then(|body| scene.index.get(&body.entity));
+            let Some(g) = row.map(|row| scene.bodies[*row].group as usize) else {
+                continue;
+            };
+            if g >= scene.groups.list().len() {
+                continue;
+            }
+            let group = scene.groups.at(g);
+            (group.held, group.is_asleep) = (kept.held, kept.is_asleep);
+            if let Some(remembered) = &kept.assembly {
+                if group.assembly.is_none() {
+                    scene.groups.promote(g, &mut scene.assemblies);
+                }
+                if let Some(index) = scene.groups.list()[g].assembly {
+                    scene.assemblies[index].component.remember(remembered);
+                }
+            }
+        }
+    }
+
+    fn fill_scene(&self, scene: &mut Scene) {
+        scene.time = self.time;
+        let stepped = self.contexts.iter().filter(|context| context.stepped);
+        scene.stepped = stepped.map(|context| context.entity).collect();
+        if !self.engine_stays {
+            let sweeps = self.contexts.iter();
+            scene.sweeps = sweeps
+                .map(|context| (context.entity, context.sweeps))
+                .collect();
+            let left = self.left.iter();
+            scene.left = left
+                .map(|(context, inside)| (*context, inside.put(*context)))
+                .collect();
+            // What elements had that are at fault now.
+            if let [context] = &self.contexts[..] {
+                for kept in &self.elements {
+                    let row = scene.row_of.get(&kept.entity).map(|i| &scene.elements[*i]);
+                    if let Some(inside) = kept.inside.as_deref()
+                        && row.is_none_or(|row| row.inside.is_none())
+                    {
+                        let inside = inside.put(context.entity);
+                        scene.left.push((context.entity, inside));
+                    }
+                }
+            }
+        }
+        scene.still = default();
+        // Elements and bodies that the snapshot does not know.
+        scene.stale =
+            scene.elements.len() != self.elements.len() || scene.bodies.len() != self.bodies.len();
+        (scene.renewed, scene.shifted) = (false, false);
+        (scene.loaded, scene.delivered) = (false, false);
+        // Or rows would be made anew after the next step, whatever their order.
+        scene.unordered = true;
+    }
+
+    /// Shows on elements and bodies what they had.
+    fn show(&self, scene: &Scene, world: &mut World) {
+        for kept in &self.elements {
+            if let Some(mut readout) = world.get_mut::<SpringReadout>(kept.entity) {
+                readout.set_if_neq(kept.readout);
+            }
+            if let Some(rest) = kept.rest_length {
+                write_rest(kept.entity, rest, world);
+            }
+        }
+        let mut loads = world.query_filtered::<Entity, With<SpringLoad>>();
+        let is_gone = |entity: &Entity| !scene.index.contains_key(entity);
+        let gone: Vec<Entity> = loads.iter(world).filter(is_gone).collect();
+        for entity in gone {
+            let mut body = world.entity_mut(entity);
+            let user = body.take::<SpringLoad>().map(|load| load.user);
+            if let (Some(user), Some(mut force)) = (user, body.get_mut::<ExternalForce>()) {
+                *force.bypass_change_detection() = user;
+            }
+        }
+        let now = world.change_tick();
+        for kept in &self.bodies {
+            if let (Some(slot), Ok(body)) = (
+                scene.index.get(&kept.entity),
+                world.get_entity_mut(kept.entity),
+            ) {
+                kept.show(*slot, body, now);
+            }
+        }
+    }
+}
+
+impl KeptElement {
+    /// Gives a row its memory; says whether its component's numbers are others than acted last.
+    fn fill(&self, row: &mut ElementRow, context: Option<Entity>) -> bool {
+        let p = &mut row.parameters;
+        let rest = p.rest_length.or(self.rest_length);
+        let differs = [p.stiffness, p.damping] != self.numbers || rest != self.rest_length;
+        [p.stiffness, p.damping] = self.numbers;
+        p.rest_length = self.rest_length;
+        row.changed = self.changed;
+        row.refitted = self.refitted;
+        row.captured = self.captured;
+        row.tuned = self.tuned;
+        row.tuned_again = self.tuned_again;
+        row.active = self.active;
+        row.ledger = self.ledger;
+        row.memory = self.memory;
+        let inside = self.inside.as_deref();
+        row.inside = inside.and_then(|inside| Some(inside.put(context?)));
+        differs
+    }
+}
+
+impl KeptBody {
+    fn row(&self, id: BodyId, context: Entity) -> BodyRow {
+        let [force, torque] = self.user;
+        BodyRow {
+            rank: self.rank,
+            disturbed: self.disturbed,
+            rests: self.rests,
+            is_alone: self.is_alone,
+            is_noted: self.is_noted,
+            is_fresh: self.is_fresh,
+            is_new: self.is_new,
+            can_touch: self.can_touch,
+            jointed: self.jointed,
+            touched: self.touched,
+            pressed: self.pressed,
+            creeps: self.creeps,
+            lingers: self.lingers,
+            clear: self.clear,
+            user: Wrench { force, torque },
+            carries_share: self.carries_share,
+            now: self.now,
+            rest: self.rest,
+            raised: self.raised,
+            substep: self.substep,
+            pulled: self.pulled,
+            turned: self.turned,
+            ..BodyRow::new(self.entity, id, context)
+        }
+    }
+
+    /// Both shares of its force, without telling anyone: what is told wakes the body.
+    fn show(&self, slot: usize, mut body: EntityWorldMut, now: Tick) {
+        let [user, elements] =
+            [self.user, self.elements].map(|[force, torque]| ExternalForce { force, torque });
+        let (load, sum) = SpringLoad::again([user, elements], slot, self.raised_iterations);
+        match body.get_mut::<SpringLoad>() {
+            Some(mut known) => *known.bypass_change_detection() = load,
+            None => {
+                body.insert(load);
+            }
+        }
+        if let Some(mut force) = body.get_mut::<ExternalForce>() {
+            *force.bypass_change_detection() = sum;
+        } else {
+            body.insert(sum);
+        }
+        if let Some(mut force) = body.get_mut::<ExternalForce>() {
+            // Half of all ticks ago: before any system ran last.
+            let long_ago = Tick::new(now.get().wrapping_sub(u32::MAX / 2));
+            force.set_last_added(long_ago);
+            force.set_last_changed(long_ago);
+        }
+    }
+}
+
+/// A rest length that was found once is not to be found again.
+fn write_rest(entity: Entity, rest: f32, world: &mut World) {
+    macro_rules! write {
+        ($($element:ident.$field:ident),*) => {$(
+            if let Some(mut element) = world.get_mut::<crate::element::$element>(entity)
+                && element.$field.is_none()
+            {
+                element.$field = Some(rest);
+            }
+        )*};
+    }
+    write!(
+        Spring.rest_length,
+        SpringDamper.rest_length,
+        TorsionSpring.rest_angle, TorsionSpringDamper.rest_angle
+    );
+}

@@ -1,0 +1,100 @@
+//! Before the step: is the scene still the one we know? Mostly it is, and only what can move is read.
+
+use crate::backend::rapier::body::handle;
+use crate::backend::rapier::find::RapierFinder;
+use crate::backend::rapier::forces::{SpringLoad, wrench};
+use crate::backend::rapier::watch::Watch;
+use crate::input::companions::Companions;
+use crate::input::parts::{Acts, ChangedParts, Parts};
+use crate::scene::refresh::{refresh, still_faulty};
+use crate::scene::state::Scene;
+use bevy::prelude::*;
+use bevy_rapier3d::prelude::*;
+
+/// Finds elements, their ends and the bodies they load.
+pub(crate) fn prepare(
+    mut scene: ResMut<Scene>,
+    elements: Query<Parts, Acts>,
+    changed: Query<Entity, ChangedParts>,
+    mut finder: RapierFinder,
+    mut loads: Query<
+        (Option<&mut SpringLoad>, Option<&ExternalForce>),
+        With<RapierRigidBodyHandle>,
+    >,
+    mut watch: Watch,
+    mut companions: Companions,
+    mut commands: Commands,
+) {
+    let scene = &mut *scene;
+    let mut same = !watch.saw_change(scene);
+    same &= !std::mem::take(&mut scene.stale);
+    companions.look(scene.since.take());
+    // What comes and goes is seen by the watch; this is for whatever else may take elements away.
+    same &= elements.iter().len() == scene.elements.len();
+    let is_new = |entity: &Entity| {
+        let parts = elements.get(*entity);
+        parts.is_ok_and(|parts| companions.is_new(&parts))
+    };
+    let changed = changed.iter().filter(is_new);
+    let changed = changed.chain(std::mem::take(&mut scene.pending));
+    same = same && refresh(scene, &elements, changed, &companions, &finder);
+    let modified = &watch.mass_modified;
+    let Scene {
+        elements: rows,
+        faulty,
+        ..
+    } = scene;
+    same = same
+        && faulty.iter().all(|index| {
+            let row = &mut rows[*index];
+            still_faulty(row, &companions, &mut finder, modified, &mut commands)
+        });
+    scene.renewed = !same || (scene.renewed && scene.time <= 0.0);
+    if same {
+        return;
+    }
+    scene.renew(&elements, &companions, &mut finder, modified, &mut commands);
+    enter_loads(scene, &mut loads, &finder, &mut commands);
+}
+
+/// Gives each body that elements load the components that show it, and reads which force is the user's.
+fn enter_loads(
+    scene: &mut Scene,
+    loads: &mut Query<
+        (Option<&mut SpringLoad>, Option<&ExternalForce>),
+        With<RapierRigidBodyHandle>,
+    >,
+    finder: &RapierFinder,
+    commands: &mut Commands,
+) {
+    for (slot, row) in scene.bodies.iter_mut().enumerate() {
+        let Ok((load, force)) = loads.get_mut(row.entity) else {
+            continue;
+        };
+        let known = load.map(|mut load| {
+            load.bypass_change_detection().slot = slot;
+            load.user
+        });
+        if let (Some(user), true) = (known, force.is_some()) {
+            row.user = wrench(&user);
+            continue;
+        }
+        let engine = finder.sets.get(row.context).ok().and_then(|(set, ..)| {
+            let body = set.bodies.get(handle(row.id))?;
+            Some(ExternalForce {
+                force: body.user_force(),
+                torque: body.user_torque(),
+            })
+        });
+        // A force written to the engine alone belongs to the user too.
+        let present = force.copied().or(engine).unwrap_or_default();
+        row.user = wrench(&known.unwrap_or(present));
+        let mut entity = commands.entity(row.entity);
+        if force.is_none() {
+            entity.try_insert(present);
+        }
+        if known.is_none() {
+            entity.try_insert(SpringLoad::new(present, slot));
+        }
+    }
+}

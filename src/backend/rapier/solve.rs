@@ -1,0 +1,177 @@
+//! The step's system: component by component.
+
+use super::body::{Bodies, handle};
+use super::timestep;
+use crate::backend::StepPlan;
+use crate::backend::rapier::forces::{self, Loads};
+use crate::backend::rapier::held::{EngineParts, Solver, View, give_back, remove};
+use crate::scene::free;
+use crate::scene::state::Scene;
+use crate::scene::step::Step;
+use crate::settings::CoiloverSettings;
+use bevy::prelude::*;
+use bevy_rapier3d::prelude::*;
+use bevy_rapier3d::rapier::dynamics::IntegrationParameters;
+use std::sync::atomic::AtomicBool;
+
+/// What of a Rapier context the step needs.
+type ContextParts<'a> = (
+    Entity,
+    &'a mut RapierContextSimulation,
+    &'a mut RapierContextColliders,
+    &'a mut RapierContextJoints,
+    &'a RapierConfiguration,
+    &'a SimulationToRenderTime,
+);
+
+/// Room for the work of a step.
+#[derive(Default)]
+pub(crate) struct Spare {
+    free: free::Spare,
+    inside: Solver,
+}
+
+/// Computes and delivers every element's force for the coming engine step.
+pub(crate) fn solve(
+    mut scene: ResMut<Scene>,
+    settings: Res<CoiloverSettings>,
+    mode: Res<TimestepMode>,
+    time: Res<Time>,
+    mut contexts: Query<ContextParts>,
+    mut sets: Query<&mut RapierRigidBodySet>,
+    mut loads: Loads,
+    users: Query<&AdditionalSolverIterations>,
+    mut spare: Local<Spare>,
+    mut commands: Commands,
+) {
+    let scene = &mut *scene;
+    if scene.renewed {
+        forces::release(scene, &mut loads, &mut sets, &mut commands);
+    }
+    scene.begin();
+    for (context, mut simulation, mut colliders, mut joints, configuration, lag) in &mut contexts {
+        let parameters = &simulation.integration_parameters;
+        let plan = timestep::plan(*mode, time.delta_secs(), lag.diff, parameters);
+        if plan.time <= 0.0 || !configuration.physics_pipeline_active {
+            // What is moved meanwhile is not to be taken for known.
+            scene.still.note(context, false);
+            continue;
+        }
+        scene.time = plan.time;
+        scene.stepped.push(context);
+        let Ok(mut set) = sets.get_mut(context) else {
+            continue;
+        };
+        let Some(quiet) = scene.is_to_step(context, &simulation, &set) else {
+            continue;
+        };
+        let simulation = &mut *simulation;
+        let mut step = Step::new(plan, &settings, quiet);
+        let mut engine = EngineParts {
+            bodies: &mut set.bodies,
+            joints: &mut joints,
+            islands: &mut simulation.islands,
+            colliders: &mut colliders.colliders,
+            gravity: configuration.gravity,
+        };
+        scene.take_out_what_is_left(context, &mut engine);
+        let finest = users.iter().map(|users| users.0).max().unwrap_or(0);
+        let spare = &mut *spare;
+        let view = View {
+            context,
+            narrow: &simulation.narrow_phase,
+            broad: &simulation.broad_phase,
+        };
+        let held_asleep = scene.step_held(view, &mut step, &mut engine, finest, &mut spare.inside);
+        let mut bodies = Bodies {
+            set: &mut *engine.bodies,
+            gravity: configuration.gravity,
+        };
+        let free_asleep = scene.step_free(context, &step, &mut bodies, &mut spare.free);
+        let all_asleep = held_asleep && free_asleep;
+        let sweeps = spare.inside.sweeps();
+        scene.raise_sweeps(context, &mut simulation.integration_parameters, sweeps);
+        scene.still.note(context, all_asleep);
+        scene.delivered |= step.delivered.into_inner();
+    }
+    forces::show(scene, &mut loads);
+}
+
+impl Step {
+    fn new(plan: StepPlan, settings: &CoiloverSettings, quiet: bool) -> Self {
+        Self {
+            plan,
+            schedule: plan.schedule(plan.substeps),
+            accuracy: settings.accuracy(),
+            most_substeps: settings.max_substeps.max(1),
+            alike: None,
+            quiet,
+            delivered: AtomicBool::new(false),
+        }
+    }
+}
+
+impl Scene {
+    /// Forgets what was so of the last step alone.
+    fn begin(&mut self) {
+        self.time = 0.0;
+        self.stepped.clear();
+        self.delivered = false;
+        self.engine_went_back = false;
+    }
+
+    /// Tells a context how many sweeps over all joints and contacts a substep takes.
+    fn raise_sweeps(
+        &mut self,
+        context: Entity,
+        parameters: &mut IntegrationParameters,
+        sweeps: usize,
+    ) {
+        let told = self.sweeps.entry(context).or_default();
+        told.raise(&mut parameters.num_internal_pgs_iterations, sweeps);
+    }
+
+    /// Whether there is anything to do in a context, and then, whether nothing has been changed in it since the last step.
+    fn is_to_step(
+        &self,
+        context: Entity,
+        simulation: &RapierContextSimulation,
+        set: &Mut<RapierRigidBodySet>,
+    ) -> Option<bool> {
+        let here = self.groups.list().iter().any(|g| g.context == context);
+        let left = self.left.iter().any(|(of, _)| *of == context)
+            || self.unloaded.iter().any(|(of, ..)| *of == context);
+        let quiet = self.changed.is_empty() && !self.loaded && !self.renewed && !left;
+        let still = || {
+            let active = simulation.islands.num_active_bodies();
+            active == 0 && self.still.holds(context, set.last_changed())
+        };
+        let idle = !(here || left) || (quiet && !self.shifted && still());
+        (!idle).then_some(quiet)
+    }
+
+    /// Takes out of a context what elements that are gone have left there, and gives back what bodies had.
+    fn take_out_what_is_left(&mut self, context: Entity, engine: &mut EngineParts) {
+        self.left.retain_mut(|(of, inside)| {
+            let here = *of == context;
+            if here {
+                remove(inside, engine);
+            }
+            !here
+        });
+        self.unloaded.retain_mut(|(of, body, raised)| {
+            let here = *of == context;
+            if let Some(body) = engine.bodies.get_mut(handle(*body)).filter(|_| here) {
+                give_back(raised, body);
+            }
+            !here
+        });
+    }
+}
+
+/// Notes when the engine's bodies were changed last, at the end of a tick, after bevy_rapier's write-back, which marks every
+/// set as changed.
+pub(crate) fn mark(mut scene: ResMut<Scene>, sets: Query<Ref<RapierRigidBodySet>>) {
+    let changed = |context| sets.get(context).ok().map(|set| set.last_changed());
+    scene.still.mark(changed);
+}

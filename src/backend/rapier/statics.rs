@@ -1,0 +1,169 @@
+//! The tension with which an element holds its load against gravity.
+
+use crate::backend::rapier::body::is_movable;
+use crate::backend::rapier::find::RapierFinder;
+use crate::backend::rapier::held::{is_ours, locks};
+use crate::backend::rapier::tune::Lever;
+use crate::dynamics::body::Body;
+use crate::dynamics::linkage::{Constraint, Linkage, Side};
+use crate::element::{HeldEnd, HoldPose};
+use crate::input::check::Fault;
+use bevy::math::DVec3;
+use bevy_rapier3d::rapier::dynamics::RigidBodyHandle;
+
+/// Below this cosine between an element and gravity it is level, and no tension of it holds a weight.
+const LEVEL: f64 = 0.1;
+/// What joints leave of an element's mobility, as a share: below, they hold the load without it.
+const HELD: f64 = 1e-4;
+
+fn fault<T>(reason: &'static str) -> Result<T, Fault> {
+    Err(Fault::new("HoldPose", reason))
+}
+
+impl Lever {
+    /// The one end that can move along the line, if it is one: `known` says what else holds them.
+    pub(crate) fn load(&self, left: impl Fn(usize) -> f64) -> Option<usize> {
+        let moves = |end: usize| self.line.holds[end].body.is_some() && left(end) > 0.0;
+        match [moves(0), moves(1)] {
+            [true, false] => Some(0),
+            [false, true] => Some(1),
+            _ => None,
+        }
+    }
+
+    /// Inverse mass of an end alone, 1/kg.
+    fn free(&self, end: usize) -> f64 {
+        self.line.holds[end].inverse_mass_along(self.line.direction)
+    }
+}
+
+impl RapierFinder<'_, '_> {
+    /// The tension that this element alone has to have, N, for its load at one end not to accelerate along it; and
+    /// whether joints take part in holding it.
+    pub(crate) fn tension_alone(
+        &self,
+        lever: &Lever,
+        end: usize,
+        mass: Option<f64>,
+    ) -> Option<(f64, bool)> {
+        let hold = &lever.line.holds[end];
+        let index = hold.body?;
+        let body = &lever.bodies[index];
+        let handle = lever.handles[index];
+        let other = lever.line.holds[1 - end].body.map(|b| lever.handles[b]);
+        let held = Linkage {
+            bodies: vec![*body],
+            constraints: self.locks_of(lever, body, handle, other.filter(|_| hold.twist)),
+        };
+        // The other end counts as fixed.
+        let mut line = lever.line;
+        line.holds[1 - end].body = None;
+        line.holds[end].body = Some(0);
+        let apart = Constraint::of_line(&line);
+        let falling = Constraint {
+            sides: [
+                None,
+                Some(Side {
+                    body: 0,
+                    linear: weight(body, mass),
+                    angular: DVec3::ZERO,
+                }),
+            ],
+        };
+        let [left, fall] = held.response(&apart, [&apart, &falling])?;
+        // Tension draws the ends together.
+        let carries = left > HELD * lever.free(end);
+        carries.then(|| (fall / left, !held.constraints.is_empty()))
+    }
+
+    /// What the joints between a load and what cannot move lock, or between it and a body that counts as such.
+    fn locks_of(
+        &self,
+        lever: &Lever,
+        load: &Body,
+        handle: RigidBodyHandle,
+        still: Option<RigidBodyHandle>,
+    ) -> Vec<Constraint> {
+        let mut held = Vec::new();
+        let Ok((set, _, joints, _)) = self.sets.get(lever.context) else {
+            return held;
+        };
+        for (a, b, _, joint) in joints.impulse_joints.attached_enabled_joints(handle) {
+            let other = if a == handle { b } else { a };
+            let [Some(first), Some(second)] = [a, b].map(|handle| set.bodies.get(handle)) else {
+                continue;
+            };
+            let moves = if a == handle { second } else { first };
+            if is_ours(joint) || (is_movable(moves) && Some(other) != still) {
+                continue;
+            }
+            let data = &joint.data;
+            let frame = (*first.position() * data.local_frame1).rotation;
+            let at = (*second.position() * data.local_frame2).translation;
+            let rotation = frame.as_dquat().normalize();
+            let on = [None, Some((0, load))];
+            held.extend(locks(data, rotation, at.as_dvec3(), on));
+        }
+        held
+    }
+
+    /// The tension that an element has to have to carry its share of its load, N.
+    pub(crate) fn tension_of_pose(&self, lever: &Lever, pose: HoldPose) -> Result<f64, Fault> {
+        if !(pose.share > 0.0 && pose.share.is_finite()) {
+            return Err(Fault::new("HoldPose::share", "is not above zero"));
+        }
+        if pose.mass.is_some_and(|m| !(m > 0.0 && m.is_finite())) {
+            return Err(Fault::new("HoldPose::mass", "is not above zero"));
+        }
+        let moves = [0, 1].map(|end| lever.free(end) > 0.0);
+        let end = match (pose.load, moves) {
+            (HeldEnd::A, [true, _]) | (HeldEnd::Moving, [true, false]) => 0,
+            (HeldEnd::B, [_, true]) | (HeldEnd::Moving, [false, true]) => 1,
+            (HeldEnd::Moving, [true, true]) => {
+                return fault(
+                    "cannot tell which of two ends that move is the load; use HoldPose::of_a() or HoldPose::of_b()",
+                );
+            }
+            _ => return fault("has a load that cannot move along the element"),
+        };
+        let hold = &lever.line.holds[end];
+        let Some(body) = hold.body.map(|index| &lever.bodies[index]) else {
+            return fault("has a load that cannot move along the element");
+        };
+        let mass = pose.mass.map(f64::from);
+        let share = f64::from(pose.share);
+        let alone = self.tension_alone(lever, end, mass);
+        match alone {
+            Some((tension, true)) => return Ok(share * tension),
+            None => return fault("has a load that joints hold without the element"),
+            Some((_, false)) if hold.twist => {
+                return fault("finds no joint that its load turns on");
+            }
+            Some((_, false)) => {}
+        }
+        let weight = weight(body, mass);
+        let Some(down) = weight.try_normalize() else {
+            return Ok(0.0);
+        };
+        let along = lever.line.direction.dot(down);
+        if along.abs() < LEVEL {
+            return fault(
+                "stands on an element that is level, so no tension of it holds a weight (levers on joints between bodies \
+                 that move are not looked at: give Preload)",
+            );
+        }
+        let sign = if end == 0 { -1.0 } else { 1.0 };
+        Ok(sign * share * weight.length() / along)
+    }
+}
+
+/// Of a body, or of as much mass in its place, N.
+fn weight(body: &Body, mass: Option<f64>) -> DVec3 {
+    let own = body.inverse_mass.max_element().recip();
+    let mass = mass.unwrap_or(own);
+    if mass.is_finite() {
+        mass * body.acceleration
+    } else {
+        DVec3::ZERO
+    }
+}

@@ -1,0 +1,178 @@
+//! Stiffness and damping worked out from the masses at the ends, once.
+
+use super::body::{handle, is_movable, point_of, read, turning_of};
+use super::find::RapierFinder;
+use crate::backend::rapier::held::{Holding, inverse_mass};
+use crate::backend::{Place, Wrench};
+use crate::dynamics::body::Body;
+use crate::dynamics::element::{Element, End, Path};
+use crate::dynamics::guide::Guide;
+use crate::dynamics::line::Line;
+use crate::element::SpringTuning;
+use crate::input::check::{Fault, Parameters};
+use bevy::math::DVec3;
+use bevy::prelude::*;
+use bevy_rapier3d::rapier::dynamics::RigidBodyHandle;
+
+/// What an element acts on.
+pub(crate) struct Lever {
+    pub line: Line,
+    /// The bodies at its ends that can be moved, with their weight, and what the engine calls them.
+    pub bodies: Vec<Body>,
+    pub handles: Vec<RigidBodyHandle>,
+    /// The Rapier context.
+    pub context: Entity,
+    /// A body of it has colliders.
+    can_touch: bool,
+    /// m/s².
+    gravity: Vec3,
+}
+
+impl RapierFinder<'_, '_> {
+    /// Puts the coefficients that a tuning asks for into an element's numbers; says whether contacts may hold its ends.
+    /// A sag sets the rest length too, where there is none.
+    pub(crate) fn tuned(
+        &self,
+        tuning: SpringTuning,
+        guide: Guide,
+        places: &[Place; 2],
+        parameters: &mut Parameters,
+    ) -> Result<bool, Fault> {
+        let fault = |reason| Err(Fault::new("SpringTuning", reason));
+        let (value, ratio) = match tuning {
+            SpringTuning::Frequency {
+                frequency,
+                damping_ratio,
+            } => (frequency, damping_ratio),
+            SpringTuning::Sag { sag, damping_ratio } => (sag, damping_ratio),
+        };
+        if !(value > 0.0 && value.is_finite() && ratio >= 0.0 && ratio.is_finite()) {
+            return fault("has a number that is negative, zero or not finite");
+        }
+        if parameters.names.stiffness.is_empty() {
+            return fault("stands on a damper without a spring");
+        }
+        let lever = self.lever(guide, places).map(|lever| {
+            let left = self.left(&lever, lever.line);
+            (lever, left)
+        });
+        let Some((lever, left)) = lever.filter(|(_, left)| *left > 0.0) else {
+            return fault("stands on an element whose ends cannot move or coincide");
+        };
+        let mass = left.recip() as f32;
+        let (stiffness, damping) = tuning.coefficients(mass, lever.gravity.length());
+        parameters.stiffness = stiffness;
+        if !parameters.names.damping.is_empty() {
+            parameters.damping = damping;
+        }
+        let sags = matches!(tuning, SpringTuning::Sag { .. }) && parameters.rest_length.is_none();
+        if let Some(stretch) = self.stretch(&lever, stiffness).filter(|_| sags) {
+            let rest = lever.line.distance() - stretch;
+            if guide == Guide::Centres && rest < 0.0 {
+                return fault("has a sag that is longer than the element");
+            }
+            parameters.rest_length = Some(rest as f32);
+        }
+        Ok(lever.can_touch)
+    }
+
+    /// Stretch with which a spring of this stiffness carries its load where that is, m; none where nothing says which
+    /// end is the load.
+    fn stretch(&self, lever: &Lever, stiffness: f32) -> Option<f64> {
+        let one_sided = |end: usize| {
+            let mut line = lever.line;
+            line.holds[1 - end].body = None;
+            self.left(lever, line)
+        };
+        let (tension, _) = self.tension_alone(lever, lever.load(one_sided)?, None)?;
+        let stretch = tension / f64::from(stiffness);
+        Some(stretch).filter(|stretch| stretch.is_finite())
+    }
+
+    /// Inverse mass of a line, with what joints and contacts leave, 1/kg.
+    fn left(&self, lever: &Lever, line: Line) -> f64 {
+        let Ok((set, colliders, joints, simulation)) = self.sets.get(lever.context) else {
+            return 0.0;
+        };
+        let all = Holding {
+            contacts: true,
+            bodies: &set.bodies,
+            joints,
+            colliders: &colliders.colliders,
+            narrow: &simulation.narrow_phase,
+            gravity: Vec3::ZERO,
+        };
+        inverse_mass(&line, |body| lever.handles[body], all)
+    }
+
+    /// Gravity of the context in which an element's ends are, m/s².
+    fn gravity_at(&self, places: &[Place; 2]) -> Vec3 {
+        let on = |place: &Place| match place {
+            Place::OnBody { context, .. } => Some(*context),
+            Place::Point(_) => None,
+        };
+        let context = places.iter().find_map(on);
+        let configuration = context.and_then(|context| self.configurations.get(context).ok());
+        configuration.map_or(Vec3::ZERO, |configuration| configuration.gravity)
+    }
+
+    /// An element's line as it is now, if it has one and either end can move.
+    pub(crate) fn lever(&self, guide: Guide, places: &[Place; 2]) -> Option<Lever> {
+        let (mut bodies, mut handles) = (Vec::new(), Vec::new());
+        let mut context = None;
+        let mut can_touch = false;
+        let gravity = self.gravity_at(places);
+        let ends = places.map(|place| match place {
+            Place::Point(at) => End::Path(Path::straight(at, DVec3::ZERO)),
+            Place::OnBody {
+                body,
+                context: here,
+                local,
+                ..
+            } => {
+                let of = handle(body);
+                let set = self.sets.get(here).ok();
+                let Some(body) = set.as_ref().and_then(|parts| parts.0.bodies.get(of)) else {
+                    return End::Path(Path::straight(DVec3::ZERO, DVec3::ZERO));
+                };
+                if !is_movable(body) {
+                    let (at, _) = point_of(body, local);
+                    let mut path = Path::straight(at, DVec3::ZERO);
+                    (path.rotation, _) = turning_of(body, 1.0);
+                    return End::Path(path);
+                }
+                context = Some(here);
+                can_touch |= !body.colliders().is_empty();
+                handles.push(of);
+                let none = Wrench::default();
+                bodies.push(read(body, gravity, &none, true));
+                End::Body {
+                    index: bodies.len() - 1,
+                    arm: local - body.local_center_of_mass().as_dvec3(),
+                }
+            }
+        });
+        let element = Element {
+            ends,
+            stiffness: 0.0,
+            damping: 0.0,
+            rest_length: 1.0,
+            guide,
+            law: None,
+            angle: 0.0,
+            heat: 0.0,
+            work: 0.0,
+            direction: None,
+            stiff_damper: false,
+        };
+        let line = element.line(&bodies)?;
+        Some(Lever {
+            line,
+            bodies,
+            handles,
+            context: context?,
+            can_touch,
+            gravity,
+        })
+    }
+}

@@ -1,0 +1,202 @@
+//! Bad input becomes one message with entity and field, never a panic or a NaN.
+
+use crate::dynamics::guide::Guide;
+use bevy::math::DVec3;
+use bevy::prelude::*;
+
+/// Why an element does not act.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Fault {
+    pub field: &'static str,
+    pub reason: &'static str,
+}
+
+impl Fault {
+    pub(crate) const fn new(field: &'static str, reason: &'static str) -> Self {
+        Self { field, reason }
+    }
+}
+
+/// What is wrong with an element: mostly nothing, and then it takes no room among what every step reads.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Trouble(Option<Box<Faults>>);
+
+#[derive(Clone, Debug, Default)]
+struct Faults {
+    /// Why it takes no part at all, found before the step.
+    lasting: Option<Fault>,
+    /// Why it does not act in this step, found within it.
+    passing: Option<Fault>,
+    /// What was said of it last, so that each message comes once.
+    said: Option<Fault>,
+}
+
+impl Trouble {
+    /// Why the element takes no part at all.
+    pub(crate) fn lasting(&self) -> Option<Fault> {
+        self.0.as_ref()?.lasting
+    }
+
+    /// Why it does not act in this step.
+    pub(crate) fn passing(&self) -> Option<Fault> {
+        self.0.as_ref()?.passing
+    }
+
+    pub(crate) fn set_lasting(&mut self, fault: Option<Fault>) {
+        self.set(fault, |faults| &mut faults.lasting);
+    }
+
+    pub(crate) fn set_passing(&mut self, fault: Option<Fault>) {
+        self.set(fault, |faults| &mut faults.passing);
+    }
+
+    fn set(&mut self, fault: Option<Fault>, which: fn(&mut Faults) -> &mut Option<Fault>) {
+        if fault.is_some() || self.0.is_some() {
+            *which(self.0.get_or_insert_default()) = fault;
+        }
+    }
+
+    /// What there is to say that was not said before: a fault, or that there is none any more.
+    pub(crate) fn news(&mut self) -> Option<Option<Fault>> {
+        let faults = self.0.as_mut()?;
+        let fault = faults.lasting.or(faults.passing);
+        (faults.said != fault).then(|| {
+            faults.said = fault;
+            fault
+        })
+    }
+}
+
+/// The numbers of an element, whichever component they came from; last what every step needs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
+pub(crate) struct Parameters {
+    pub ends: [Entity; 2],
+    pub anchors: [Vec3; 2],
+    /// Of a torsion element, in body A's frame.
+    pub twist: Option<Vec3>,
+    /// Component name and its fields, for messages.
+    pub names: &'static Names,
+    pub stiffness: f32,
+    pub damping: f32,
+    /// `None` until captured; a damper's is irrelevant.
+    pub rest_length: Option<f32>,
+}
+
+/// Fields as messages name them; what a component has not is the empty string.
+#[derive(Debug, PartialEq)]
+pub(crate) struct Names {
+    pub ends: [&'static str; 2],
+    pub stiffness: &'static str,
+    pub damping: &'static str,
+    pub rest_length: &'static str,
+    pub axis: &'static str,
+}
+
+const NO_NAMES: Names = Names {
+    ends: ["", ""],
+    stiffness: "",
+    damping: "",
+    rest_length: "",
+    axis: "",
+};
+
+/// Greatest size of a number that a user gives, in SI units. Far beyond what any scene has, and with the products of two of
+/// them, over the least mass and time, still numbers of single precision. Pinned by the member `attack`.
+pub(crate) const MOST: f32 = 1e12;
+
+/// A number, and not one out of all measure.
+pub(crate) fn finite(value: f32, field: &'static str) -> Result<f64, Fault> {
+    if value.is_nan() {
+        Err(Fault::new(field, "is NaN"))
+    } else if value.is_infinite() {
+        Err(Fault::new(field, "is infinite"))
+    } else if value.abs() > MOST {
+        Err(Fault::new(field, "is larger than 1e12"))
+    } else {
+        Ok(f64::from(value))
+    }
+}
+
+/// Finite and not negative.
+pub(crate) fn number(value: f32, field: &'static str) -> Result<f64, Fault> {
+    let value = finite(value, field)?;
+    if value < 0.0 {
+        return Err(Fault::new(field, "is negative"));
+    }
+    Ok(value)
+}
+
+/// The unit vector.
+pub(crate) fn direction(axis: Vec3, field: &'static str) -> Result<DVec3, Fault> {
+    let unit = axis.as_dvec3().try_normalize();
+    unit.filter(|_| axis.is_finite())
+        .ok_or(Fault::new(field, "is zero or not finite"))
+}
+
+impl Parameters {
+    /// Of an element whose components cannot be read.
+    pub(crate) const NONE: Self = Self {
+        ends: [Entity::PLACEHOLDER; 2],
+        stiffness: 0.0,
+        damping: 0.0,
+        rest_length: None,
+        anchors: [Vec3::ZERO; 2],
+        twist: None,
+        names: &NO_NAMES,
+    };
+
+    /// Whether another set of numbers belongs to the same two ends.
+    pub(crate) fn is_held_like(&self, other: &Self) -> bool {
+        self.ends == other.ends && self.anchors == other.anchors && self.twist == other.twist
+    }
+
+    /// What a torsion element acts about.
+    pub(crate) fn guide(&self) -> Guide {
+        self.twist
+            .and_then(|axis| axis.as_dvec3().try_normalize())
+            .map_or(Guide::Centres, Guide::Twist)
+    }
+
+    /// A length cannot be negative; an angle, or a distance along an axis, can.
+    pub(crate) fn check_rest(&self, guide: Guide) -> Result<(), Fault> {
+        match self.rest_length {
+            Some(length) if guide == Guide::Centres && length < 0.0 => {
+                Err(Fault::new(self.names.rest_length, "is negative"))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Everything that can be judged without looking at the ends.
+    pub(crate) fn check(&self) -> Result<(), Fault> {
+        number(self.stiffness, self.names.stiffness)?;
+        number(self.damping, self.names.damping)?;
+        if let Some(rest_length) = self.rest_length {
+            finite(rest_length, self.names.rest_length)?;
+        }
+        if let Some(axis) = self.twist {
+            direction(axis, self.names.axis)?;
+        }
+        for (anchor, field) in self.anchors.iter().zip(["Anchors::a", "Anchors::b"]) {
+            for coordinate in anchor.to_array() {
+                finite(coordinate, field)?;
+            }
+        }
+        for (end, field) in self.ends.iter().zip(self.names.ends) {
+            if *end == Entity::PLACEHOLDER {
+                return Err(Fault::new(
+                    field,
+                    "does not exist yet: give the element its end, or put EndNames beside it",
+                ));
+            }
+        }
+        if self.ends[0] == self.ends[1] {
+            return Err(Fault::new(
+                self.names.ends[1],
+                "is the same entity as body_a",
+            ));
+        }
+        Ok(())
+    }
+}

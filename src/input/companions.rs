@@ -1,0 +1,367 @@
+//! What stands beside an element and changes its law: read, judged and made into one.
+
+use crate::dynamics::guide::Guide;
+use crate::dynamics::law::{DragLaw, Law, Recipe, SpringForce, Stop, Table};
+use crate::element::*;
+use crate::input::check::{Fault, MOST, Parameters, direction, finite, number};
+use crate::input::parts::PartsItem;
+use crate::input::stamps::{Stamps, StampsItem};
+use bevy::ecs::change_detection::Tick;
+use bevy::ecs::entity::EntityHashSet;
+use bevy::ecs::query::QueryData;
+use bevy::ecs::system::{SystemChangeTick, SystemParam};
+use bevy::prelude::*;
+use std::sync::Arc;
+
+/// All that can stand beside an element.
+#[derive(QueryData)]
+pub(crate) struct Beside {
+    spring: Option<&'static SpringLaw>,
+    own_spring: Option<&'static CustomSpringLaw>,
+    damping: Option<&'static DampingLaw>,
+    own_damping: Option<&'static CustomDampingLaw>,
+    action: Option<&'static SpringAction>,
+    travel: Option<&'static SpringTravel>,
+    preload: Option<&'static Preload>,
+    max_force: Option<&'static MaxForce>,
+    axis: Option<&'static SpringAxis>,
+    breakable: Option<&'static Breakable>,
+    tuning: Option<&'static SpringTuning>,
+    pose: Option<&'static HoldPose>,
+}
+
+type AnyBeside = Or<(
+    With<SpringLaw>,
+    With<CustomSpringLaw>,
+    With<DampingLaw>,
+    With<CustomDampingLaw>,
+    With<SpringAction>,
+    With<SpringTravel>,
+    With<Preload>,
+    With<MaxForce>,
+    With<SpringAxis>,
+    With<Breakable>,
+    With<SpringTuning>,
+    With<HoldPose>,
+)>;
+
+type ChangedBeside = Or<(
+    Changed<SpringLaw>,
+    Changed<CustomSpringLaw>,
+    Changed<DampingLaw>,
+    Changed<CustomDampingLaw>,
+    Changed<SpringAction>,
+    Changed<SpringTravel>,
+    Changed<Preload>,
+    Changed<MaxForce>,
+    Changed<SpringAxis>,
+    Changed<Breakable>,
+    Changed<SpringTuning>,
+    Changed<HoldPose>,
+)>;
+
+/// Finds them, and those that changed or went.
+#[derive(SystemParam)]
+pub(crate) struct Companions<'w, 's> {
+    pub(crate) all: Query<'w, 's, Beside, AnyBeside>,
+    changed: Query<'w, 's, (Entity, Stamps), ChangedBeside>,
+    gone: (
+        RemovedComponents<'w, 's, SpringLaw>,
+        RemovedComponents<'w, 's, CustomSpringLaw>,
+        RemovedComponents<'w, 's, DampingLaw>,
+        RemovedComponents<'w, 's, CustomDampingLaw>,
+        RemovedComponents<'w, 's, SpringAction>,
+        RemovedComponents<'w, 's, SpringTravel>,
+        RemovedComponents<'w, 's, Preload>,
+        RemovedComponents<'w, 's, MaxForce>,
+        RemovedComponents<'w, 's, SpringAxis>,
+    ),
+    /// Entities where something changed since the last tick.
+    pub(crate) touched: Local<'s, EntityHashSet>,
+    /// What changed up to then is no change.
+    since: Local<'s, Option<Tick>>,
+    ticks: SystemChangeTick,
+}
+
+/// What they make of an element.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Companion {
+    pub law: Option<Arc<Law>>,
+    pub guide: Guide,
+}
+
+impl Companions<'_, '_> {
+    /// Looks for changes, or for those after a tick alone.
+    pub(crate) fn look(&mut self, since: Option<Tick>) {
+        *self.since = since;
+        let now = self.ticks.this_run();
+        let is_new = |stamps: &StampsItem| since.is_none_or(|since| stamps.is_after(since, now));
+        let changed = self.changed.iter().filter(|(_, stamps)| is_new(stamps));
+        self.touched.clear();
+        self.touched.extend(changed.map(|(entity, _)| entity));
+        let gone = &mut self.gone;
+        self.touched.extend(gone.0.read());
+        self.touched.extend(gone.1.read());
+        self.touched.extend(gone.2.read());
+        self.touched.extend(gone.3.read());
+        self.touched.extend(gone.4.read());
+        self.touched.extend(gone.5.read());
+        self.touched.extend(gone.6.read());
+        self.touched.extend(gone.7.read());
+        self.touched.extend(gone.8.read());
+    }
+
+    /// Whether some part of an element changed since the last tick, or after the tick of the last [look](Self::look).
+    pub(crate) fn is_new(&self, parts: &PartsItem) -> bool {
+        match *self.since {
+            Some(since) => parts.is_changed_after(since, self.ticks.this_run()),
+            None => parts.is_changed(),
+        }
+    }
+
+    /// How an element is to be tuned once its ends are known, if it is.
+    pub(crate) fn tuning(&self, entity: Entity) -> Option<SpringTuning> {
+        self.all.get(entity).ok()?.tuning.copied()
+    }
+
+    /// Whether an element has yet to find the preload that holds its load, and how.
+    pub(crate) fn pose(&self, entity: Entity) -> Option<HoldPose> {
+        self.all.get(entity).ok()?.pose.copied()
+    }
+
+    /// What stands beside an element, as its law.
+    pub(crate) fn of(&self, entity: Entity, p: &Parameters) -> Result<Companion, Fault> {
+        match self.all.get(entity) {
+            Ok(beside) => beside.companion(p),
+            Err(_) => {
+                let guide = p.guide();
+                p.check_rest(guide)?;
+                Ok(Companion { law: None, guide })
+            }
+        }
+    }
+}
+
+impl BesideItem<'_, '_> {
+    /// What stands beside an element, as its law.
+    pub(crate) fn companion(&self, p: &Parameters) -> Result<Companion, Fault> {
+        let mut guide = p.guide();
+        if let Some(limit) = self.breakable
+            && (limit.force.is_nan() || limit.length.is_nan())
+        {
+            return Err(Fault::new("Breakable", "is NaN"));
+        }
+        if let Some(axis) = self.axis {
+            if guide != Guide::Centres {
+                return Err(Fault::new("SpringAxis", "stands on a torsion element"));
+            }
+            guide = match *axis {
+                SpringAxis::World(axis) => Guide::World(direction(axis, "SpringAxis::World")?),
+                SpringAxis::BodyA(axis) => Guide::OfA(direction(axis, "SpringAxis::BodyA")?),
+            };
+        }
+        p.check_rest(guide)?;
+        let law = if self.is_linear() {
+            None
+        } else {
+            Some(Arc::new(Law::new(self.recipe(p, guide)?)))
+        };
+        Ok(Companion { law, guide })
+    }
+
+    /// Nothing but an axis, if at all.
+    pub(crate) fn is_linear(&self) -> bool {
+        matches!(self.spring, None | Some(SpringLaw::Linear))
+            && matches!(self.damping, None | Some(DampingLaw::Linear))
+            && matches!(self.action, None | Some(SpringAction::Both))
+            && self.preload.is_none_or(|preload| preload.0 == 0.0)
+            && self.own_spring.is_none()
+            && self.own_damping.is_none()
+            && self.travel.is_none()
+            && self.max_force.is_none()
+    }
+
+    pub(crate) fn recipe(&self, p: &Parameters, guide: Guide) -> Result<Recipe, Fault> {
+        let most = self
+            .max_force
+            .map_or(Ok(f64::INFINITY), |most| check_most(*most))?;
+        let mut limits = [-most, most];
+        match self.action {
+            None | Some(SpringAction::Both) => {}
+            Some(SpringAction::Pull) => limits[0] = 0.0,
+            Some(SpringAction::Push) => limits[1] = 0.0,
+        }
+        let (travel, stop) = match self.travel {
+            Some(travel) => check_travel(travel, guide)?,
+            None => ([f64::NEG_INFINITY, f64::INFINITY], Stop::default()),
+        };
+        let preload = self.preload.copied().unwrap_or_default().0;
+        Ok(Recipe {
+            spring: self.spring_force(p)?,
+            drag: self.drag(p)?,
+            preload: finite(preload, "Preload")?,
+            limits,
+            most,
+            travel,
+            stop,
+        })
+    }
+
+    fn spring_force(&self, p: &Parameters) -> Result<SpringForce, Fault> {
+        const ALIKE: &str = "stands together with CustomSpringLaw; use one of them";
+        let both = |coefficients: [f64; 3]| SpringForce::Polynomial {
+            pull: coefficients,
+            push: coefficients,
+        };
+        if p.names.stiffness.is_empty() {
+            return match (self.spring, self.own_spring) {
+                (None, None) => Ok(both([0.0; 3])),
+                _ => Err(Fault::new(
+                    "SpringLaw",
+                    "stands on a damper without a spring",
+                )),
+            };
+        }
+        let stiffness = f64::from(p.stiffness);
+        match (self.spring, self.own_spring) {
+            (Some(_), Some(_)) => Err(Fault::new("SpringLaw", ALIKE)),
+            (None, Some(own)) => Ok(SpringForce::Custom(Arc::new(Theirs(own.0.clone())))),
+            (None | Some(SpringLaw::Linear), None) => Ok(both([stiffness, 0.0, 0.0])),
+            (Some(SpringLaw::Cubic), None) => Ok(both([0.0, 0.0, stiffness])),
+            (Some(SpringLaw::Polynomial { pull, push }), None) => Ok(SpringForce::Polynomial {
+                pull: coefficients(pull)?,
+                push: coefficients(push)?,
+            }),
+            (Some(SpringLaw::Table(points)), None) => {
+                let table = table(points, "SpringLaw::Table")?;
+                Ok(SpringForce::Table(Arc::new(table)))
+            }
+        }
+    }
+
+    fn drag(&self, p: &Parameters) -> Result<DragLaw, Fault> {
+        if p.names.damping.is_empty() {
+            return match (self.damping, self.own_damping) {
+                (None, None) => Ok(DragLaw::Linear(0.0)),
+                _ => Err(Fault::new(
+                    "DampingLaw",
+                    "stands on a spring without a damper",
+                )),
+            };
+        }
+        match (self.damping, self.own_damping) {
+            (Some(_), Some(_)) => Err(Fault::new(
+                "DampingLaw",
+                "stands together with CustomDampingLaw; use one of them",
+            )),
+            (None, Some(own)) => Ok(DragLaw::Custom(Arc::new(Theirs(own.0.clone())))),
+            (None | Some(DampingLaw::Linear), None) => Ok(DragLaw::Linear(f64::from(p.damping))),
+            (Some(DampingLaw::Sided { bump, rebound }), None) => Ok(DragLaw::Sided {
+                bump: number(*bump, "DampingLaw::Sided::bump")?,
+                rebound: number(*rebound, "DampingLaw::Sided::rebound")?,
+            }),
+            (Some(DampingLaw::Quadratic { linear, quadratic }), None) => Ok(DragLaw::Quadratic {
+                linear: number(*linear, "DampingLaw::Quadratic::linear")?,
+                quadratic: number(*quadratic, "DampingLaw::Quadratic::quadratic")?,
+            }),
+            (
+                Some(DampingLaw::BlowOff {
+                    damping,
+                    knee,
+                    beyond,
+                }),
+                None,
+            ) => Ok(DragLaw::BlowOff {
+                damping: number(*damping, "DampingLaw::BlowOff::damping")?,
+                knee: number(*knee, "DampingLaw::BlowOff::knee")?,
+                beyond: number(*beyond, "DampingLaw::BlowOff::beyond")?,
+            }),
+            (Some(DampingLaw::Table(points)), None) => {
+                const FIELD: &str = "DampingLaw::Table";
+                let table = table(points, FIELD)?;
+                let most = points.points.iter().fold(0.0, |m, p| p.y.abs().max(m));
+                if table.at(0.0)[0].abs() > 1e-5 * f64::from(most) {
+                    return Err(Fault::new(FIELD, "has a force at rest"));
+                }
+                Ok(DragLaw::Table(Arc::new(table)))
+            }
+        }
+    }
+}
+
+fn coefficients(p: &Polynomial) -> Result<[f64; 3], Fault> {
+    Ok([
+        number(p.linear, "Polynomial::linear")?,
+        number(p.quadratic, "Polynomial::quadratic")?,
+        number(p.cubic, "Polynomial::cubic")?,
+    ])
+}
+
+fn table(table: &ForceTable, field: &'static str) -> Result<Table, Fault> {
+    let fault = |reason| Err(Fault::new(field, reason));
+    let points = &table.points;
+    if points.len() < 2 {
+        return fault("has fewer than two points");
+    }
+    if points.iter().any(|p| !p.is_finite()) {
+        return fault("has a point that is not finite");
+    }
+    if points.windows(2).any(|p| p[0].x >= p[1].x) {
+        return fault("has points whose x does not rise strictly");
+    }
+    if points.windows(2).any(|p| p[0].y > p[1].y) {
+        return fault("has a force that falls as x rises");
+    }
+    let points: Vec<_> = points
+        .iter()
+        .map(|p| (f64::from(p.x), f64::from(p.y)))
+        .collect();
+    let steep = |p: &[(f64, f64)]| p[1].1 - p[0].1 > f64::from(MOST) * (p[1].0 - p[0].0);
+    if points
+        .iter()
+        .any(|(x, y)| x.abs().max(y.abs()) > f64::from(MOST))
+    {
+        return fault("has a point larger than 1e12");
+    }
+    if points.windows(2).any(steep) {
+        return fault("has a slope larger than 1e12");
+    }
+    Ok(Table::new(&points))
+}
+
+fn check_most(MaxForce(most): MaxForce) -> Result<f64, Fault> {
+    if most > 0.0 {
+        Ok(f64::from(most))
+    } else {
+        Err(Fault::new("MaxForce", "is not above zero"))
+    }
+}
+
+fn check_travel(travel: &SpringTravel, guide: Guide) -> Result<([f64; 2], Stop), Fault> {
+    let stop = Stop {
+        stiffness: number(travel.stop_stiffness, "SpringTravel::stop_stiffness")?,
+        progression: number(travel.progression, "SpringTravel::progression")?,
+        damping: number(travel.stop_damping, "SpringTravel::stop_damping")?,
+    };
+    let (min, max) = (travel.min_length, travel.max_length);
+    if min.is_nan() || min == f32::INFINITY || (guide == Guide::Centres && min < 0.0) {
+        return Err(Fault::new(
+            "SpringTravel::min_length",
+            "is negative or not a number",
+        ));
+    }
+    if max.is_nan() || max <= min {
+        return Err(Fault::new(
+            "SpringTravel::max_length",
+            "is not above min_length",
+        ));
+    }
+    // A distance is never below zero.
+    let none = guide == Guide::Centres && min == 0.0;
+    let least = if none {
+        f64::NEG_INFINITY
+    } else {
+        f64::from(min)
+    };
+    Ok(([least, f64::from(max)], stop))
+}

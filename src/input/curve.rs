@@ -1,0 +1,40 @@
+//! An element's own law as curves, for what shows them.
+
+use crate::dynamics::law::Law;
+use crate::input::companions::Beside;
+use crate::input::parts::Parts;
+use bevy::prelude::*;
+use std::sync::Arc;
+
+/// What an element's forces are for a length and its rate.
+#[derive(Clone, Debug)]
+pub(crate) struct Curve {
+    law: Arc<Law>,
+    rest: f64,
+}
+
+impl Curve {
+    /// Of an element; none where its numbers are wrong, or its rest length not known yet.
+    pub(crate) fn of(elements: &Query<(Parts, Beside)>, entity: Entity) -> Option<Self> {
+        let (parts, beside) = elements.get(entity).ok()?;
+        let p = parts.parameters().ok()?;
+        p.check().ok()?;
+        let companion = beside.companion(&p).ok()?;
+        let law = companion.law.unwrap_or_else(|| {
+            let [stiffness, damping] = [p.stiffness, p.damping].map(f64::from);
+            Arc::new(Law::linear(stiffness, damping))
+        });
+        let rest = f64::from(p.rest_length?);
+        Some(Self { law, rest })
+    }
+
+    /// Tension of spring and stops, N.
+    pub(crate) fn spring(&self, length: f64) -> f64 {
+        self.law.elastic(length, self.rest).force
+    }
+
+    /// Tension of the damper, N.
+    pub(crate) fn damper(&self, length: f64, rate: f64) -> f64 {
+        self.law.drag(length, self.rest, rate).force
+    }
+}

@@ -1,0 +1,12 @@
+//! From components to numbers: what the user has spawned, read, judged and named; no engine.
+
+pub(crate) mod anchoring;
+pub(crate) mod check;
+pub(crate) mod companions;
+#[cfg(feature = "workbench")]
+pub(crate) mod curve;
+pub(crate) mod named_ends;
+pub(crate) mod parts;
+pub(crate) mod pose;
+pub(crate) mod stamps;
+pub(crate) mod strays;

@@ -1,0 +1,230 @@
+//! Ends by name become ends. Nothing here runs while no element waits for one.
+
+use crate::element::{
+    AwaitsEnds, Damper, EndNames, Spring, SpringDamper, SpringFault, TorsionDamper, TorsionSpring,
+    TorsionSpringDamper,
+};
+use crate::input::parts::IsElement;
+use crate::readout::SpringReadout;
+use bevy::ecs::entity_disabling::Disabled;
+use bevy::ecs::system::{SystemParam, SystemState};
+use bevy::platform::collections::HashMap;
+use bevy::prelude::*;
+
+/// Parents that are followed up: more than any real scene has, so that parents in a circle do not hang the game.
+const MOST_LEVELS: usize = 4096;
+
+/// An element that the engine leaves out until its ends are found.
+type Waits = (With<EndNames>, With<AwaitsEnds>, IsElement);
+
+/// What can let a name be found that was not, or found once that was found twice.
+#[derive(SystemParam)]
+pub(crate) struct Chances<'w, 's> {
+    names: Query<'w, 's, (), Or<(Changed<Name>, Changed<ChildOf>)>>,
+    elements: Query<
+        'w,
+        's,
+        (),
+        (
+            Waits,
+            Or<(
+                Changed<EndNames>,
+                Changed<AwaitsEnds>,
+                Changed<SpringReadout>,
+            )>,
+        ),
+    >,
+    nameless: RemovedComponents<'w, 's, Name>,
+    orphans: RemovedComponents<'w, 's, ChildOf>,
+    enabled: RemovedComponents<'w, 's, Disabled>,
+}
+
+impl Chances<'_, '_> {
+    /// Whether there is any since the last look.
+    fn any(&mut self) -> bool {
+        let gone = [
+            self.nameless.read().count(),
+            self.orphans.read().count(),
+            self.enabled.read().count(),
+        ];
+        gone != [0; 3] || !self.names.is_empty() || !self.elements.is_empty()
+    }
+}
+
+/// The names of the world and who waits for them.
+#[derive(SystemParam)]
+pub(crate) struct Look<'w, 's> {
+    chances: Chances<'w, 's>,
+    waiting: Query<'w, 's, (Entity, &'static EndNames), Waits>,
+    named: Query<'w, 's, (Entity, &'static Name)>,
+    parents: Query<'w, 's, &'static ChildOf>,
+    given_up: Query<'w, 's, Entity, (With<AwaitsEnds>, Without<EndNames>)>,
+}
+
+/// Who bears a name, on or below a place.
+#[derive(Clone, Copy)]
+struct Bearers {
+    one: Entity,
+    count: usize,
+}
+
+/// Bearers of the names that are looked for: by the place on or below which they stand, or in the world.
+type Index = HashMap<(Option<Entity>, usize), Bearers>;
+
+/// An end that was found, or is to stay as it is.
+type End = Option<Entity>;
+
+/// Looks for ends by name, where anything has come that may be one.
+pub(crate) fn find_named_ends(world: &mut World, look: &mut SystemState<Look>) {
+    let Ok(mut look) = look.get_mut(world) else {
+        return;
+    };
+    let given_up: Vec<_> = look.given_up.iter().collect();
+    let found = if look.chances.any() {
+        look.find_all()
+    } else {
+        Vec::new()
+    };
+    for entity in given_up {
+        settle(world, entity);
+    }
+    for (entity, ends) in found {
+        match ends {
+            Ok(ends) => {
+                tie(world, entity, ends);
+                settle(world, entity);
+            }
+            Err(fault) => complain(world, entity, fault),
+        }
+    }
+}
+
+impl Look<'_, '_> {
+    fn find_all(&self) -> Vec<(Entity, Result<[End; 2], SpringFault>)> {
+        let mut wanted = HashMap::<&str, usize>::default();
+        for (_, names) in &self.waiting {
+            for name in [&names.a, &names.b] {
+                let number = wanted.len();
+                wanted.entry(name).or_insert(number);
+            }
+        }
+        let mut index = Index::default();
+        for (entity, name) in &self.named {
+            if let Some(number) = wanted.get(name.as_str()) {
+                self.enter(entity, *number, name, &mut index);
+            }
+        }
+        let find = |entity, name: &str, field: &str| -> Result<End, SpringFault> {
+            if name.is_empty() {
+                return Ok(None);
+            }
+            let fault = |reason| SpringFault {
+                entity,
+                field: field.into(),
+                reason,
+            };
+            let Some((place, bearers)) = self.bearers(entity, wanted[name], &index) else {
+                return Err(fault(format!("names '{name}', which no entity has")));
+            };
+            if bearers.count > 1 {
+                let count = bearers.count;
+                let place = match place.map(|place| (place, self.named.get(place))) {
+                    Some((_, Ok((_, name)))) => format!("below '{name}'"),
+                    Some((place, Err(_))) => format!("below {place}"),
+                    None => "of the world".into(),
+                };
+                return Err(fault(format!(
+                    "names '{name}', which {count} entities {place} have; give each a name of its own"
+                )));
+            }
+            Ok(Some(bearers.one))
+        };
+        let ends = |(entity, names): (Entity, &EndNames)| {
+            let a = find(entity, &names.a, "EndNames::a");
+            let b = find(entity, &names.b, "EndNames::b");
+            (entity, a.and_then(|a| Ok([a, b?])))
+        };
+        self.waiting.iter().map(ends).collect()
+    }
+
+    /// Enters a bearer of a name at all places that it stands on or below, up to one above it that has the same name.
+    fn enter(&self, entity: Entity, number: usize, name: &Name, index: &mut Index) {
+        let mut add = |place| {
+            let bearers = index.entry((place, number)).or_insert(Bearers {
+                one: entity,
+                count: 0,
+            });
+            bearers.count += 1;
+        };
+        add(Some(entity));
+        for above in self.places_above(entity) {
+            if self.named.get(above).is_ok_and(|(_, other)| other == name) {
+                return;
+            }
+            add(Some(above));
+        }
+        add(None);
+    }
+
+    /// The bearers of a name that are nearest to an element, and where.
+    fn bearers(
+        &self,
+        entity: Entity,
+        number: usize,
+        index: &Index,
+    ) -> Option<(Option<Entity>, Bearers)> {
+        let places = [entity].into_iter().chain(self.places_above(entity));
+        places
+            .map(Some)
+            .chain([None])
+            .find_map(|place| Some((place, *index.get(&(place, number))?)))
+    }
+
+    fn places_above(&self, entity: Entity) -> impl Iterator<Item = Entity> {
+        self.parents.iter_ancestors(entity).take(MOST_LEVELS)
+    }
+}
+
+/// Writes ends into an element, whichever it is.
+fn tie(world: &mut World, entity: Entity, ends: [End; 2]) {
+    macro_rules! tie {
+        ($($element:ty),*) => {$(
+            if let Some(mut element) = world.get_mut::<$element>(entity) {
+                element.set_changed();
+                element.body_a = ends[0].unwrap_or(element.body_a);
+                element.body_b = ends[1].unwrap_or(element.body_b);
+            }
+        )*};
+    }
+    tie!(
+        Spring,
+        Damper,
+        SpringDamper,
+        TorsionSpring,
+        TorsionDamper,
+        TorsionSpringDamper
+    );
+}
+
+/// The element waits no longer; what else is wrong with it the engine will say.
+fn settle(world: &mut World, entity: Entity) {
+    if let Ok(mut element) = world.get_entity_mut(entity) {
+        element.remove::<(AwaitsEnds, SpringFault)>();
+    }
+}
+
+/// Says once which name is wrong.
+fn complain(world: &mut World, entity: Entity, fault: SpringFault) {
+    let Ok(mut element) = world.get_entity_mut(entity) else {
+        return;
+    };
+    if element.get() == Some(&fault) {
+        return;
+    }
+    log::warn!("{fault}");
+    if let Some(mut readout) = element.get_mut::<SpringReadout>() {
+        // What it shows would be taken for a force that still acts.
+        *readout.bypass_change_detection() = SpringReadout::default();
+    }
+    element.insert(fault);
+}

@@ -1,0 +1,203 @@
+//! An element's components, whichever they are, as one set of numbers.
+
+use crate::element::{
+    Anchors, AwaitsEnds, Damper, Spring, SpringDamper, TorsionDamper, TorsionSpring,
+    TorsionSpringDamper,
+};
+use crate::input::check::{Fault, Names, Parameters};
+use bevy::ecs::change_detection::Tick;
+use bevy::ecs::query::QueryData;
+use bevy::prelude::*;
+
+/// The parts of an element.
+#[derive(QueryData)]
+pub(crate) struct Parts {
+    pub entity: Entity,
+    spring: Option<Ref<'static, Spring>>,
+    damper: Option<Ref<'static, Damper>>,
+    pair: Option<Ref<'static, SpringDamper>>,
+    torsion_spring: Option<Ref<'static, TorsionSpring>>,
+    torsion_damper: Option<Ref<'static, TorsionDamper>>,
+    torsion_pair: Option<Ref<'static, TorsionSpringDamper>>,
+    anchors: Option<Ref<'static, Anchors>>,
+}
+
+/// What makes an entity an element.
+pub(crate) type IsElement = Or<(
+    With<Spring>,
+    With<Damper>,
+    With<SpringDamper>,
+    With<TorsionSpring>,
+    With<TorsionDamper>,
+    With<TorsionSpringDamper>,
+)>;
+
+/// An element that takes part: one that waits for an end does not.
+pub(crate) type Acts = (IsElement, Without<AwaitsEnds>);
+
+/// An element some part of which changed.
+pub(crate) type ChangedParts = Or<(
+    Changed<Spring>,
+    Changed<Damper>,
+    Changed<SpringDamper>,
+    Changed<TorsionSpring>,
+    Changed<TorsionDamper>,
+    Changed<TorsionSpringDamper>,
+    Changed<Anchors>,
+)>;
+
+/// A component's [`Names`], in their order.
+const fn names(
+    ends: [&'static str; 2],
+    stiffness: &'static str,
+    damping: &'static str,
+    rest_length: &'static str,
+    axis: &'static str,
+) -> Names {
+    Names {
+        ends,
+        stiffness,
+        damping,
+        rest_length,
+        axis,
+    }
+}
+
+const SPRING: Names = names(
+    ["Spring::body_a", "Spring::body_b"],
+    "Spring::stiffness",
+    "",
+    "Spring::rest_length",
+    "",
+);
+const DAMPER: Names = names(
+    ["Damper::body_a", "Damper::body_b"],
+    "",
+    "Damper::damping",
+    "",
+    "",
+);
+const PAIR: Names = names(
+    ["SpringDamper::body_a", "SpringDamper::body_b"],
+    "SpringDamper::stiffness",
+    "SpringDamper::damping",
+    "SpringDamper::rest_length",
+    "",
+);
+const TORSION_SPRING: Names = names(
+    ["TorsionSpring::body_a", "TorsionSpring::body_b"],
+    "TorsionSpring::stiffness",
+    "",
+    "TorsionSpring::rest_angle",
+    "TorsionSpring::axis",
+);
+const TORSION_DAMPER: Names = names(
+    ["TorsionDamper::body_a", "TorsionDamper::body_b"],
+    "",
+    "TorsionDamper::damping",
+    "",
+    "TorsionDamper::axis",
+);
+const TORSION_PAIR: Names = names(
+    ["TorsionSpringDamper::body_a", "TorsionSpringDamper::body_b"],
+    "TorsionSpringDamper::stiffness",
+    "TorsionSpringDamper::damping",
+    "TorsionSpringDamper::rest_angle",
+    "TorsionSpringDamper::axis",
+);
+
+/// Any rest length but zero will do for a damper: zero means an isotropic spring.
+const NO_MATTER: Option<f32> = Some(1.0);
+
+impl PartsItem<'_, '_> {
+    pub(crate) fn is_changed(&self) -> bool {
+        fn changed<T: Component>(part: &Option<Ref<T>>) -> bool {
+            part.as_ref().is_some_and(Ref::is_changed)
+        }
+        changed(&self.pair)
+            || changed(&self.spring)
+            || changed(&self.damper)
+            || changed(&self.anchors)
+            || changed(&self.torsion_spring)
+            || changed(&self.torsion_damper)
+            || changed(&self.torsion_pair)
+    }
+
+    /// Whether that was after some tick.
+    pub(crate) fn is_changed_after(&self, since: Tick, now: Tick) -> bool {
+        let after = |changed: Option<Tick>| changed.is_some_and(|at| at.is_newer_than(since, now));
+        fn at<T: Component>(part: &Option<Ref<T>>) -> Option<Tick> {
+            part.as_ref().map(Ref::last_changed)
+        }
+        after(at(&self.pair))
+            || after(at(&self.spring))
+            || after(at(&self.damper))
+            || after(at(&self.anchors))
+            || after(at(&self.torsion_spring))
+            || after(at(&self.torsion_damper))
+            || after(at(&self.torsion_pair))
+    }
+
+    /// Both ends, of a sound element.
+    #[cfg(feature = "workbench")]
+    pub(crate) fn ends(&self) -> Option<[Entity; 2]> {
+        self.parameters().ok().map(|p| p.ends)
+    }
+
+    /// Reads whichever component is there.
+    pub(crate) fn parameters(&self) -> Result<Parameters, Fault> {
+        let anchors = self.anchors.as_deref().copied().unwrap_or_default();
+        let mut found = None;
+        let mut count = 0;
+        let mut add = |ends, stiffness, damping, rest_length, twist, names| {
+            count += 1;
+            found = Some(Parameters {
+                ends,
+                stiffness,
+                damping,
+                rest_length,
+                anchors: [anchors.a, anchors.b],
+                twist,
+                names,
+            });
+        };
+        if let Some(s) = &self.spring {
+            let ends = [s.body_a, s.body_b];
+            add(ends, s.stiffness, 0.0, s.rest_length, None, &SPRING);
+        }
+        if let Some(d) = &self.damper {
+            let ends = [d.body_a, d.body_b];
+            add(ends, 0.0, d.damping, NO_MATTER, None, &DAMPER);
+        }
+        if let Some(p) = &self.pair {
+            let ends = [p.body_a, p.body_b];
+            add(ends, p.stiffness, p.damping, p.rest_length, None, &PAIR);
+        }
+        if let Some(s) = &self.torsion_spring {
+            let (ends, axis) = ([s.body_a, s.body_b], Some(s.axis));
+            add(ends, s.stiffness, 0.0, s.rest_angle, axis, &TORSION_SPRING);
+        }
+        if let Some(d) = &self.torsion_damper {
+            let (ends, axis) = ([d.body_a, d.body_b], Some(d.axis));
+            add(ends, 0.0, d.damping, NO_MATTER, axis, &TORSION_DAMPER);
+        }
+        if let Some(p) = &self.torsion_pair {
+            let (ends, axis) = ([p.body_a, p.body_b], Some(p.axis));
+            add(
+                ends,
+                p.stiffness,
+                p.damping,
+                p.rest_angle,
+                axis,
+                &TORSION_PAIR,
+            );
+        }
+        match (found, count) {
+            (Some(found), 1) => Ok(found),
+            _ => Err(Fault::new(
+                "Spring, Damper, SpringDamper",
+                "stand together on one entity; use one of them, or SpringDamper for both at once",
+            )),
+        }
+    }
+}

@@ -1,0 +1,61 @@
+//! The preload with which an element's load stays where it is.
+
+use crate::backend::{Finder, Place};
+use crate::dynamics::guide::Guide;
+use crate::dynamics::law::Law;
+use crate::element::HoldPose;
+use crate::input::check::{Fault, Parameters};
+use crate::input::companions::{Companion, Companions};
+use bevy::prelude::*;
+use std::sync::Arc;
+
+/// Share of the tension by which the one that the law gives may differ.
+const NEAR: f64 = 1e-3;
+
+impl Companions<'_, '_> {
+    /// What an element becomes with the preload that gives it a tension at a length, and that preload, N.
+    fn holding(
+        &self,
+        entity: Entity,
+        p: &Parameters,
+        guide: Guide,
+        [tension, length]: [f64; 2],
+    ) -> Result<(Companion, f32), Fault> {
+        let fault = |reason| Err(Fault::new("HoldPose", reason));
+        let Ok(beside) = self.all.get(entity) else {
+            return fault("is gone");
+        };
+        if p.names.stiffness.is_empty() {
+            return fault("stands on a damper without a spring");
+        }
+        let rest = f64::from(p.rest_length.unwrap_or(length as f32));
+        let mut recipe = beside.recipe(p, guide)?;
+        recipe.preload = 0.0;
+        let mut bare = recipe.clone();
+        bare.limits = [f64::NEG_INFINITY, f64::INFINITY];
+        let preload = (tension - Law::new(bare).elastic(length, rest).force) as f32;
+        recipe.preload = f64::from(preload);
+        let law = Law::new(recipe);
+        let gives = law.elastic(length, rest).force;
+        // A law of a user's own may give anything; that is found in the step.
+        if (gives - tension).abs() > NEAR * tension.abs() + 1e-6 {
+            return fault("needs a tension that SpringAction, MaxForce or a stop does not allow");
+        }
+        let law = (!(beside.is_linear() && preload == 0.0)).then(|| Arc::new(law));
+        Ok((Companion { law, guide }, preload))
+    }
+
+    /// Finds the preload that holds an element's load.
+    pub(crate) fn hold(
+        &self,
+        entity: Entity,
+        pose: HoldPose,
+        parameters: &Parameters,
+        guide: Guide,
+        places: &[Place; 2],
+        finder: &impl Finder,
+    ) -> Result<(Companion, f32), Fault> {
+        let held = finder.pose(pose, guide, places)?;
+        self.holding(entity, parameters, guide, held)
+    }
+}

@@ -1,0 +1,146 @@
+//! Companions and looks that stand where no element is do nothing; that is told once.
+//!
+//! Observers see them come, so that a world in which nothing comes pays nothing.
+
+use crate::compat::Added;
+use crate::element::{Damper, Spring, SpringDamper};
+use crate::input::parts::IsElement;
+use bevy::ecs::entity::{EntityHashMap, EntityHashSet};
+use bevy::prelude::*;
+
+/// Ticks that an entity has to get its element.
+const GRACE: u8 = 4;
+
+/// What a stray component is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Role {
+    /// It changes what an element does.
+    Companion,
+    /// It draws a linear element.
+    #[cfg_attr(not(feature = "visual"), allow(dead_code))]
+    Look,
+    /// It draws a torsion element.
+    #[cfg_attr(not(feature = "visual"), allow(dead_code))]
+    Spiral,
+}
+
+/// Entities that have a companion or a look, and had no element when that came.
+#[derive(Resource, Debug, Default)]
+pub(crate) struct Strays {
+    waiting: EntityHashMap<Stray>,
+    told: EntityHashSet,
+    /// There is something to draw, and it was said that nobody does.
+    #[cfg(feature = "visual")]
+    undrawn: Option<bool>,
+}
+
+#[derive(Clone, Debug, Default)]
+struct Stray {
+    names: Vec<&'static str>,
+    looks: Vec<&'static str>,
+    spirals: Vec<&'static str>,
+    left: u8,
+}
+
+/// Makes an app notice where a component stands.
+pub(crate) fn notice<C: Component>(app: &mut App, role: Role, name: &'static str) {
+    let observer =
+        move |added: Added<C>,
+              elements: Query<(), IsElement>,
+              linear: Query<(), Or<(With<Spring>, With<Damper>, With<SpringDamper>)>>,
+              mut strays: ResMut<Strays>| {
+            let entity = added.entity;
+            #[cfg(feature = "visual")]
+            if role != Role::Companion {
+                strays.undrawn.get_or_insert(false);
+            }
+            let at_home = match role {
+                Role::Companion => elements.contains(entity),
+                Role::Look => linear.contains(entity),
+                Role::Spiral => elements.contains(entity) && !linear.contains(entity),
+            };
+            if at_home || strays.told.contains(&entity) {
+                return;
+            }
+            let stray = strays.waiting.entry(entity).or_insert(Stray {
+                names: Vec::new(),
+                looks: Vec::new(),
+                spirals: Vec::new(),
+                left: GRACE,
+            });
+            let list = match role {
+                Role::Companion => &mut stray.names,
+                Role::Look => &mut stray.looks,
+                Role::Spiral => &mut stray.spirals,
+            };
+            if !list.contains(&name) {
+                list.push(name);
+            }
+        };
+    app.add_observer(observer);
+}
+
+/// Whether there is anything to look after.
+pub(crate) fn any_strays(strays: Res<Strays>) -> bool {
+    #[cfg(feature = "visual")]
+    if strays.undrawn == Some(false) {
+        return true;
+    }
+    !strays.waiting.is_empty()
+}
+
+/// Tells of what still has no element.
+pub(crate) fn tell_strays(
+    mut strays: ResMut<Strays>,
+    elements: Query<Has<Spring>, IsElement>,
+    linear: Query<(), Or<(With<Spring>, With<Damper>, With<SpringDamper>)>>,
+    entities: Query<()>,
+    #[cfg(feature = "visual")] drawn: Option<Res<crate::visual::IsDrawn>>,
+) {
+    let strays = &mut *strays;
+    #[cfg(feature = "visual")]
+    if strays.undrawn == Some(false) {
+        strays.undrawn = Some(true);
+        if drawn.is_none() {
+            log::warn!(
+                "bevy_coilover: there is a Coil, a Telescope or a TorsionCoil, but CoiloverVisualPlugin is missing, so nothing \
+                 is drawn; add CoiloverPlugins instead of CoiloverPlugin"
+            );
+        }
+    }
+    let Strays { waiting, told, .. } = strays;
+    waiting.retain(|&entity, stray| {
+        if !entities.contains(entity) {
+            return false;
+        }
+        let is_element = elements.contains(entity);
+        let is_linear = linear.contains(entity);
+        let misplaced = if is_linear { &stray.spirals } else { &stray.looks };
+        if is_element && misplaced.is_empty() {
+            return false;
+        }
+        stray.left -= 1;
+        if stray.left > 0 {
+            return true;
+        }
+        told.insert(entity);
+        if is_element {
+            let looks = misplaced.join(", ");
+            let (on, other) = if is_linear {
+                ("linear", "Coil or Telescope")
+            } else {
+                ("torsion", "TorsionCoil")
+            };
+            log::warn!(
+                "{entity}: {looks}: stands on a {on} element, which it does not draw; use a {other}"
+            );
+        } else {
+            let all = [&stray.names[..], &stray.looks[..], &stray.spirals[..]].concat().join(", ");
+            log::warn!(
+                "{entity}: {all}: stands on an entity without an element, so it does nothing; put it on the \
+                 entity that has the Spring, Damper, SpringDamper or torsion element"
+            );
+        }
+        false
+    });
+}

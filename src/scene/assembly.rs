@@ -1,0 +1,263 @@
+//! One component through one step: gather, wake, integrate, deliver.
+
+use crate::backend::{Engine, Push, Seen, Sight};
+use crate::dynamics::body::Body;
+use crate::dynamics::step::Component;
+use crate::dynamics::tolerance::{Accuracy, Outcome};
+use crate::scene::element::element;
+use crate::scene::rows::{BodyRow, ElementRow, Members, pull_mark};
+use crate::scene::sleep::omega_of;
+use crate::scene::step::Step;
+use crate::scene::warm_start::WarmStart;
+use std::mem::{replace, take};
+use std::sync::atomic::Ordering;
+
+/// A component with its bodies and elements, kept from tick to tick.
+#[derive(Default)]
+pub(crate) struct Assembly {
+    /// Tells its component from others.
+    pub(crate) signature: u64,
+    /// Index of the group whose it is.
+    pub(crate) group: usize,
+    pub(crate) component: Component,
+    /// Its bodies at the start of the step.
+    start: Vec<Body>,
+    seen: Vec<Seen>,
+    /// What each of them is to be given.
+    orders: Vec<Push>,
+    pub(crate) state: State,
+    /// It was found asleep.
+    asleep: bool,
+    pub(crate) outcome: Outcome,
+    pub(crate) warm: WarmStart,
+}
+
+/// What there is to do.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) enum State {
+    /// Nothing: asleep, or not to be stepped.
+    #[default]
+    Resting,
+    /// No element acts, so their shares are taken back.
+    Powerless,
+    /// To be advanced.
+    Ready,
+}
+
+impl Assembly {
+    /// How much work it is to advance.
+    pub(crate) fn load(&self) -> usize {
+        if self.state == State::Ready {
+            self.component.elements.len()
+        } else {
+            0
+        }
+    }
+
+    /// Whether it was found asleep in this step.
+    pub(crate) fn is_asleep(&self) -> bool {
+        self.asleep
+    }
+
+    /// Has everything about its elements read again in its next step, whenever that is.
+    pub(crate) fn read_anew(&mut self) {
+        self.component.forget_points();
+    }
+
+    /// Readies it for another component.
+    pub(crate) fn forget(&mut self) {
+        self.component.forget();
+        self.asleep = false;
+    }
+
+    /// Reads bodies and elements, and decides whether there is anything to do.
+    pub(crate) fn gather(
+        &mut self,
+        step: &Step,
+        members: &Members,
+        elements: &mut [ElementRow],
+        bodies: &mut [BodyRow],
+        engine: &mut impl Engine,
+        stale: &mut bool,
+    ) {
+        self.state = State::Resting;
+        if step.quiet && self.asleep && step.is_left_alone(members, elements, bodies, engine) {
+            return;
+        }
+        self.asleep = false;
+        self.component.farthest_move = Some(step.plan.fastest * step.plan.time);
+        if self.continue_warm(step, members, elements, bodies, engine) {
+            return;
+        }
+        if !self.gather_bodies(step, members, bodies, engine, stale) {
+            return;
+        }
+        let sound = self.start.iter().all(Body::is_finite);
+        let disturbed = self.gather_elements(step, members, elements, bodies, engine);
+        let omega = self.warm.omega;
+        let awake = step.is_awake(bodies, members.bodies, omega, engine, disturbed);
+        for e in members.elements {
+            elements[*e].active = awake;
+        }
+        if !awake {
+            self.asleep = true;
+            return;
+        }
+        self.component.bodies.clone_from(&self.start);
+        self.state = if sound && !self.component.elements.is_empty() {
+            State::Ready
+        } else {
+            State::Powerless
+        };
+    }
+
+    /// Reads its bodies; says whether all can be moved.
+    fn gather_bodies(
+        &mut self,
+        step: &Step,
+        members: &Members,
+        bodies: &mut [BodyRow],
+        sight: &impl Sight,
+        stale: &mut bool,
+    ) -> bool {
+        let component = &mut self.component;
+        component.forget_points();
+        component.elements.clear();
+        self.start.clear();
+        self.seen.clear();
+        self.warm.centers.clear();
+        component.perturbed = self.warm.perturbed;
+        for b in members.bodies {
+            let row = &mut bodies[*b];
+            let Some(seen) = step.movable(sight, row.id, stale) else {
+                return false;
+            };
+            let Some(mut free) = sight.body(row.id, &row.user, row.turns) else {
+                return false;
+            };
+            row.can_touch = seen.can_touch;
+            self.warm.centers.push(seen.local_center);
+            if row.turns {
+                free.farthest_turn = step.farthest_turn(&seen);
+            }
+            let pulled = pull_mark(free.acceleration);
+            component.perturbed |= row.was_perturbed(&seen, free.position);
+            component.perturbed |= replace(&mut row.pulled, pulled) != pulled;
+            self.start.push(free);
+            self.seen.push(seen);
+        }
+        true
+    }
+
+    /// Reads its elements, whose bodies have been read; says whether anything has been done to them.
+    fn gather_elements(
+        &mut self,
+        step: &Step,
+        members: &Members,
+        elements: &mut [ElementRow],
+        bodies: &[BodyRow],
+        sight: &impl Sight,
+    ) -> bool {
+        let (mut disturbed, mut omega) = (false, 0.0_f32);
+        self.warm.ends.clear();
+        for (index, e) in members.elements.iter().enumerate() {
+            let row = &mut elements[*e];
+            let has_moved = step.has_moved(row, sight);
+            self.component.perturbed |= has_moved || take(&mut row.refitted);
+            disturbed |= row.changed || has_moved;
+            let ends = [0, 1].map(|end| step.end(row, end, bodies, sight));
+            if let Some(element) = element(row, ends, &self.start) {
+                if has_moved {
+                    row.account_for_leap(element.distance(&self.start).0);
+                }
+                omega = omega.max(omega_of(row));
+                for (end, _) in ends.iter().enumerate().filter(|(_, end)| end.is_path()) {
+                    self.warm.ends.push((index, end));
+                }
+                self.component.elements.push(element);
+            }
+        }
+        self.warm.omega = omega;
+        disturbed
+    }
+
+    /// Integrates over the step, and works out what takes the bodies there.
+    pub(crate) fn advance(&mut self, step: &Step, accuracy: Accuracy) {
+        if self.state != State::Ready {
+            return;
+        }
+        let carried = self.component.is_warm;
+        self.outcome = self.component.advance(step.plan.time, accuracy);
+        if !self.component.is_finite() {
+            self.state = State::Powerless;
+            self.component.forget_points();
+        }
+        if carried && !self.component.is_warm {
+            self.start.clone_from_slice(self.component.start_bodies());
+        }
+        self.orders.clear();
+        if self.state != State::Ready || self.component.is_warm {
+            return;
+        }
+        let ways = self.start.iter().zip(&self.component.bodies);
+        let pushes = self
+            .seen
+            .iter()
+            .zip(ways)
+            .map(|(seen, (start, end))| step.push(seen, start, end));
+        self.orders.extend(pushes);
+    }
+
+    /// Gives the engine what takes the bodies there.
+    pub(crate) fn deliver(
+        &mut self,
+        step: &Step,
+        members: &Members,
+        elements: &mut [ElementRow],
+        bodies: &mut [BodyRow],
+        engine: &mut impl Engine,
+    ) {
+        if self.state == State::Resting {
+            return;
+        }
+        // Taken, so that the step of another context does not advance it again.
+        let ready = take(&mut self.state) == State::Ready;
+        if ready && self.component.is_warm {
+            return self.deliver_warm(step, members, elements, bodies, engine);
+        }
+        if ready {
+            step.wake_the_moved(
+                bodies,
+                members.bodies,
+                &self.start,
+                &self.component.bodies,
+                engine,
+            );
+        }
+        for (slot, b) in members.bodies.iter().enumerate() {
+            let row = &mut bodies[*b];
+            if engine.see(row.id).is_none_or(|body| body.is_asleep) {
+                continue;
+            }
+            row.is_alone = false;
+            let order = self.orders.get(slot).filter(|_| ready);
+            let nothing = Push::default();
+            row.give(order.unwrap_or(&nothing), engine);
+            step.delivered.store(true, Ordering::Relaxed);
+        }
+        let mut solved = self.component.elements.iter();
+        for e in members.elements {
+            let row = &mut elements[*e];
+            row.outcome = Outcome::default();
+            if row.trouble.passing().is_none()
+                && let Some(element) = solved.next().filter(|_| ready)
+            {
+                row.memory.direction = element.direction;
+                row.memory.angle = element.angle;
+                row.ledger.dissipated += element.heat;
+                row.ledger.work += element.work;
+                row.outcome = self.outcome;
+            }
+        }
+    }
+}

@@ -1,0 +1,98 @@
+//! A row as the integrator's element.
+
+use crate::backend::Sight;
+use crate::dynamics::body::Body;
+use crate::dynamics::element::{Element, End, Path};
+use crate::dynamics::guide::Guide;
+use crate::input::check::Fault;
+use crate::scene::rows::{BodyRow, ElementRow, Held};
+use crate::scene::step::Step;
+
+impl Step {
+    /// An end as the integrator sees it.
+    pub(crate) fn end(
+        &self,
+        row: &ElementRow,
+        end: usize,
+        bodies: &[BodyRow],
+        sight: &impl Sight,
+    ) -> End {
+        let held = row.held[end];
+        if let (Held::Body { body, local, .. }, Some(index)) = (held, row.movable(end))
+            && let Some(body) = sight.see(body)
+        {
+            return End::Body {
+                index: bodies[index].slot,
+                arm: local - body.local_center.as_dvec3(),
+            };
+        }
+        let [from, to] = self.path(&held, sight);
+        let mut path = Path::straight(from, (to - from) / self.plan.time);
+        if let Held::Body { body, .. } = held
+            && row.companion.guide.turns()
+            && let Some(turning) = sight.turning(body, self.plan.time)
+        {
+            (path.rotation, path.turning) = turning;
+        }
+        End::Path(path)
+    }
+}
+
+/// The integrator's element, its rest length captured if need be; or none, with the fault noted.
+pub(crate) fn element(row: &mut ElementRow, ends: [End; 2], bodies: &[Body]) -> Option<Element> {
+    row.trouble.set_passing(None);
+    let p = &mut row.parameters;
+    let mut element = Element {
+        ends,
+        stiffness: f64::from(p.stiffness),
+        damping: f64::from(p.damping),
+        rest_length: f64::from(p.rest_length.unwrap_or(0.0)),
+        guide: row.companion.guide,
+        law: row.companion.law.clone(),
+        angle: row.memory.angle,
+        heat: 0.0,
+        work: 0.0,
+        direction: row.memory.direction,
+        stiff_damper: false,
+    };
+    if p.rest_length.is_some()
+        && element.law.is_none()
+        && let Some(inverse_mass) = element.plain_inverse_mass(bodies)
+    {
+        row.inverse_mass = inverse_mass;
+        return Some(element);
+    }
+    let guided = element.guide != Guide::Centres;
+    let mut line = element.line(bodies);
+    if p.rest_length.is_none() {
+        let length = line.map_or(0.0, |line| line.distance());
+        p.rest_length = Some(length as f32);
+        element.rest_length = f64::from(length as f32);
+        row.captured = true;
+        line = element.line(bodies);
+    }
+    let Some(line) = line else {
+        let reason = if guided {
+            "is tilted half a turn against body_a, where a twist has no meaning"
+        } else {
+            "coincides with body_a, so nothing says which way to push; move one or set Anchors"
+        };
+        let fault = Fault::new(p.names.ends[1], reason);
+        row.trouble.set_passing(Some(fault));
+        return None;
+    };
+    if element.guide.is_twist() && line.inverse_mass == 0.0 {
+        let reason = "acts on nothing, for neither end can be turned about its axis";
+        row.trouble
+            .set_passing(Some(Fault::new(p.names.axis, reason)));
+        return None;
+    }
+    let rate = line.motion(&element, bodies, 0.0).axial;
+    if !element.is_sound(line.distance(), rate) {
+        let fault = Fault::new("ForceLaw", "gives NaN or infinity");
+        row.trouble.set_passing(Some(fault));
+        return None;
+    }
+    row.inverse_mass = line.inverse_mass;
+    Some(element)
+}

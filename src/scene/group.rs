@@ -1,0 +1,243 @@
+//! Which elements have to be solved together.
+
+use crate::backend::BodyId;
+use crate::scene::assembly::Assembly;
+use crate::scene::rows::{BodyRow, ElementRow, Members, mix};
+use bevy::platform::collections::HashMap;
+use bevy::prelude::Entity;
+use std::ops::Range;
+
+/// One component: elements that share bodies, and those bodies.
+#[derive(Clone, Debug)]
+pub(crate) struct Group {
+    elements: Range<usize>,
+    bodies: Range<usize>,
+    /// A hash of its bodies and elements.
+    signature: u64,
+    /// Rapier's context, in which all of it is.
+    pub context: Entity,
+    /// Index of what it is assembled in; none for a lone element on bodies that it does not turn.
+    pub assembly: Option<usize>,
+    /// Its bodies, where it has been found asleep and nothing but them can wake it.
+    pub dozing: Option<[BodyId; 2]>,
+    /// Contacts or joints hold some body of it.
+    pub held: bool,
+    /// The engine solves its elements,
+    pub inside: bool,
+    /// and it was asleep in the last step.
+    pub is_asleep: bool,
+}
+
+impl Group {
+    /// Whether it is in a context, and nothing but elements holds it.
+    pub(crate) fn is_free(&self, context: Entity) -> bool {
+        self.context == context && !self.held
+    }
+
+    /// Has it, of this index, assembled in this, all of it read anew.
+    fn take(&mut self, index: usize, mut assembly: Assembly, assemblies: &mut Vec<Assembly>) {
+        assembly.group = index;
+        self.assembly = Some(assemblies.len());
+        assembly.signature = self.signature;
+        assembly.read_anew();
+        assemblies.push(assembly);
+    }
+}
+
+/// All components, as runs of two flat arrays.
+#[derive(Default)]
+pub(crate) struct Groups {
+    elements: Vec<usize>,
+    bodies: Vec<usize>,
+    list: Vec<Group>,
+}
+
+fn root(parent: &mut [usize], mut at: usize) -> usize {
+    while parent[at] != at {
+        parent[at] = parent[parent[at]];
+        at = parent[at];
+    }
+    at
+}
+
+fn is_sound(row: &&ElementRow) -> bool {
+    row.trouble.lasting().is_none()
+}
+
+/// The bodies as a forest of parents: those that elements join have the same root.
+fn join(elements: &[ElementRow], bodies: usize) -> Vec<usize> {
+    let mut parent: Vec<usize> = (0..bodies).collect();
+    for row in elements.iter().filter(is_sound) {
+        if let [Some(a), Some(b)] = [0, 1].map(|end| row.movable(end)) {
+            let (a, b) = (root(&mut parent, a), root(&mut parent, b));
+            parent[a.max(b)] = a.min(b);
+        }
+    }
+    parent
+}
+
+/// An order of elements that does not depend on when they or their bodies were spawned.
+fn rank(row: &ElementRow, bodies: &[BodyRow]) -> impl Ord + use<> {
+    let p = &row.parameters;
+    (
+        [0, 1].map(|end| row.movable(end).map(|b| bodies[b].rank)),
+        p.anchors.map(|a| a.to_array().map(f32::to_bits)),
+        [p.stiffness, p.damping, p.rest_length.unwrap_or(-1.0)].map(f32::to_bits),
+        row.entity,
+    )
+}
+
+impl Groups {
+    /// Finds the components of a scene, in the order of their first bodies.
+    pub(crate) fn find(&mut self, elements: &[ElementRow], bodies: &[BodyRow]) {
+        let mut parent = join(elements, bodies.len());
+        // A root is the least of its component, so it is met first.
+        let mut of_body = Vec::with_capacity(bodies.len());
+        let mut count = 0;
+        for body in 0..bodies.len() {
+            let r = root(&mut parent, body);
+            of_body.push(if r == body { count } else { of_body[r] });
+            count += usize::from(r == body);
+        }
+        let of_element = |(e, row): (usize, &ElementRow)| {
+            let body = row.movable(0).or(row.movable(1))?;
+            is_sound(&row).then_some((e, of_body[body]))
+        };
+        let body_starts = sort(
+            count,
+            (0..bodies.len()).map(|b| (b, of_body[b])),
+            &mut self.bodies,
+        );
+        let element_starts = sort(
+            count,
+            elements.iter().enumerate().filter_map(of_element),
+            &mut self.elements,
+        );
+        for group in element_starts
+            .windows(2)
+            .filter(|group| group[1] > group[0] + 1)
+        {
+            self.elements[group[0]..group[1]].sort_by_cached_key(|e| rank(&elements[*e], bodies));
+        }
+        for group in body_starts
+            .windows(2)
+            .filter(|group| group[1] > group[0] + 1)
+        {
+            self.bodies[group[0]..group[1]].sort_by_key(|b| bodies[*b].rank);
+        }
+        self.list.clear();
+        self.list.extend((0..count).map(|g| Group {
+            elements: element_starts[g]..element_starts[g + 1],
+            bodies: body_starts[g]..body_starts[g + 1],
+            context: bodies[self.bodies[body_starts[g]]].context,
+            signature: 0,
+            assembly: None,
+            dozing: None,
+            held: false,
+            inside: false,
+            is_asleep: false,
+        }));
+        for group in &mut self.list {
+            let members = &self.elements[group.elements.clone()];
+            group.inside = members.iter().any(|e| elements[*e].inside.is_some());
+        }
+    }
+
+    /// Puts all components, and elements and bodies within each, into another order: by these places of theirs.
+    pub(crate) fn arrange(&mut self, elements: &[u32], bodies: &[u32], rows: &[ElementRow]) {
+        for group in &mut self.list {
+            let members = &mut self.elements[group.elements.clone()];
+            group.inside = members.iter().any(|e| rows[*e].inside.is_some());
+            members.sort_by_key(|e| elements[*e]);
+            self.bodies[group.bodies.clone()].sort_by_key(|b| bodies[*b]);
+        }
+        let Self { bodies: all, .. } = self;
+        self.list
+            .sort_by_key(|group| all[group.bodies.clone()].first().map(|b| bodies[*b]));
+    }
+
+    /// Gives every group that needs one its assembly: the one that it had, if it was there before.
+    pub(crate) fn assign_assemblies(
+        &mut self,
+        assemblies: &mut Vec<Assembly>,
+        elements: &[ElementRow],
+        bodies: &[BodyRow],
+    ) {
+        let mut known: HashMap<u64, Assembly> =
+            assemblies.drain(..).map(|a| (a.signature, a)).collect();
+        for g in 0..self.list.len() {
+            let members = self.members(&self.list[g]);
+            let entities = members.bodies.iter().map(|b| bodies[*b].entity);
+            let entities = entities.chain(members.elements.iter().map(|e| elements[*e].entity));
+            let signature = entities.fold(members.elements.len() as u64, |sum, entity| {
+                mix(sum ^ entity.to_bits())
+            });
+            let any = |is: fn(&BodyRow) -> bool| members.bodies.iter().any(|b| is(&bodies[*b]));
+            let alone = members.elements.len() == 1 && !any(|body| body.turns);
+            let before = known.remove(&signature);
+            self.list[g].signature = signature;
+            if !alone || before.is_some() {
+                self.list[g].take(g, before.unwrap_or_default(), assemblies);
+            }
+        }
+    }
+
+    /// Gives a lone element's group an assembly of its own after all.
+    pub(crate) fn promote(&mut self, group: usize, assemblies: &mut Vec<Assembly>) {
+        self.list[group].take(group, Assembly::default(), assemblies);
+    }
+
+    pub(crate) fn list(&self) -> &[Group] {
+        &self.list
+    }
+
+    pub(crate) fn at(&mut self, group: usize) -> &mut Group {
+        &mut self.list[group]
+    }
+
+    /// Indices of a group's elements and bodies.
+    pub(crate) fn members(&self, group: &Group) -> Members<'_> {
+        Members {
+            elements: &self.elements[group.elements.clone()],
+            bodies: &self.bodies[group.bodies.clone()],
+        }
+    }
+}
+
+/// Counting sort of (index, group), stable; returns where each group begins, and last where all end.
+fn sort(
+    count: usize,
+    items: impl Iterator<Item = (usize, usize)> + Clone,
+    sorted: &mut Vec<usize>,
+) -> Vec<usize> {
+    let mut starts = vec![0; count + 1];
+    for (_, group) in items.clone() {
+        starts[group + 1] += 1;
+    }
+    for g in 0..count {
+        starts[g + 1] += starts[g];
+    }
+    sorted.clear();
+    sorted.resize(starts[count], 0);
+    let mut next = starts.clone();
+    for (item, group) in items {
+        sorted[next[group]] = item;
+        next[group] += 1;
+    }
+    starts
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sorting_keeps_order_within_groups() {
+        let items = [(0, 1), (1, 0), (3, 1), (4, 2), (5, 0)];
+        let mut sorted = Vec::new();
+        assert_eq!(sort(3, items.into_iter(), &mut sorted), [0, 2, 4, 5]);
+        assert_eq!(sorted, [1, 5, 0, 3, 4]);
+        assert_eq!(sort(0, [].into_iter(), &mut sorted), [0]);
+        assert!(sorted.is_empty());
+    }
+}

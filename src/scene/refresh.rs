@@ -1,0 +1,184 @@
+//! Changed numbers and moved ends, taken into rows that are otherwise the same.
+
+use crate::backend::{Finder, Place};
+use crate::input::check::{Fault, Parameters};
+use crate::input::companions::{Companion, Companions};
+use crate::input::parts::{Acts, Parts};
+use crate::scene::report::report;
+use crate::scene::rows::{BodyRow, ElementRow, Held};
+use crate::scene::state::Scene;
+use bevy::ecs::entity::EntityHashSet;
+use bevy::prelude::*;
+
+/// Takes in changed numbers and moved ends; says whether the rows still fit the elements.
+pub(crate) fn refresh(
+    scene: &mut Scene,
+    elements: &Query<Parts, Acts>,
+    changed: impl Iterator<Item = Entity>,
+    companions: &Companions,
+    finder: &impl Finder,
+) -> bool {
+    let Scene {
+        elements: rows,
+        row_of,
+        bodies,
+        followed,
+        changed: marked,
+        assemblies,
+        stepped,
+        shifted,
+        ..
+    } = scene;
+    // What changes while nothing is stepped is kept for the step that comes.
+    marked.retain(|index| {
+        let row = &mut rows[*index];
+        row.changed = !row.has_acted(bodies, stepped);
+        row.changed
+    });
+    if !stepped.is_empty() {
+        *shifted = false;
+    }
+    for entity in changed.chain(companions.touched.iter().copied()) {
+        // Anchors and companions can stand where no element is.
+        let Ok(parts) = elements.get(entity) else {
+            continue;
+        };
+        let Some(index) = row_of.get(&entity) else {
+            return false;
+        };
+        let row = &mut rows[*index];
+        if !std::mem::replace(&mut row.changed, true) {
+            marked.push(*index);
+        }
+        let new = parts.parameters().and_then(|new| {
+            new.check()?;
+            Ok((companions.of(entity, &new)?, new))
+        });
+        if !new.is_ok_and(|new| refit(row, new, companions)) {
+            return false;
+        }
+    }
+    if !marked.is_empty() {
+        for assembly in assemblies {
+            assembly.read_anew();
+        }
+    }
+    followed.iter().all(|(index, end)| {
+        let row = &mut rows[*index];
+        row.trouble.lasting().is_some() || follow(row, *end, finder, bodies, shifted)
+    })
+}
+
+/// Gives an element new numbers and laws; says whether its row can be as it is otherwise.
+fn refit(
+    row: &mut ElementRow,
+    (companion, parameters): (Companion, Parameters),
+    companions: &Companions,
+) -> bool {
+    let entity = row.entity;
+    if !parameters.is_held_like(&row.parameters)
+        || companion.guide != row.companion.guide
+        || companions.tuning(entity).is_some()
+        || companions.pose(entity).is_some()
+    {
+        return false;
+    }
+    row.refitted |= parameters != row.parameters || companions.touched.contains(&entity);
+    row.change(|row| {
+        row.parameters = parameters;
+        row.companion = companion;
+    });
+    true
+}
+
+/// Looks for an end again; says whether it is still the same kind of end, and if it has moved.
+fn follow(
+    row: &mut ElementRow,
+    end: usize,
+    finder: &impl Finder,
+    bodies: &[BodyRow],
+    shifted: &mut bool,
+) -> bool {
+    let p = &row.parameters;
+    let found = finder.place(
+        p.ends[end],
+        p.anchors[end],
+        p.names.ends[end],
+        &mut row.memory.scales[end],
+    );
+    let on = row.movable(end);
+    match (&mut row.held[end], found) {
+        (
+            Held::Body {
+                body,
+                context,
+                local,
+            },
+            Ok(Place::OnBody {
+                body: now_on,
+                context: now_in,
+                local: now_at,
+                ..
+            }),
+        ) if *body == now_on && *context == now_in => {
+            if *local != now_at {
+                // Whether it turns the body may have changed.
+                if on.is_some_and(|b| !bodies[b].turns) {
+                    return false;
+                }
+                *local = now_at;
+                *shifted = true;
+            }
+            true
+        }
+        (Held::Path { from, to }, Ok(Place::Point(now))) => {
+            // Where it was after the last step.
+            *from = row.memory.places[end].unwrap_or(now);
+            *to = now;
+            *shifted |= from != to;
+            true
+        }
+        _ => false,
+    }
+}
+
+/// Looks at an inert element again; says whether it still is.
+pub(crate) fn still_faulty(
+    row: &mut ElementRow,
+    companions: &Companions,
+    finder: &mut impl Finder,
+    modified: &EntityHashSet,
+    commands: &mut Commands,
+) -> bool {
+    if row.trouble.lasting().is_none() || row.parameters.ends == Parameters::NONE.ends {
+        return true;
+    }
+    match judge(row, companions, finder, modified) {
+        Err(fault) => {
+            row.trouble.set_lasting(Some(fault));
+            report(row, commands);
+            true
+        }
+        Ok(()) => false,
+    }
+}
+
+/// What is wrong with an inert element now.
+fn judge(
+    row: &mut ElementRow,
+    companions: &Companions,
+    finder: &mut impl Finder,
+    modified: &EntityHashSet,
+) -> Result<(), Fault> {
+    let (entity, mut parameters) = (row.entity, row.parameters);
+    let guide = companions.of(entity, &parameters)?.guide;
+    let found = finder.find(&parameters, guide, &mut row.memory.scales, modified)?;
+    if let Some(tuning) = companions.tuning(entity) {
+        finder.tune(tuning, guide, &found.places, &mut parameters)?;
+        parameters.check()?;
+    }
+    if let Some(pose) = companions.pose(entity) {
+        companions.hold(entity, pose, &parameters, guide, &found.places, finder)?;
+    }
+    Ok(())
+}

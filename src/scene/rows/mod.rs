@@ -1,0 +1,17 @@
+//! The rows of a scene: plain data about elements and bodies that is kept from step to step.
+
+mod body;
+mod element;
+mod marks;
+mod raised;
+
+pub(crate) use body::{BodyRow, Rest, Share};
+pub(crate) use element::{ElementRow, EnergyLedger, Held, Memory};
+pub(crate) use marks::{mix, pull_mark, turning_mark};
+pub(crate) use raised::{Raised, Sweeps};
+
+/// The rows of one component within the scene's.
+pub(crate) struct Members<'a> {
+    pub elements: &'a [usize],
+    pub bodies: &'a [usize],
+}

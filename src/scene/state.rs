@@ -1,0 +1,84 @@
+//! Elements and the bodies they act on, as flat arrays kept from tick to tick.
+
+use crate::backend::BodyId;
+use crate::scene::assembly::Assembly;
+use crate::scene::group::Groups;
+use crate::scene::held::Inside;
+use crate::scene::rows::{BodyRow, ElementRow, Raised, Sweeps};
+use crate::scene::scratch::Scratch;
+use crate::scene::still::Still;
+use bevy::ecs::change_detection::Tick;
+use bevy::ecs::entity::{EntityHashMap, EntityHashSet};
+use bevy::platform::collections::HashMap;
+use bevy::prelude::*;
+
+/// The scene as the engine's step sees it. It has a field for all that one stage of a step leaves for another, and no more:
+/// a stage takes those that it needs by their names.
+#[derive(Resource, Default)]
+pub struct Scene {
+    /// In the order of the query that finds them, inert ones too.
+    pub(crate) elements: Vec<ElementRow>,
+    /// Indices of the elements.
+    pub(crate) row_of: EntityHashMap<usize>,
+    /// Elements that changed since the last step.
+    pub(crate) changed: Vec<usize>,
+    /// Elements that take no part.
+    pub(crate) faulty: Vec<usize>,
+    /// Elements with an end that is watched, and that end.
+    pub(crate) followed: Vec<(usize, usize)>,
+    /// In the order of their entities.
+    pub(crate) bodies: Vec<BodyRow>,
+    pub(crate) index: EntityHashMap<usize>,
+    /// Indices of the bodies by what the engine calls them.
+    pub(crate) handles: HashMap<(Entity, BodyId), u32>,
+    pub(crate) scratch: Scratch,
+    /// Bodies that hold elements, but that these cannot move.
+    pub(crate) walls: EntityHashSet,
+    pub(crate) groups: Groups,
+    pub(crate) assemblies: Vec<Assembly>,
+    /// The contexts that are stepped in this tick.
+    pub(crate) stepped: Vec<Entity>,
+    /// Seconds that the engine will step in this tick; 0 if it will not.
+    pub(crate) time: f64,
+    /// Something was found amiss after the scene was prepared: look at everything again.
+    pub(crate) stale: bool,
+    /// A user's force on some body changed in this tick.
+    pub(crate) loaded: bool,
+    /// Some body was given something in this tick.
+    pub(crate) delivered: bool,
+    /// Some followed end was not where it had been.
+    pub(crate) shifted: bool,
+    pub(crate) still: Still,
+    /// Some element has no end that elements can move.
+    pub(crate) immovable: bool,
+    /// The readouts stand in another order than the rows even when these have just been made.
+    pub(crate) unordered: bool,
+    /// The rows were made anew in this tick.
+    pub(crate) renewed: bool,
+    /// What elements that are gone have left in the engine's solver, and in which context.
+    pub(crate) left: Vec<(Entity, Box<Inside>)>,
+    /// Bodies that no element moves any more, and what they have besides forces.
+    pub(crate) unloaded: Vec<(Entity, BodyId, Raised)>,
+    /// What contexts have been told besides.
+    pub(crate) sweeps: EntityHashMap<Sweeps>,
+    /// The rows are those of a snapshot, put there at that tick: what changed before is none of theirs.
+    pub(crate) since: Option<Tick>,
+    /// Rapier's snapshot was put back since the last step, and springs' was not yet.
+    pub(crate) engine_went_back: bool,
+    /// Elements whose components are others than a snapshot says.
+    pub(crate) pending: Vec<Entity>,
+}
+
+impl Scene {
+    /// Whether it is an element or a body that holds one.
+    pub(crate) fn knows(&self, entity: Entity) -> bool {
+        self.index.contains_key(&entity)
+            || self.walls.contains(&entity)
+            || self.row_of.contains_key(&entity)
+    }
+
+    /// The row of a body that says it stands at `slot`.
+    pub(crate) fn body(&mut self, slot: usize, entity: Entity) -> Option<&mut BodyRow> {
+        self.bodies.get_mut(slot).filter(|row| row.entity == entity)
+    }
+}

@@ -1,0 +1,124 @@
+//! What holds for every component of a context in this step, and what they all need.
+
+use super::push::Terms;
+use super::rows::{ElementRow, Held};
+use crate::backend::{BodyId, Seen, Sight, StepPlan};
+use crate::dynamics::delivery::Schedule;
+use crate::dynamics::guide::Guide;
+use crate::dynamics::tolerance::Accuracy;
+use bevy::math::{DQuat, DVec3};
+use std::sync::atomic::AtomicBool;
+
+/// A context about to step.
+pub(crate) struct Step {
+    pub plan: StepPlan,
+    /// The substeps of a body that asks for no more than others.
+    pub schedule: Schedule,
+    pub accuracy: Accuracy,
+    /// Most substeps of a step for what the engine solves.
+    pub most_substeps: u32,
+    /// All bodies are stepped as finely as the one that asks for most, which asks for so many substeps more.
+    pub alike: Option<usize>,
+    /// Nothing but their own bodies and moved ends can have woken what sleeps.
+    pub quiet: bool,
+    /// Something was given to some body.
+    pub delivered: AtomicBool,
+}
+
+/// Rotation and angular velocity of what holds an end that elements cannot turn.
+pub(crate) fn facing(held: &Held, time: f64, sight: &impl Sight) -> (DQuat, DVec3) {
+    let turning = match held {
+        Held::Body { body, .. } => sight.turning(*body, time),
+        Held::Path { .. } => None,
+    };
+    turning.unwrap_or((DQuat::IDENTITY, DVec3::ZERO))
+}
+
+impl Step {
+    /// A body as it may be moved; one that may not be any more makes the scene stale.
+    #[inline(always)]
+    pub(crate) fn movable(
+        &self,
+        sight: &impl Sight,
+        body: BodyId,
+        stale: &mut bool,
+    ) -> Option<Seen> {
+        let seen = sight.see(body).filter(|seen| seen.is_movable);
+        *stale |= seen.is_none();
+        seen
+    }
+
+    /// Where a point is that elements cannot move, and where it will be after the step.
+    pub(crate) fn path(&self, held: &Held, sight: &impl Sight) -> [DVec3; 2] {
+        match *held {
+            Held::Path { from, to } => [from, to],
+            Held::Body { body, local, .. } => {
+                sight.way(body, local, self.plan.time).unwrap_or([local; 2])
+            }
+        }
+    }
+
+    /// Whether an end moves or turns, or is not where or as it was after the last step.
+    pub(crate) fn has_moved(&self, row: &ElementRow, sight: &impl Sight) -> bool {
+        if row.watched == [false; 2] && row.moves() == 2 {
+            // Held by what elements move, and where it says.
+            return false;
+        }
+        (0..2).any(|end| {
+            let now = match row.held[end] {
+                Held::Body { local, .. } if row.on[end].is_some() => local,
+                ref held => {
+                    let [from, to] = self.path(held, sight);
+                    if from != to || self.has_turned(row, end, sight) {
+                        return true;
+                    }
+                    to
+                }
+            };
+            row.memory.places[end].is_some_and(|last| last != now)
+        })
+    }
+
+    /// Whether an end that elements cannot turn turns, or is not turned as after the last step, where its element has an
+    /// axis of its own.
+    fn has_turned(&self, row: &ElementRow, end: usize, sight: &impl Sight) -> bool {
+        if row.companion.guide == Guide::Centres || row.memory.places[end].is_none() {
+            return false;
+        }
+        let (rotation, turning) = facing(&row.held[end], self.plan.time, sight);
+        turning != DVec3::ZERO || rotation != row.memory.facings[end]
+    }
+
+    /// The engine's equal substeps of a body.
+    fn substeps(&self, seen: &Seen) -> Schedule {
+        match self.alike.unwrap_or(seen.more_substeps) {
+            0 => self.schedule,
+            more => self.plan.schedule(self.plan.substeps + more),
+        }
+    }
+
+    /// How far the engine turns a body in this step, rad.
+    pub(crate) fn farthest_turn(&self, seen: &Seen) -> f64 {
+        if seen.turns_fast {
+            f64::INFINITY
+        } else {
+            self.substeps(seen).farthest_turn(self.plan.farthest_turn)
+        }
+    }
+
+    /// How the engine is to step a body.
+    pub(crate) fn terms(&self, seen: &Seen) -> Terms {
+        // One substep has room for a force or an impulse, not for both.
+        let second_substep = self.plan.substeps * self.plan.calls as usize == 1
+            && seen.more_substeps == 0
+            && self.alike.is_none();
+        Terms {
+            schedule: if second_substep {
+                self.plan.schedule(self.plan.substeps + 1)
+            } else {
+                self.substeps(seen)
+            },
+            second_substep,
+        }
+    }
+}
