@@ -1,6 +1,7 @@
 //! What a game reads back from an element.
 
-use crate::dynamics::tolerance::{Method, Outcome};
+use crate::dynamics::tolerance::Method;
+use crate::scene::rows::Solved;
 use bevy::prelude::*;
 
 /// The state of an element after the last step, on every element without asking. SI units.
@@ -80,16 +81,16 @@ impl SpringReadout {
         (self.spring_force + self.damper_force).clamp(-f32::MAX, f32::MAX)
     }
 
-    pub(crate) fn note(&mut self, outcome: &Outcome) {
-        self.method = match outcome.method {
+    pub(crate) fn note(&mut self, solved: &Solved) {
+        self.method = match solved.method {
             Method::None => SpringMethod::None,
             Method::ClosedForm => SpringMethod::ClosedForm,
             Method::Direct => SpringMethod::Direct,
             Method::Iterative => SpringMethod::Iterative,
             Method::Engine => SpringMethod::Engine,
         };
-        self.microsteps = outcome.microsteps;
-        self.error = outcome.error.unwrap_or(0.0) as f32;
-        self.capped = outcome.capped;
+        self.microsteps = solved.microsteps;
+        self.error = solved.error;
+        self.capped = solved.capped;
     }
 }

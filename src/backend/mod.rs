@@ -129,12 +129,17 @@ pub(crate) struct Push {
     pub share: Wrench,
     /// It is to take a second substep.
     pub second_substep: bool,
+    /// It is not to fall asleep yet.
+    pub keep_awake: bool,
 }
 
 /// What an engine tells of its bodies. A body that is gone is none.
 pub(crate) trait Sight: Sync {
     /// How it is now.
     fn see(&self, body: BodyId) -> Option<Seen>;
+
+    /// Whether it sleeps.
+    fn is_asleep(&self, body: BodyId) -> bool;
 
     /// The integrator's view of it. `turns` is false where every element holds it at its centre of mass.
     fn body(&self, body: BodyId, user: &Wrench, turns: bool) -> Option<Body>;
@@ -151,12 +156,12 @@ pub(crate) trait Sight: Sync {
 }
 
 /// The worlds of an engine, after a step.
-pub(crate) trait Worlds {
+pub(crate) trait Worlds: Sync {
     /// The bodies of one.
     type Sight: Sight;
 
     /// Those of the world that the ECS calls so.
-    fn of(&self, context: bevy::prelude::Entity) -> Option<Self::Sight>;
+    fn of(&self, context: bevy::prelude::Entity) -> Option<&Self::Sight>;
 }
 
 /// What an engine is told.

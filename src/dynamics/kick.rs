@@ -10,20 +10,32 @@ use super::line::{Line, Motion};
 use super::poles::{Poles, RESOLVED_PHASE};
 
 /// The last coefficients: where no body turns they are the same for every kick of a step.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Memo(Option<(f64, f64, Poles)>);
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Memo {
+    /// For which z = (ω h)² and g = γh they are; no number before the first.
+    z: f64,
+    g: f64,
+    poles: Poles,
+}
+
+impl Default for Memo {
+    fn default() -> Self {
+        Self {
+            z: f64::NAN,
+            g: f64::NAN,
+            poles: Poles::default(),
+        }
+    }
+}
 
 impl Memo {
     /// The poles for z = (ω h)² and g = γh.
     pub(crate) fn poles(&mut self, z: f64, g: f64) -> Poles {
-        match self.0 {
-            Some((known_z, known_g, poles)) if known_z == z && known_g == g => poles,
-            _ => {
-                let poles = Poles::new(z, g);
-                self.0 = Some((z, g, poles));
-                poles
-            }
+        if self.z != z || self.g != g {
+            let poles = Poles::new(z, g);
+            *self = Self { z, g, poles };
         }
+        self.poles
     }
 }
 

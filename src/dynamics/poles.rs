@@ -21,7 +21,7 @@ const RESOLVED_DECAY: f64 = 2.0;
 /// exactly the trace and determinant of the true flow. It differs from the true flow by a change of
 /// velocity, `v_true = speed·v + skew·h·r`, which [`super::kick`] undoes, so that one step is the true
 /// flow itself for any initial state.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Poles {
     /// (1 − p₁)(1 − p₂)/z, where p are the poles of the flow.
     pub restoring: f64,

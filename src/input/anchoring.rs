@@ -19,7 +19,7 @@ pub(crate) fn anchor(
             let global = transforms.compute_global_transform(end).ok()?;
             Some(global.affine().inverse().transform_point3(point))
         };
-        let [a, b] = parts.parameters().ok()?.ends;
+        let [a, b] = parts.parameters().ok()?.ties.ends;
         let anchors = Anchors::new(local(a, points.a)?, local(b, points.b)?);
         Some((parts.entity, anchors))
     };

@@ -67,19 +67,32 @@ impl Trouble {
     }
 }
 
-/// The numbers of an element, whichever component they came from; last what every step needs.
+/// An element, whichever component it came from.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[repr(C)]
 pub(crate) struct Parameters {
+    pub ties: Ties,
+    pub numbers: Numbers,
+}
+
+/// What an element is held by.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Ties {
     pub ends: [Entity; 2],
     pub anchors: [Vec3; 2],
     /// Of a torsion element, in body A's frame.
     pub twist: Option<Vec3>,
     /// Component name and its fields, for messages.
     pub names: &'static Names,
+}
+
+/// How strong it is.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Numbers {
+    /// N/m, or N m/rad.
     pub stiffness: f32,
+    /// N s/m, or N m s/rad.
     pub damping: f32,
-    /// `None` until captured; a damper's is irrelevant.
+    /// `None` until captured; a damper's is irrelevant. m or rad.
     pub rest_length: Option<f32>,
 }
 
@@ -134,35 +147,45 @@ pub(crate) fn direction(axis: Vec3, field: &'static str) -> Result<DVec3, Fault>
         .ok_or(Fault::new(field, "is zero or not finite"))
 }
 
-impl Parameters {
+impl Ties {
     /// Of an element whose components cannot be read.
     pub(crate) const NONE: Self = Self {
         ends: [Entity::PLACEHOLDER; 2],
-        stiffness: 0.0,
-        damping: 0.0,
-        rest_length: None,
         anchors: [Vec3::ZERO; 2],
         twist: None,
         names: &NO_NAMES,
     };
 
-    /// Whether another set of numbers belongs to the same two ends.
+    /// Whether others hold it at the same two ends.
     pub(crate) fn is_held_like(&self, other: &Self) -> bool {
         self.ends == other.ends && self.anchors == other.anchors && self.twist == other.twist
     }
+}
+
+impl Parameters {
+    /// Of an element whose components cannot be read.
+    pub(crate) const NONE: Self = Self {
+        ties: Ties::NONE,
+        numbers: Numbers {
+            stiffness: 0.0,
+            damping: 0.0,
+            rest_length: None,
+        },
+    };
 
     /// What a torsion element acts about.
     pub(crate) fn guide(&self) -> Guide {
-        self.twist
+        self.ties
+            .twist
             .and_then(|axis| axis.as_dvec3().try_normalize())
             .map_or(Guide::Centres, Guide::Twist)
     }
 
     /// A length cannot be negative; an angle, or a distance along an axis, can.
     pub(crate) fn check_rest(&self, guide: Guide) -> Result<(), Fault> {
-        match self.rest_length {
+        match self.numbers.rest_length {
             Some(length) if guide == Guide::Centres && length < 0.0 => {
-                Err(Fault::new(self.names.rest_length, "is negative"))
+                Err(Fault::new(self.ties.names.rest_length, "is negative"))
             }
             _ => Ok(()),
         }
@@ -170,20 +193,22 @@ impl Parameters {
 
     /// Everything that can be judged without looking at the ends.
     pub(crate) fn check(&self) -> Result<(), Fault> {
-        number(self.stiffness, self.names.stiffness)?;
-        number(self.damping, self.names.damping)?;
-        if let Some(rest_length) = self.rest_length {
-            finite(rest_length, self.names.rest_length)?;
+        let Self { ties, numbers } = self;
+        let names = ties.names;
+        number(numbers.stiffness, names.stiffness)?;
+        number(numbers.damping, names.damping)?;
+        if let Some(rest_length) = numbers.rest_length {
+            finite(rest_length, names.rest_length)?;
         }
-        if let Some(axis) = self.twist {
-            direction(axis, self.names.axis)?;
+        if let Some(axis) = ties.twist {
+            direction(axis, names.axis)?;
         }
-        for (anchor, field) in self.anchors.iter().zip(["Anchors::a", "Anchors::b"]) {
+        for (anchor, field) in ties.anchors.iter().zip(["Anchors::a", "Anchors::b"]) {
             for coordinate in anchor.to_array() {
                 finite(coordinate, field)?;
             }
         }
-        for (end, field) in self.ends.iter().zip(self.names.ends) {
+        for (end, field) in ties.ends.iter().zip(names.ends) {
             if *end == Entity::PLACEHOLDER {
                 return Err(Fault::new(
                     field,
@@ -191,11 +216,8 @@ impl Parameters {
                 ));
             }
         }
-        if self.ends[0] == self.ends[1] {
-            return Err(Fault::new(
-                self.names.ends[1],
-                "is the same entity as body_a",
-            ));
+        if ties.ends[0] == ties.ends[1] {
+            return Err(Fault::new(names.ends[1], "is the same entity as body_a"));
         }
         Ok(())
     }

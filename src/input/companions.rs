@@ -213,7 +213,7 @@ impl BesideItem<'_, '_> {
             pull: coefficients,
             push: coefficients,
         };
-        if p.names.stiffness.is_empty() {
+        if p.ties.names.stiffness.is_empty() {
             return match (self.spring, self.own_spring) {
                 (None, None) => Ok(both([0.0; 3])),
                 _ => Err(Fault::new(
@@ -222,7 +222,7 @@ impl BesideItem<'_, '_> {
                 )),
             };
         }
-        let stiffness = f64::from(p.stiffness);
+        let stiffness = f64::from(p.numbers.stiffness);
         match (self.spring, self.own_spring) {
             (Some(_), Some(_)) => Err(Fault::new("SpringLaw", ALIKE)),
             (None, Some(own)) => Ok(SpringForce::Custom(Arc::new(Theirs(own.0.clone())))),
@@ -240,7 +240,7 @@ impl BesideItem<'_, '_> {
     }
 
     fn drag(&self, p: &Parameters) -> Result<DragLaw, Fault> {
-        if p.names.damping.is_empty() {
+        if p.ties.names.damping.is_empty() {
             return match (self.damping, self.own_damping) {
                 (None, None) => Ok(DragLaw::Linear(0.0)),
                 _ => Err(Fault::new(
@@ -255,7 +255,9 @@ impl BesideItem<'_, '_> {
                 "stands together with CustomDampingLaw; use one of them",
             )),
             (None, Some(own)) => Ok(DragLaw::Custom(Arc::new(Theirs(own.0.clone())))),
-            (None | Some(DampingLaw::Linear), None) => Ok(DragLaw::Linear(f64::from(p.damping))),
+            (None | Some(DampingLaw::Linear), None) => {
+                Ok(DragLaw::Linear(f64::from(p.numbers.damping)))
+            }
             (Some(DampingLaw::Sided { bump, rebound }), None) => Ok(DragLaw::Sided {
                 bump: number(*bump, "DampingLaw::Sided::bump")?,
                 rebound: number(*rebound, "DampingLaw::Sided::rebound")?,

@@ -21,10 +21,10 @@ impl Curve {
         p.check().ok()?;
         let companion = beside.companion(&p).ok()?;
         let law = companion.law.unwrap_or_else(|| {
-            let [stiffness, damping] = [p.stiffness, p.damping].map(f64::from);
+            let [stiffness, damping] = [p.numbers.stiffness, p.numbers.damping].map(f64::from);
             Arc::new(Law::linear(stiffness, damping))
         });
-        let rest = f64::from(p.rest_length?);
+        let rest = f64::from(p.numbers.rest_length?);
         Some(Self { law, rest })
     }
 

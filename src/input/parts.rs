@@ -4,7 +4,7 @@ use crate::element::{
     Anchors, AwaitsEnds, Damper, Spring, SpringDamper, TorsionDamper, TorsionSpring,
     TorsionSpringDamper,
 };
-use crate::input::check::{Fault, Names, Parameters};
+use crate::input::check::{Fault, Names, Numbers, Parameters, Ties};
 use bevy::ecs::change_detection::Tick;
 use bevy::ecs::query::QueryData;
 use bevy::prelude::*;
@@ -141,7 +141,7 @@ impl PartsItem<'_, '_> {
     /// Both ends, of a sound element.
     #[cfg(feature = "workbench")]
     pub(crate) fn ends(&self) -> Option<[Entity; 2]> {
-        self.parameters().ok().map(|p| p.ends)
+        self.parameters().ok().map(|p| p.ties.ends)
     }
 
     /// Reads whichever component is there.
@@ -152,13 +152,17 @@ impl PartsItem<'_, '_> {
         let mut add = |ends, stiffness, damping, rest_length, twist, names| {
             count += 1;
             found = Some(Parameters {
-                ends,
-                stiffness,
-                damping,
-                rest_length,
-                anchors: [anchors.a, anchors.b],
-                twist,
-                names,
+                ties: Ties {
+                    ends,
+                    anchors: [anchors.a, anchors.b],
+                    twist,
+                    names,
+                },
+                numbers: Numbers {
+                    stiffness,
+                    damping,
+                    rest_length,
+                },
             });
         };
         if let Some(s) = &self.spring {

@@ -25,10 +25,10 @@ impl Companions<'_, '_> {
         let Ok(beside) = self.all.get(entity) else {
             return fault("is gone");
         };
-        if p.names.stiffness.is_empty() {
+        if p.ties.names.stiffness.is_empty() {
             return fault("stands on a damper without a spring");
         }
-        let rest = f64::from(p.rest_length.unwrap_or(length as f32));
+        let rest = f64::from(p.numbers.rest_length.unwrap_or(length as f32));
         let mut recipe = beside.recipe(p, guide)?;
         recipe.preload = 0.0;
         let mut bare = recipe.clone();

@@ -5,8 +5,10 @@ use crate::dynamics::body::Body;
 use crate::dynamics::step::Component;
 use crate::dynamics::tolerance::{Accuracy, Outcome};
 use crate::scene::element::element;
-use crate::scene::rows::{BodyRow, ElementRow, Members, pull_mark};
-use crate::scene::sleep::omega_of;
+use crate::scene::rows::{
+    BodyFlags, BodyRow, ElementFlags, ElementRow, Members, Solved, pull_mark, take,
+};
+use crate::scene::sleep::{omega_of, rouse};
 use crate::scene::step::Step;
 use crate::scene::warm_start::WarmStart;
 use std::mem::{replace, take};
@@ -28,6 +30,10 @@ pub(crate) struct Assembly {
     pub(crate) state: State,
     /// It was found asleep.
     asleep: bool,
+    /// Its bodies are to be woken, or kept awake.
+    rouse: bool,
+    /// Some body of it has colliders that had none, or the other way round.
+    pub(crate) touch_changed: bool,
     pub(crate) outcome: Outcome,
     pub(crate) warm: WarmStart,
 }
@@ -77,27 +83,30 @@ impl Assembly {
         members: &Members,
         elements: &mut [ElementRow],
         bodies: &mut [BodyRow],
-        engine: &mut impl Engine,
+        sight: &impl Sight,
         stale: &mut bool,
     ) {
         self.state = State::Resting;
-        if step.quiet && self.asleep && step.is_left_alone(members, elements, bodies, engine) {
+        self.rouse = false;
+        if step.quiet && self.asleep && step.is_left_alone(members, elements, bodies, sight) {
             return;
         }
         self.asleep = false;
         self.component.farthest_move = Some(step.plan.fastest * step.plan.time);
-        if self.continue_warm(step, members, elements, bodies, engine) {
+        if self.continue_warm(step, members, elements, bodies, sight) {
             return;
         }
-        if !self.gather_bodies(step, members, bodies, engine, stale) {
+        if !self.gather_bodies(step, members, bodies, sight, stale) {
             return;
         }
         let sound = self.start.iter().all(Body::is_finite);
-        let disturbed = self.gather_elements(step, members, elements, bodies, engine);
+        let disturbed = self.gather_elements(step, members, elements, bodies, sight);
         let omega = self.warm.omega;
-        let awake = step.is_awake(bodies, members.bodies, omega, engine, disturbed);
+        let (awake, rouse) = step.is_awake(bodies, members.bodies, omega, sight, disturbed);
+        self.rouse = rouse;
         for e in members.elements {
-            elements[*e].active = awake;
+            let flags = &mut elements[*e as usize].flags;
+            flags.set(ElementFlags::ACTIVE, awake);
         }
         if !awake {
             self.asleep = true;
@@ -128,21 +137,22 @@ impl Assembly {
         self.warm.centers.clear();
         component.perturbed = self.warm.perturbed;
         for b in members.bodies {
-            let row = &mut bodies[*b];
+            let row = &mut bodies[*b as usize];
             let Some(seen) = step.movable(sight, row.id, stale) else {
                 return false;
             };
-            let Some(mut free) = sight.body(row.id, &row.user, row.turns) else {
+            let turns = row.has(BodyFlags::TURNS);
+            let Some(mut free) = sight.body(row.id, &row.user(), turns) else {
                 return false;
             };
-            row.can_touch = seen.can_touch;
+            self.touch_changed |= row.notice_colliders(seen.can_touch);
             self.warm.centers.push(seen.local_center);
-            if row.turns {
+            if turns {
                 free.farthest_turn = step.farthest_turn(&seen);
             }
             let pulled = pull_mark(free.acceleration);
             component.perturbed |= row.was_perturbed(&seen, free.position);
-            component.perturbed |= replace(&mut row.pulled, pulled) != pulled;
+            component.perturbed |= replace(&mut row.rare.pulled, pulled) != pulled;
             self.start.push(free);
             self.seen.push(seen);
         }
@@ -161,10 +171,11 @@ impl Assembly {
         let (mut disturbed, mut omega) = (false, 0.0_f32);
         self.warm.ends.clear();
         for (index, e) in members.elements.iter().enumerate() {
-            let row = &mut elements[*e];
+            let row = &mut elements[*e as usize];
             let has_moved = step.has_moved(row, sight);
-            self.component.perturbed |= has_moved || take(&mut row.refitted);
-            disturbed |= row.changed || has_moved;
+            self.component.perturbed |= has_moved;
+            self.component.perturbed |= take!(row.flags, ElementFlags::REFITTED);
+            disturbed |= row.has(ElementFlags::CHANGED) || has_moved;
             let ends = [0, 1].map(|end| step.end(row, end, bodies, sight));
             if let Some(element) = element(row, ends, &self.start) {
                 if has_moved {
@@ -220,6 +231,9 @@ impl Assembly {
         if self.state == State::Resting {
             return;
         }
+        if take(&mut self.rouse) {
+            rouse(bodies, members.bodies, engine);
+        }
         // Taken, so that the step of another context does not advance it again.
         let ready = take(&mut self.state) == State::Ready;
         if ready && self.component.is_warm {
@@ -235,28 +249,28 @@ impl Assembly {
             );
         }
         for (slot, b) in members.bodies.iter().enumerate() {
-            let row = &mut bodies[*b];
-            if engine.see(row.id).is_none_or(|body| body.is_asleep) {
+            let row = &mut bodies[*b as usize];
+            if engine.is_asleep(row.id) {
                 continue;
             }
-            row.is_alone = false;
+            row.flags.remove(BodyFlags::IS_ALONE);
             let order = self.orders.get(slot).filter(|_| ready);
             let nothing = Push::default();
-            row.give(order.unwrap_or(&nothing), engine);
+            row.give(order.unwrap_or(&nothing), step.tick, engine);
             step.delivered.store(true, Ordering::Relaxed);
         }
         let mut solved = self.component.elements.iter();
         for e in members.elements {
-            let row = &mut elements[*e];
-            row.outcome = Outcome::default();
+            let row = &mut elements[*e as usize];
+            row.solved = Solved::default();
             if row.trouble.passing().is_none()
                 && let Some(element) = solved.next().filter(|_| ready)
             {
-                row.memory.direction = element.direction;
-                row.memory.angle = element.angle;
+                row.set_direction(element.direction);
+                row.rare.angle = element.angle;
                 row.ledger.dissipated += element.heat;
                 row.ledger.work += element.work;
-                row.outcome = self.outcome;
+                row.solved = self.outcome.into();
             }
         }
     }

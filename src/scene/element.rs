@@ -5,7 +5,7 @@ use crate::dynamics::body::Body;
 use crate::dynamics::element::{Element, End, Path};
 use crate::dynamics::guide::Guide;
 use crate::input::check::Fault;
-use crate::scene::rows::{BodyRow, ElementRow, Held};
+use crate::scene::rows::{BodyRow, ElementFlags, ElementRow, Held};
 use crate::scene::step::Step;
 
 impl Step {
@@ -17,19 +17,19 @@ impl Step {
         bodies: &[BodyRow],
         sight: &impl Sight,
     ) -> End {
-        let held = row.held[end];
+        let held = row.rare.held[end];
         if let (Held::Body { body, local, .. }, Some(index)) = (held, row.movable(end))
             && let Some(body) = sight.see(body)
         {
             return End::Body {
-                index: bodies[index].slot,
+                index: bodies[index].rare.slot as usize,
                 arm: local - body.local_center.as_dvec3(),
             };
         }
         let [from, to] = self.path(&held, sight);
         let mut path = Path::straight(from, (to - from) / self.plan.time);
         if let Held::Body { body, .. } = held
-            && row.companion.guide.turns()
+            && row.rare.guide.turns()
             && let Some(turning) = sight.turning(body, self.plan.time)
         {
             (path.rotation, path.turning) = turning;
@@ -41,18 +41,18 @@ impl Step {
 /// The integrator's element, its rest length captured if need be; or none, with the fault noted.
 pub(crate) fn element(row: &mut ElementRow, ends: [End; 2], bodies: &[Body]) -> Option<Element> {
     row.trouble.set_passing(None);
-    let p = &mut row.parameters;
+    let p = row.numbers;
     let mut element = Element {
         ends,
         stiffness: f64::from(p.stiffness),
         damping: f64::from(p.damping),
         rest_length: f64::from(p.rest_length.unwrap_or(0.0)),
-        guide: row.companion.guide,
-        law: row.companion.law.clone(),
-        angle: row.memory.angle,
+        guide: row.rare.guide,
+        law: row.law.clone(),
+        angle: row.rare.angle,
         heat: 0.0,
         work: 0.0,
-        direction: row.memory.direction,
+        direction: row.direction(),
         stiff_damper: false,
     };
     if p.rest_length.is_some()
@@ -66,9 +66,9 @@ pub(crate) fn element(row: &mut ElementRow, ends: [End; 2], bodies: &[Body]) -> 
     let mut line = element.line(bodies);
     if p.rest_length.is_none() {
         let length = line.map_or(0.0, |line| line.distance());
-        p.rest_length = Some(length as f32);
+        row.numbers.rest_length = Some(length as f32);
         element.rest_length = f64::from(length as f32);
-        row.captured = true;
+        row.flags.insert(ElementFlags::CAPTURED);
         line = element.line(bodies);
     }
     let Some(line) = line else {
@@ -77,14 +77,14 @@ pub(crate) fn element(row: &mut ElementRow, ends: [End; 2], bodies: &[Body]) -> 
         } else {
             "coincides with body_a, so nothing says which way to push; move one or set Anchors"
         };
-        let fault = Fault::new(p.names.ends[1], reason);
+        let fault = Fault::new(row.rare.ties.names.ends[1], reason);
         row.trouble.set_passing(Some(fault));
         return None;
     };
     if element.guide.is_twist() && line.inverse_mass == 0.0 {
         let reason = "acts on nothing, for neither end can be turned about its axis";
         row.trouble
-            .set_passing(Some(Fault::new(p.names.axis, reason)));
+            .set_passing(Some(Fault::new(row.rare.ties.names.axis, reason)));
         return None;
     }
     let rate = line.motion(&element, bodies, 0.0).axial;

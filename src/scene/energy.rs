@@ -9,11 +9,11 @@ use bevy::math::DVec3;
 impl ElementRow {
     /// Tension without damping at a length, its slope, and the stored energy.
     pub(crate) fn elastic(&self, length: f64) -> Elastic {
-        let rest_length = f64::from(self.parameters.rest_length.unwrap_or(0.0));
-        match &self.companion.law {
+        let rest_length = f64::from(self.numbers.rest_length.unwrap_or(0.0));
+        match &self.law {
             Some(law) => law.elastic(length, rest_length),
             None => {
-                let stiffness = f64::from(self.parameters.stiffness);
+                let stiffness = f64::from(self.numbers.stiffness);
                 let stretch = length - rest_length;
                 Elastic {
                     force: stiffness * stretch,
@@ -26,10 +26,10 @@ impl ElementRow {
 
     /// Tension that damping adds.
     pub(crate) fn drag(&self, length: f64, rate: f64) -> f64 {
-        let rest_length = f64::from(self.parameters.rest_length.unwrap_or(0.0));
-        match &self.companion.law {
+        let rest_length = f64::from(self.numbers.rest_length.unwrap_or(0.0));
+        match &self.law {
             Some(law) => law.drag(length, rest_length, rate).force,
-            None => f64::from(self.parameters.damping) * rate,
+            None => f64::from(self.numbers.damping) * rate,
         }
     }
 
@@ -40,19 +40,19 @@ impl ElementRow {
             stiffness: 0.0,
             damping: 0.0,
             rest_length: 0.0,
-            guide: self.companion.guide,
+            guide: self.rare.guide,
             law: None,
-            angle: self.memory.angle,
+            angle: self.rare.angle,
             heat: 0.0,
             work: 0.0,
             direction: None,
             stiff_damper: false,
         };
         element.aim(&[], 0.0);
-        self.memory.angle = element.angle;
+        self.rare.angle = element.angle;
         match element.line(&[]) {
             Some(line) => (line.length, line.motion(&element, &[], 0.0).axial),
-            None => (self.memory.length, 0.0),
+            None => (self.length, 0.0),
         }
     }
 
@@ -64,7 +64,7 @@ impl ElementRow {
 
     /// Whether a law of a user's own gives numbers, for ends that are and move apart like this.
     pub(crate) fn is_sound(&self, v: DVec3, d: DVec3) -> bool {
-        if self.companion.law.is_none() {
+        if self.law.is_none() {
             return true;
         }
         let elastic = self.elastic(d.length());
@@ -74,25 +74,25 @@ impl ElementRow {
 
     /// Whether it can lose energy.
     pub(crate) fn is_damped(&self) -> bool {
-        match &self.companion.law {
+        match &self.law {
             Some(law) => law.damps(),
-            None => self.parameters.damping > 0.0,
+            None => self.numbers.damping > 0.0,
         }
     }
 
     /// Slope of the spring's force as of the last step, N/m.
     pub(crate) fn slope(&self) -> f64 {
-        if self.companion.law.is_none() {
-            return f64::from(self.parameters.stiffness);
+        if self.law.is_none() {
+            return f64::from(self.numbers.stiffness);
         }
-        self.elastic(self.memory.length).stiffness
+        self.elastic(self.length).stiffness
     }
 
     /// Energy of an element both of whose ends are moved by something else, over a step to this length and at
     /// this rate: all of it is their work.
     pub(crate) fn account_for_moved(&mut self, (length, rate): (f64, f64), time: f64) {
         let heat = self.drag(length, rate) * rate * time;
-        let stored = self.elastic(length).energy - self.elastic(self.memory.length).energy;
+        let stored = self.elastic(length).energy - self.elastic(self.length).energy;
         if heat.is_finite() && stored.is_finite() {
             self.ledger.dissipated += heat;
             self.ledger.work += heat + stored;
@@ -101,8 +101,8 @@ impl ElementRow {
 
     /// Takes in that the game has put an end elsewhere since the last step, so that it is so long now.
     pub(crate) fn account_for_leap(&mut self, length: f64) {
-        if self.memory.places[0].is_some() && self.parameters.rest_length.is_some() {
-            let leap = self.elastic(length).energy - self.elastic(self.memory.length).energy;
+        if self.rare.places[0].is_some() && self.numbers.rest_length.is_some() {
+            let leap = self.elastic(length).energy - self.elastic(self.length).energy;
             if leap.is_finite() {
                 self.ledger.work += leap;
             }
@@ -111,11 +111,11 @@ impl ElementRow {
 
     /// Takes in other numbers; what that changes in stored energy is work that was done.
     pub(crate) fn change(&mut self, change: impl FnOnce(&mut Self)) {
-        let acted = self.memory.places[0].is_some() && self.parameters.rest_length.is_some();
-        let before = self.elastic(self.memory.length).energy;
+        let acted = self.rare.places[0].is_some() && self.numbers.rest_length.is_some();
+        let before = self.elastic(self.length).energy;
         change(self);
-        if acted && self.parameters.rest_length.is_some() {
-            let work = self.elastic(self.memory.length).energy - before;
+        if acted && self.numbers.rest_length.is_some() {
+            let work = self.elastic(self.length).energy - before;
             if work.is_finite() {
                 self.ledger.work += work;
             }

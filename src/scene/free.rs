@@ -1,39 +1,32 @@
-//! The components of a context that nothing but elements holds, through the step.
+//! The components of a world that nothing but elements holds, through the step: all is read, all is solved, all is written.
 
-use crate::backend::Engine;
+use crate::backend::{Engine, Sight};
 use crate::scene::assembly::Assembly;
-use crate::scene::lone::{BATCH, Batch, Route};
-use crate::scene::prefetch::prefetch;
+use crate::scene::lone::{Lone, Route, Way, Worker, pieces};
+use crate::scene::rows::{BodyRow, ElementRow};
 use crate::scene::state::Scene;
 use crate::scene::step::Step;
+use crate::scene::threads;
 use bevy::prelude::Entity;
-use bevy::tasks::ComputeTaskPool;
-use std::num::NonZeroUsize;
-use std::sync::LazyLock;
-use std::thread::available_parallelism;
+use std::mem::take;
 
-/// Elements in networks that are about to be solved, above which it is worth waking other threads, and the few
-/// allocations that this takes: the only ones of a warm step.
+/// Elements in networks that are about to be solved, above which it is worth waking other threads.
 const WORTH_SHARING: usize = 256;
-
-/// More threads than these would only wait for each other.
-static CORES: LazyLock<usize> =
-    LazyLock::new(|| available_parallelism().map_or(1, NonZeroUsize::get));
 
 /// Room for the work of a step.
 #[derive(Default)]
 pub(crate) struct Spare {
-    batch: Batch,
-    /// What lone elements are assembled in that need the general solver.
-    assembly: Assembly,
-    /// Groups that need the general solver in this step.
-    general_once: Vec<usize>,
-    /// Groups that need it for as long as can be seen.
-    general: Vec<usize>,
+    workers: Vec<Worker>,
+    /// What has become of each lone element.
+    ways: Vec<Way>,
+    /// What lone elements are assembled in that need the general solver,
+    general: Vec<Assembly>,
+    /// and the components that they are.
+    groups: Vec<u32>,
 }
 
 impl Scene {
-    /// Takes every component of a context that is not held through the step; says whether all of them are asleep.
+    /// Takes every component of a world that is not held through the step; says whether all of them are asleep.
     pub(crate) fn step_free(
         &mut self,
         context: Entity,
@@ -41,113 +34,146 @@ impl Scene {
         engine: &mut impl Engine,
         spare: &mut Spare,
     ) -> bool {
-        // First, so that what touches them is read as the engine has left it, whatever lone elements there are.
+        let lone = self.lone.iter().position(|lone| lone.context == context);
+        // Read,
         let networks_asleep = self.gather_networks(context, step, engine);
-        let lone_asleep = self.step_lone(context, step, engine, spare);
-        self.step_general(step, engine, spare);
-        advance(&mut self.assemblies, step);
-        self.deliver_networks(context, step, engine);
-        for group in spare.general.drain(..) {
-            self.groups.promote(group, &mut self.assemblies);
+        let lone_asleep = lone.is_none_or(|lone| self.solve_lone(lone, step, engine, spare));
+        let general = self.gather_general(lone, step, engine, spare);
+        // solve,
+        self.noting |= general > 0 || !self.assemblies.is_empty();
+        let accuracy = step.accuracy.shared(general);
+        for assembly in &mut spare.general[..general] {
+            assembly.advance(step, accuracy);
         }
+        advance(&mut self.assemblies, step);
+        // and write.
+        let (elements, bodies) = (&mut self.elements, &mut self.bodies);
+        if let Some(lone) = lone {
+            let lone = &self.lone[lone];
+            self.touch_changed |= lone.deliver(step, &spare.ways, elements, bodies, engine);
+        }
+        let groups = &self.groups;
+        for (group, assembly) in spare.groups.iter().zip(&mut spare.general) {
+            let members = groups.members(&groups.list()[*group as usize]);
+            assembly.deliver(step, &members, elements, bodies, engine);
+            assembly.forget();
+        }
+        for assembly in &mut self.assemblies {
+            let group = &groups.list()[assembly.group];
+            if group.is_free(context) {
+                let members = groups.members(group);
+                assembly.deliver(step, &members, elements, bodies, engine);
+            }
+        }
+        self.promote(lone, &spare.ways);
         networks_asleep && lone_asleep
     }
 
     /// Reads what is solved in an assembly of its own; says whether all of that is asleep.
-    fn gather_networks(&mut self, context: Entity, step: &Step, engine: &mut impl Engine) -> bool {
+    fn gather_networks(&mut self, context: Entity, step: &Step, sight: &impl Sight) -> bool {
         let mut all_asleep = true;
-        for group in self.groups.list().iter().filter(|g| g.is_free(context)) {
-            if let Some(index) = group.assembly {
-                let (members, assembly) = (self.groups.members(group), &mut self.assemblies[index]);
+        for assembly in &mut self.assemblies {
+            let group = &self.groups.list()[assembly.group];
+            if group.is_free(context) {
+                let members = self.groups.members(group);
                 let (elements, bodies) = (&mut self.elements, &mut self.bodies);
-                assembly.gather(step, &members, elements, bodies, engine, &mut self.stale);
+                assembly.gather(step, &members, elements, bodies, sight, &mut self.stale);
                 all_asleep &= assembly.is_asleep();
+                self.touch_changed |= take(&mut assembly.touch_changed);
             }
         }
         all_asleep
     }
 
-    /// Takes lone elements through the step, a batch at a time; says whether all of them are asleep.
-    fn step_lone(
+    /// Reads lone elements and solves them; says whether all of them are asleep.
+    fn solve_lone(
         &mut self,
-        context: Entity,
+        lone: usize,
         step: &Step,
-        engine: &mut impl Engine,
+        sight: &impl Sight,
         spare: &mut Spare,
     ) -> bool {
-        let Self {
-            elements,
-            bodies,
-            groups,
-            stale,
-            ..
-        } = self;
-        let Spare {
-            batch,
-            general_once,
-            general,
-            ..
-        } = spare;
-        let mut all_asleep = true;
-        for g in 0..groups.list().len() {
-            if g % BATCH == 0 {
-                prefetch(groups, g, elements, bodies, engine);
-            }
-            let group = &groups.list()[g];
-            if group.assembly.is_some() || !group.is_free(context) {
-                continue;
-            }
-            let sleeps = |body| engine.see(body).is_some_and(|body| body.is_asleep);
-            if let (true, Some(handles)) = (step.quiet, group.dozing)
-                && handles.into_iter().all(sleeps)
-            {
-                continue;
-            }
-            let members = groups.members(group);
-            let route = step.gather_lone(batch, g, &members, elements, bodies, engine, stale);
-            let mut dozing = None;
-            all_asleep &= matches!(route, Route::Asleep(_));
-            match route {
-                Route::Asleep(handles) => dozing = handles,
-                Route::GeneralOnce => general_once.push(g),
-                Route::General => general.push(g),
-                Route::Batched | Route::Gone => {}
-            }
-            groups.at(g).dozing = dozing;
-            if batch.is_full() {
-                step.scatter(batch, elements, bodies, engine, general_once);
-            }
-        }
-        step.scatter(batch, elements, bodies, engine, general_once);
-        all_asleep
+        let lone = &self.lone[lone].elements;
+        spare.ways.clear();
+        spare.ways.resize(lone.len(), Way::default());
+        let count = pieces(lone.len(), threads::count());
+        let each = lone.len().div_ceil(count).max(1);
+        spare.workers.resize_with(count, Worker::default);
+        let bodies = &self.bodies;
+        let mut rows = &mut self.elements[..];
+        let mut first = 0;
+        let parts = lone.chunks(each).zip(spare.ways.chunks_mut(each));
+        let parts = parts.zip(&mut spare.workers).map(|((lone, ways), worker)| {
+            // The rows of this piece, cut off the rest.
+            let end = lone.last().map_or(first, |last| *last as usize + 1);
+            let (own, others) = take(&mut rows).split_at_mut(end - first);
+            let own = (std::mem::replace(&mut first, end), own);
+            rows = others;
+            (lone, ways, worker, own)
+        });
+        threads::share(parts, |(lone, ways, worker, own)| {
+            worker.solve(step, lone, own, bodies, ways, sight);
+        });
+        self.stale |= spare.workers.iter().any(|worker| worker.stale);
+        let mut routes = spare.ways.iter().map(|way| way.route);
+        routes.all(|route| matches!(route, Route::Asleep | Route::None))
     }
 
-    /// Takes lone elements through the step that need the general solver.
-    fn step_general(&mut self, step: &Step, engine: &mut impl Engine, spare: &mut Spare) {
-        let all = spare.general_once.len() + spare.general.len();
-        let accuracy = step.accuracy.shared(all);
-        let once = spare.general_once.drain(..);
-        for g in once.chain(spare.general.iter().copied()) {
-            let members = self.groups.members(&self.groups.list()[g]);
+    /// Reads lone elements that need the general solver in this step; says how many they are.
+    fn gather_general(
+        &mut self,
+        lone: Option<usize>,
+        step: &Step,
+        sight: &impl Sight,
+        spare: &mut Spare,
+    ) -> usize {
+        spare.groups.clear();
+        let Some(lone) = lone.map(|lone| &self.lone[lone].elements) else {
+            return 0;
+        };
+        let general = |way: &Way| matches!(way.route, Route::General | Route::GeneralOnce);
+        let ways = lone.iter().zip(&spare.ways);
+        for (element, _) in ways.filter(|(_, way)| general(way)) {
+            let Some(group) = group_of(*element, &self.elements, &self.bodies) else {
+                continue;
+            };
+            let at = spare.groups.len();
+            spare.groups.push(group);
+            if spare.general.len() == at {
+                spare.general.push(Assembly::default());
+            }
+            let members = self.groups.members(&self.groups.list()[group as usize]);
             let (elements, bodies) = (&mut self.elements, &mut self.bodies);
-            let assembly = &mut spare.assembly;
-            assembly.gather(step, &members, elements, bodies, engine, &mut self.stale);
-            assembly.advance(step, accuracy);
-            assembly.deliver(step, &members, elements, bodies, engine);
-            assembly.forget();
+            let assembly = &mut spare.general[at];
+            assembly.gather(step, &members, elements, bodies, sight, &mut self.stale);
+            self.touch_changed |= take(&mut assembly.touch_changed);
         }
+        spare.groups.len()
     }
 
-    /// Gives the engine what takes the bodies of networks on.
-    fn deliver_networks(&mut self, context: Entity, step: &Step, engine: &mut impl Engine) {
-        for group in self.groups.list().iter().filter(|g| g.is_free(context)) {
-            if let Some(index) = group.assembly {
-                let (elements, bodies) = (&mut self.elements, &mut self.bodies);
-                let members = self.groups.members(group);
-                self.assemblies[index].deliver(step, &members, elements, bodies, engine);
-            }
+    /// Gives lone elements an assembly of their own that will need the general solver again.
+    fn promote(&mut self, lone: Option<usize>, ways: &[Way]) {
+        let Some(Lone { elements: lone, .. }) = lone.map(|lone| &mut self.lone[lone]) else {
+            return;
+        };
+        if ways.iter().all(|way| way.route != Route::General) {
+            return;
         }
+        let mut ways = ways.iter();
+        lone.retain(|element| {
+            let stays = ways.next().is_none_or(|way| way.route != Route::General);
+            if !stays && let Some(group) = group_of(*element, &self.elements, &self.bodies) {
+                self.groups.promote(group as usize, &mut self.assemblies);
+            }
+            stays
+        });
     }
+}
+
+/// Index of the component of an element.
+fn group_of(element: u32, elements: &[ElementRow], bodies: &[BodyRow]) -> Option<u32> {
+    let body = elements[element as usize].all_movable().next()?;
+    Some(bodies[body].rare.group)
 }
 
 /// Integrates all assemblies, on several threads where that is worth it; each is on its own, so the
@@ -155,23 +181,17 @@ impl Scene {
 fn advance(assemblies: &mut [Assembly], step: &Step) {
     let load: usize = assemblies.iter().map(Assembly::load).sum();
     let accuracy = step.accuracy.shared(load);
-    // The one that waits for the pool works too: on two cores the pool has just one.
-    let pool = ComputeTaskPool::try_get().map_or(0, |pool| pool.thread_num());
-    let threads = CORES.min(pool + 1);
     let ready = assemblies.iter().filter(|a| a.load() > 0).count();
-    let advance = |assemblies: &mut [Assembly]| {
+    let threads = threads::count();
+    let worth = threads > 1 && ready > 1 && load >= WORTH_SHARING;
+    let each = if worth {
+        assemblies.len().div_ceil(4 * threads)
+    } else {
+        assemblies.len().max(1)
+    };
+    threads::share(assemblies.chunks_mut(each), |assemblies| {
         for assembly in assemblies {
             assembly.advance(step, accuracy);
-        }
-    };
-    if threads < 2 || ready < 2 || load < WORTH_SHARING {
-        return advance(assemblies);
-    }
-    let chunk = assemblies.len().div_ceil(4 * threads);
-    let advance = &advance;
-    ComputeTaskPool::get().scope(|scope| {
-        for chunk in assemblies.chunks_mut(chunk) {
-            scope.spawn(async move { advance(chunk) });
         }
     });
 }

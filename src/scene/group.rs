@@ -1,8 +1,7 @@
 //! Which elements have to be solved together.
 
-use crate::backend::BodyId;
 use crate::scene::assembly::Assembly;
-use crate::scene::rows::{BodyRow, ElementRow, Members, mix};
+use crate::scene::rows::{BodyFlags, BodyRow, ElementFlags, ElementRow, Members, mix};
 use bevy::platform::collections::HashMap;
 use bevy::prelude::Entity;
 use std::ops::Range;
@@ -10,16 +9,14 @@ use std::ops::Range;
 /// One component: elements that share bodies, and those bodies.
 #[derive(Clone, Debug)]
 pub(crate) struct Group {
-    elements: Range<usize>,
-    bodies: Range<usize>,
+    elements: Range<u32>,
+    bodies: Range<u32>,
     /// A hash of its bodies and elements.
     signature: u64,
     /// Rapier's context, in which all of it is.
     pub context: Entity,
     /// Index of what it is assembled in; none for a lone element on bodies that it does not turn.
-    pub assembly: Option<usize>,
-    /// Its bodies, where it has been found asleep and nothing but them can wake it.
-    pub dozing: Option<[BodyId; 2]>,
+    pub assembly: Option<u32>,
     /// Contacts or joints hold some body of it.
     pub held: bool,
     /// The engine solves its elements,
@@ -37,7 +34,7 @@ impl Group {
     /// Has it, of this index, assembled in this, all of it read anew.
     fn take(&mut self, index: usize, mut assembly: Assembly, assemblies: &mut Vec<Assembly>) {
         assembly.group = index;
-        self.assembly = Some(assemblies.len());
+        self.assembly = u32::try_from(assemblies.len()).ok();
         assembly.signature = self.signature;
         assembly.read_anew();
         assemblies.push(assembly);
@@ -47,8 +44,8 @@ impl Group {
 /// All components, as runs of two flat arrays.
 #[derive(Default)]
 pub(crate) struct Groups {
-    elements: Vec<usize>,
-    bodies: Vec<usize>,
+    elements: Vec<u32>,
+    bodies: Vec<u32>,
     list: Vec<Group>,
 }
 
@@ -78,11 +75,16 @@ fn join(elements: &[ElementRow], bodies: usize) -> Vec<usize> {
 
 /// An order of elements that does not depend on when they or their bodies were spawned.
 fn rank(row: &ElementRow, bodies: &[BodyRow]) -> impl Ord + use<> {
-    let p = &row.parameters;
+    let p = row.parameters();
     (
-        [0, 1].map(|end| row.movable(end).map(|b| bodies[b].rank)),
-        p.anchors.map(|a| a.to_array().map(f32::to_bits)),
-        [p.stiffness, p.damping, p.rest_length.unwrap_or(-1.0)].map(f32::to_bits),
+        [0, 1].map(|end| row.movable(end).map(|b| bodies[b].rare.rank)),
+        p.ties.anchors.map(|a| a.to_array().map(f32::to_bits)),
+        [
+            p.numbers.stiffness,
+            p.numbers.damping,
+            p.numbers.rest_length.unwrap_or(-1.0),
+        ]
+        .map(f32::to_bits),
         row.entity,
     )
 }
@@ -117,43 +119,48 @@ impl Groups {
             .windows(2)
             .filter(|group| group[1] > group[0] + 1)
         {
-            self.elements[group[0]..group[1]].sort_by_cached_key(|e| rank(&elements[*e], bodies));
+            self.elements[group[0]..group[1]]
+                .sort_by_cached_key(|e| rank(&elements[*e as usize], bodies));
         }
         for group in body_starts
             .windows(2)
             .filter(|group| group[1] > group[0] + 1)
         {
-            self.bodies[group[0]..group[1]].sort_by_key(|b| bodies[*b].rank);
+            self.bodies[group[0]..group[1]].sort_by_key(|b| bodies[*b as usize].rare.rank);
         }
         self.list.clear();
         self.list.extend((0..count).map(|g| Group {
-            elements: element_starts[g]..element_starts[g + 1],
-            bodies: body_starts[g]..body_starts[g + 1],
-            context: bodies[self.bodies[body_starts[g]]].context,
+            elements: element_starts[g] as u32..element_starts[g + 1] as u32,
+            bodies: body_starts[g] as u32..body_starts[g + 1] as u32,
+            context: bodies[self.bodies[body_starts[g]] as usize].rare.context,
             signature: 0,
             assembly: None,
-            dozing: None,
             held: false,
             inside: false,
             is_asleep: false,
         }));
         for group in &mut self.list {
-            let members = &self.elements[group.elements.clone()];
-            group.inside = members.iter().any(|e| elements[*e].inside.is_some());
+            let members = &self.elements[span(&group.elements)];
+            group.inside = members
+                .iter()
+                .any(|e| elements[*e as usize].inside.is_some());
         }
     }
 
     /// Puts all components, and elements and bodies within each, into another order: by these places of theirs.
     pub(crate) fn arrange(&mut self, elements: &[u32], bodies: &[u32], rows: &[ElementRow]) {
         for group in &mut self.list {
-            let members = &mut self.elements[group.elements.clone()];
-            group.inside = members.iter().any(|e| rows[*e].inside.is_some());
-            members.sort_by_key(|e| elements[*e]);
-            self.bodies[group.bodies.clone()].sort_by_key(|b| bodies[*b]);
+            let members = &mut self.elements[span(&group.elements)];
+            group.inside = members.iter().any(|e| rows[*e as usize].inside.is_some());
+            members.sort_by_key(|e| elements[*e as usize]);
+            self.bodies[span(&group.bodies)].sort_by_key(|b| bodies[*b as usize]);
         }
         let Self { bodies: all, .. } = self;
-        self.list
-            .sort_by_key(|group| all[group.bodies.clone()].first().map(|b| bodies[*b]));
+        self.list.sort_by_key(|group| {
+            all[span(&group.bodies)]
+                .first()
+                .map(|b| bodies[*b as usize])
+        });
     }
 
     /// Gives every group that needs one its assembly: the one that it had, if it was there before.
@@ -167,17 +174,33 @@ impl Groups {
             assemblies.drain(..).map(|a| (a.signature, a)).collect();
         for g in 0..self.list.len() {
             let members = self.members(&self.list[g]);
-            let entities = members.bodies.iter().map(|b| bodies[*b].entity);
-            let entities = entities.chain(members.elements.iter().map(|e| elements[*e].entity));
+            let entities = members.bodies.iter().map(|b| bodies[*b as usize].entity);
+            let members_too = members.elements.iter();
+            let entities = entities.chain(members_too.map(|e| elements[*e as usize].entity));
             let signature = entities.fold(members.elements.len() as u64, |sum, entity| {
                 mix(sum ^ entity.to_bits())
             });
-            let any = |is: fn(&BodyRow) -> bool| members.bodies.iter().any(|b| is(&bodies[*b]));
-            let alone = members.elements.len() == 1 && !any(|body| body.turns);
+            let turns = |b: &u32| bodies[*b as usize].has(BodyFlags::TURNS);
+            let alone = match members.elements {
+                [e] => {
+                    let row = &elements[*e as usize];
+                    row.has(ElementFlags::IS_PLAIN) && !members.bodies.iter().any(turns)
+                }
+                _ => false,
+            };
             let before = known.remove(&signature);
             self.list[g].signature = signature;
             if !alone || before.is_some() {
                 self.list[g].take(g, before.unwrap_or_default(), assemblies);
+            }
+        }
+    }
+
+    /// Notes whether contacts or joints hold some body of a group.
+    pub(crate) fn set_held(&mut self, group: usize, held: bool, elements: &mut [ElementRow]) {
+        if std::mem::replace(&mut self.list[group].held, held) != held {
+            for e in self.members(&self.list[group]).elements {
+                elements[*e as usize].flags.set(ElementFlags::HELD, held);
             }
         }
     }
@@ -198,17 +221,21 @@ impl Groups {
     /// Indices of a group's elements and bodies.
     pub(crate) fn members(&self, group: &Group) -> Members<'_> {
         Members {
-            elements: &self.elements[group.elements.clone()],
-            bodies: &self.bodies[group.bodies.clone()],
+            elements: &self.elements[span(&group.elements)],
+            bodies: &self.bodies[span(&group.bodies)],
         }
     }
+}
+
+fn span(range: &Range<u32>) -> Range<usize> {
+    range.start as usize..range.end as usize
 }
 
 /// Counting sort of (index, group), stable; returns where each group begins, and last where all end.
 fn sort(
     count: usize,
     items: impl Iterator<Item = (usize, usize)> + Clone,
-    sorted: &mut Vec<usize>,
+    sorted: &mut Vec<u32>,
 ) -> Vec<usize> {
     let mut starts = vec![0; count + 1];
     for (_, group) in items.clone() {
@@ -221,7 +248,7 @@ fn sort(
     sorted.resize(starts[count], 0);
     let mut next = starts.clone();
     for (item, group) in items {
-        sorted[next[group]] = item;
+        sorted[next[group]] = item as u32;
         next[group] += 1;
     }
     starts

@@ -1,141 +1,195 @@
-//! After the engine's step: where it has taken the ends of each element, and what that element shows.
+//! After the engine's step: where it has taken bodies, and with them the ends of each element.
 
 use crate::backend::{BodyId, Seen, Sight, Worlds};
 use crate::dynamics::element::{End, Path};
 use crate::dynamics::guide::Guide;
-use crate::dynamics::single;
-use crate::readout::SpringReadout;
-use crate::scene::rows::{BodyRow, ElementRow, Held, turning_mark};
+use crate::scene::rows::{BodyFlags, BodyRow, ElementFlags, ElementRow, Held, turning_mark};
+use crate::scene::state::Scene;
+use crate::scene::threads;
 use bevy::math::{DQuat, DVec3};
 use bevy::prelude::*;
+use std::sync::atomic::{AtomicBool, Ordering};
 
-/// What is needed to see where stepped bodies are.
-pub(crate) struct Look<'a, W> {
+/// Rows above which it is worth waking other threads. Pinned by the benchmark `own/isolated`.
+const WORTH_SHARING: usize = 2048;
+
+/// What sees where stepped bodies are.
+struct Eyes<'a, W: Worlds> {
     worlds: &'a W,
+    /// The only world in which elements move bodies, if it is the only one.
+    only: Option<&'a W::Sight>,
+    /// Seconds of the step.
+    time: f64,
     /// The scene is not what it was thought to be.
-    pub(crate) stale: bool,
+    stale: AtomicBool,
 }
 
-impl<'a, W: Worlds> Look<'a, W> {
-    pub(crate) fn new(worlds: &'a W) -> Self {
-        let stale = false;
-        Self { worlds, stale }
-    }
+/// Position and velocity.
+type Moving = (DVec3, DVec3);
 
+impl Scene {
+    /// Finds where the step has taken everything.
+    pub(crate) fn observe(&mut self, worlds: &impl Worlds) {
+        let only = match &self.lone[..] {
+            [lone] if self.assemblies.is_empty() => worlds.of(lone.context),
+            _ => None,
+        };
+        let eyes = Eyes {
+            worlds,
+            only,
+            time: self.time,
+            stale: AtomicBool::new(false),
+        };
+        if self.noting {
+            let each = share_of(self.bodies.len());
+            threads::share(self.bodies.chunks_mut(each), |rows| {
+                rows.iter_mut().for_each(|row| eyes.note(row));
+            });
+        }
+        let bodies = &self.bodies;
+        let each = share_of(self.elements.len());
+        threads::share(self.elements.chunks_mut(each), |rows| {
+            for row in rows.iter_mut().filter(|row| row.is_seen()) {
+                row.observe(bodies, &eyes);
+            }
+        });
+        self.stale |= eyes.stale.into_inner();
+    }
+}
+
+/// How many rows a piece of work has.
+fn share_of(rows: usize) -> usize {
+    let threads = threads::count();
+    if threads < 2 || rows < WORTH_SHARING {
+        rows.max(1)
+    } else {
+        rows.div_ceil(4 * threads)
+    }
+}
+
+impl<'a, W: Worlds> Eyes<'a, W> {
     fn body(&self, context: Entity, body: BodyId) -> Option<Seen> {
         self.worlds.of(context)?.see(body)
     }
 
-    /// Position and velocity of a body's centre of mass after the step.
-    fn at(&mut self, row: &mut BodyRow) -> (DVec3, DVec3) {
-        if !row.is_fresh && row.is_noted {
-            return row.place();
-        }
-        let Some(body) = self.body(row.context, row.id) else {
-            self.stale = true;
-            return row.place();
+    /// A body that elements move.
+    #[inline(always)]
+    fn see(&self, row: &BodyRow) -> Option<Seen> {
+        let world = match self.only {
+            Some(only) => Some(only),
+            None => self.worlds.of(row.rare.context),
         };
-        row.is_fresh = false;
+        let seen = world.and_then(|world| world.see(row.id));
         // The engine takes bodies out that it cannot step.
-        let is_out = !body.is_movable;
-        let now = (body.center(), body.velocity);
-        row.is_noted = !row.is_alone;
-        if row.is_noted {
-            row.now = now;
-            if row.turns {
-                row.turned = turning_mark(&body);
-            }
+        if seen.as_ref().is_none_or(|seen| !seen.is_movable) {
+            self.stale.store(true, Ordering::Relaxed);
         }
-        self.stale |= is_out;
-        (now.0, now.1.as_dvec3())
+        seen
+    }
+
+    /// Notes where a body is that several elements may ask for.
+    fn note(&self, row: &mut BodyRow) {
+        let known = row.has(BodyFlags::NOTED) && !row.has(BodyFlags::FRESH);
+        if known || row.has(BodyFlags::IS_ALONE) {
+            return;
+        }
+        let Some(seen) = self.see(row) else { return };
+        row.flags.remove(BodyFlags::FRESH);
+        row.flags.insert(BodyFlags::NOTED);
+        row.rare.now = (seen.center(), seen.velocity);
+        if row.has(BodyFlags::TURNS) {
+            row.rare.turned = turning_mark(&seen);
+        }
     }
 }
 
 impl ElementRow {
-    /// Position and velocity of both ends, if anything about the element can have changed; notes where
-    /// they are.
-    pub(crate) fn see(
-        &mut self,
-        time: f64,
-        bodies: &mut [BodyRow],
-        look: &mut Look<impl Worlds>,
-    ) -> Option<[(DVec3, DVec3); 2]> {
-        if self.trouble.lasting().is_some() || !(self.active || self.moves() == 0) {
-            return None;
-        }
-        let points = [0, 1].map(|end| self.point(end, time, bodies, look));
-        if self.parameters.rest_length.is_none() {
+    /// Whether anything about it can have changed in the step.
+    #[inline(always)]
+    pub(crate) fn is_seen(&self) -> bool {
+        let acts = self.has(ElementFlags::ACTIVE) || self.moves() == 0;
+        acts && self.trouble.lasting().is_none()
+    }
+
+    /// Finds its length and rate after the step, and notes where its ends are.
+    fn observe(&mut self, bodies: &[BodyRow], eyes: &Eyes<impl Worlds>) {
+        let led = self.moves() == 0 && self.rare.places[0].is_some();
+        let points = [0, 1].map(|end| self.point(end, bodies, eyes));
+        if self.numbers.rest_length.is_none() {
             // No movable body: it took no part in the solve.
-            let length = self.extent(points, look.worlds).0;
-            self.parameters.rest_length = Some(length as f32);
-            self.captured = true;
+            let length = self.extent(points, eyes.worlds).0;
+            self.numbers.rest_length = Some(length as f32);
+            self.flags.insert(ElementFlags::CAPTURED);
         }
-        if self.placed {
-            return Some(points);
+        if !self.has(ElementFlags::PLACED) {
+            self.note_places(points, eyes.worlds);
         }
-        self.placed = self.watched == [false; 2] && self.moves() == 2;
+        let wound = self.rare_angle();
+        let (length, rate) = self.extent(points, eyes.worlds);
+        // In a step that its solver loses, Rapier gives kinematic bodies a velocity that is no number.
+        let seen = (length, if rate.is_finite() { rate } else { 0.0 });
+        let seen = match &self.inside {
+            None => seen,
+            Some(_) => self.arrive(seen, wound, points, eyes),
+        };
+        if led {
+            self.account_for_moved(seen, eyes.time);
+        }
+        (self.length, self.rate) = seen;
+    }
+
+    /// Notes where its ends are, which may have moved.
+    fn note_places(&mut self, points: [Moving; 2], worlds: &impl Worlds) {
+        let placed = !self.is_any_watched() && self.moves() == 2;
+        self.flags.set(ElementFlags::PLACED, placed);
         for (end, point) in points.iter().enumerate() {
-            self.memory.places[end] = Some(match self.held[end] {
+            let moves = self.movable(end).is_some();
+            let rare = &mut *self.rare;
+            rare.places[end] = Some(match rare.held[end] {
                 Held::Path { to, .. } => to,
-                Held::Body { local, .. } if self.on[end].is_some() => local,
+                Held::Body { local, .. } if moves => local,
                 Held::Body { .. } => point.0,
             });
-            if self.on[end].is_none() && self.companion.guide != Guide::Centres {
-                self.memory.facings[end] = frame(&self.held[end], look.worlds).0;
+            if !moves && rare.guide != Guide::Centres {
+                rare.facings[end] = frame(&rare.held[end], worlds).0;
             }
         }
-        Some(points)
     }
 
     /// Position and velocity of an end after the step.
-    fn point(
-        &self,
-        end: usize,
-        time: f64,
-        bodies: &mut [BodyRow],
-        look: &mut Look<impl Worlds>,
-    ) -> (DVec3, DVec3) {
+    #[inline(always)]
+    fn point(&self, end: usize, bodies: &[BodyRow], eyes: &Eyes<impl Worlds>) -> Moving {
         if let Some(index) = self.movable(end) {
-            let body = &mut bodies[index];
-            let center = look.at(body);
-            if !body.turns {
-                return center;
+            let row = &bodies[index];
+            if row.has(BodyFlags::IS_ALONE) {
+                if let Some(seen) = eyes.see(row) {
+                    return (seen.center(), seen.velocity.as_dvec3());
+                }
+                return row.place();
+            }
+            if !row.has(BodyFlags::TURNS) {
+                return row.place();
             }
         }
-        match self.held[end] {
-            Held::Path { from, to } => (to, (to - from) / time),
+        match self.rare.held[end] {
+            Held::Path { from, to } => (to, (to - from) / eyes.time),
             Held::Body {
                 body,
                 context,
                 local,
-                ..
-            } => look
+            } => eyes
                 .body(context, body)
                 .map_or((DVec3::ZERO, DVec3::ZERO), |body| body.point(local)),
         }
     }
 
-    /// Length or twist after the step, and its rate.
-    #[inline(always)]
-    pub(crate) fn seen(
-        &mut self,
-        points: [(DVec3, DVec3); 2],
-        time: f64,
-        look: &mut Look<impl Worlds>,
-    ) -> (f64, f64) {
-        let wound = self.memory.angle;
-        let (length, rate) = self.extent(points, look.worlds);
-        // In a step that its solver loses, Rapier gives kinematic bodies a velocity that is no number.
-        let seen = (length, if rate.is_finite() { rate } else { 0.0 });
-        self.arrive(seen, wound, points, time, look)
-    }
-
     /// Length and its rate; of a guided element the distance along its axis, or its twist, whose turns are counted.
-    fn extent(&mut self, [a, b]: [(DVec3, DVec3); 2], worlds: &impl Worlds) -> (f64, f64) {
-        if self.companion.guide != Guide::Centres {
+    #[inline(always)]
+    fn extent(&mut self, [a, b]: [Moving; 2], worlds: &impl Worlds) -> (f64, f64) {
+        if !self.has(ElementFlags::IS_PLAIN) && self.rare.guide != Guide::Centres {
             let ends = [(0, a), (1, b)].map(|(end, (position, velocity))| {
                 let mut path = Path::straight(position, velocity);
-                (path.rotation, path.turning) = frame(&self.held[end], worlds);
+                (path.rotation, path.turning) = frame(&self.rare.held[end], worlds);
                 End::Path(path)
             });
             return self.guided_extent(ends);
@@ -145,9 +199,18 @@ impl ElementRow {
         let direction = if length > 0.0 {
             d / length
         } else {
-            self.memory.direction.unwrap_or(DVec3::ZERO)
+            self.direction().unwrap_or(DVec3::ZERO)
         };
         (length, (b.1 - a.1).dot(direction))
+    }
+
+    /// Last twist; of what has none nobody asks.
+    fn rare_angle(&self) -> f64 {
+        if self.has(ElementFlags::IS_PLAIN) {
+            0.0
+        } else {
+            self.rare.angle
+        }
     }
 
     /// Takes in how a step inside the engine's solver went: there the rate is that of the length, not the engine's.
@@ -155,9 +218,8 @@ impl ElementRow {
         &mut self,
         (length, rate): (f64, f64),
         wound: f64,
-        points: [(DVec3, DVec3); 2],
-        time: f64,
-        look: &mut Look<impl Worlds>,
+        points: [Moving; 2],
+        eyes: &Eyes<impl Worlds>,
     ) -> (f64, f64) {
         let Some(mut inside) = self.inside.take_if(|inside| inside.active) else {
             if self
@@ -165,48 +227,29 @@ impl ElementRow {
                 .as_ref()
                 .is_some_and(|inside| inside.has_slipped())
             {
-                self.memory.angle = wound;
+                self.rare.angle = wound;
                 return (wound, 0.0);
             }
             return (length, rate);
         };
-        let facings = self.held.map(|held| match held {
-            Held::Body { body, context, .. } => look
+        let facings = self.rare.held.map(|held| match held {
+            Held::Body { body, context, .. } => eyes
                 .body(context, body)
                 .map_or(DQuat::IDENTITY, |body| body.facing()),
             Held::Path { .. } => DQuat::IDENTITY,
         });
-        let length = inside.wound(facings, length, time, |twist| self.elastic(twist).energy);
+        let length = inside.wound(facings, length, eyes.time, |twist| {
+            self.elastic(twist).energy
+        });
         let moved = [0, 1].map(|end| {
             let by = inside.moved(end, points[end].0, facings[end]);
-            by.filter(|_| self.on[end].is_none())
+            by.filter(|_| self.movable(end).is_none())
         });
         self.inside = Some(inside);
-        if self.companion.guide.is_twist() {
-            self.memory.angle = length;
+        if self.rare.guide.is_twist() {
+            self.rare.angle = length;
         }
-        self.arrive_inside(length, moved, time)
-    }
-
-    pub(crate) fn read_out(&self, (length, rate): (f64, f64), time: f64) -> SpringReadout {
-        let mut readout = SpringReadout {
-            length: single(length),
-            rate: single(rate),
-            dissipated_energy: single(self.ledger.dissipated),
-            work: single(self.ledger.work),
-            ..default()
-        };
-        if self.trouble.passing().is_none() {
-            let (elastic, drag) = (self.elastic(length), self.drag(length, rate));
-            readout.spring_force = single(elastic.force);
-            readout.damper_force = single(drag);
-            readout.stored_energy = single(elastic.energy);
-            readout.dissipated_power = single(drag * rate);
-            readout.omega_dt = single((elastic.stiffness * self.inverse_mass).sqrt() * time);
-            readout.effective_mass = self.inverse_mass.recip() as f32;
-            readout.note(&self.outcome);
-        }
-        readout
+        self.arrive_inside(length, moved, eyes.time)
     }
 }
 

@@ -1,6 +1,6 @@
 //! What a body has to be given to end the step where the integrator did.
 
-use super::rows::{BodyRow, Share};
+use super::rows::{BodyFlags, BodyRow};
 use super::step::Step;
 use crate::backend::{Engine, Push, Seen, Wrench};
 use crate::dynamics::body::{Body, Spin};
@@ -8,7 +8,6 @@ use crate::dynamics::delivery::{Delivery, Schedule, force_for, torque_for};
 use crate::dynamics::points::{Flight, FreePoint};
 use crate::dynamics::single;
 use bevy::math::{DVec3, Vec3};
-use std::sync::atomic::Ordering;
 
 /// How the engine will step one body.
 #[derive(Clone, Copy)]
@@ -44,10 +43,10 @@ impl Step {
         (given, rate)
     }
 
-    /// What takes a body on that is moved and not turned.
+    /// What takes a body on that is moved and not turned, and asks for so many substeps more than others.
     #[inline(always)]
-    pub(crate) fn push_point(&self, seen: &Seen, point: &FreePoint, flight: &Flight) -> Push {
-        let terms = self.terms(seen);
+    pub(crate) fn push_point(&self, more: usize, point: &FreePoint, flight: &Flight) -> Push {
+        let terms = self.terms(more);
         let (velocity, rate) = self.straight(
             point.velocity,
             flight.moved,
@@ -62,12 +61,13 @@ impl Step {
                 torque: Vec3::ZERO,
             },
             second_substep: terms.second_substep,
+            keep_awake: false,
         }
     }
 
     /// What takes a body from its start to its end.
     pub(crate) fn push(&self, seen: &Seen, start: &Body, end: &Body) -> Push {
-        let terms = self.terms(seen);
+        let terms = self.terms(seen.more_substeps);
         let (velocity, linear) = self.straight(
             start.velocity,
             end.position - start.position,
@@ -96,25 +96,8 @@ impl Step {
                 torque: finite(torque),
             },
             second_substep: terms.second_substep,
+            keep_awake: false,
         }
-    }
-}
-
-impl Step {
-    /// Gives a body what takes it on. `restless`: it has to be kept awake.
-    #[inline(always)]
-    pub(crate) fn deliver(
-        &self,
-        row: &mut BodyRow,
-        push: &Push,
-        restless: bool,
-        engine: &mut impl Engine,
-    ) {
-        if restless {
-            engine.keep_awake(row.id);
-        }
-        self.delivered.store(true, Ordering::Relaxed);
-        row.give(push, engine);
     }
 }
 
@@ -126,16 +109,14 @@ impl BodyRow {
         FreePoint {
             position: seen.center(),
             velocity: seen.velocity.as_dvec3(),
-            acceleration: seen.gravity + inverse_mass * self.user.force.as_dvec3(),
+            acceleration: seen.gravity + inverse_mass * self.user_force.as_dvec3(),
             inverse_mass,
         }
     }
 
     /// Gives the body what elements push it with over the coming step, if their force and torque are numbers.
     #[inline(always)]
-    pub(crate) fn give(&mut self, push: &Push, engine: &mut impl Engine) {
-        self.is_fresh = true;
-        self.carries_share = true;
+    pub(crate) fn give(&mut self, push: &Push, tick: u32, engine: &mut impl Engine) {
         let Wrench { force, torque } = push.share;
         let finite = force.is_finite() && torque.is_finite();
         let share = if finite {
@@ -143,26 +124,16 @@ impl BodyRow {
         } else {
             Wrench::default()
         };
-        engine.give(self.id, &Push { share, ..*push }, &self.user);
+        engine.give(self.id, &Push { share, ..*push }, &self.user());
         let turns = share.torque != Vec3::ZERO;
         if turns {
-            self.torque = share.torque;
+            self.rare.share_torque = share.torque;
         }
-        self.share = Some(Share {
-            force: share.force,
-            turns,
-            second_substep: push.second_substep,
-        });
-    }
-
-    /// Takes out what it was given.
-    pub(crate) fn take_share(&mut self) -> Option<(Wrench, bool)> {
-        let share = self.share.take()?;
-        let torque = if share.turns { self.torque } else { Vec3::ZERO };
-        let elements = Wrench {
-            force: share.force,
-            torque,
-        };
-        Some((elements, share.second_substep))
+        self.share_force = share.force;
+        self.given = tick;
+        let flags = &mut self.flags;
+        flags.insert(BodyFlags::FRESH | BodyFlags::CARRIES_SHARE);
+        flags.set(BodyFlags::SHARES_TORQUE, turns);
+        flags.set(BodyFlags::SECOND_SUBSTEP, push.second_substep);
     }
 }

@@ -1,11 +1,11 @@
 //! Changed numbers and moved ends, taken into rows that are otherwise the same.
 
 use crate::backend::{Finder, Place};
-use crate::input::check::{Fault, Parameters};
+use crate::input::check::{Fault, Parameters, Ties};
 use crate::input::companions::{Companion, Companions};
 use crate::input::parts::{Acts, Parts};
 use crate::scene::report::report;
-use crate::scene::rows::{BodyRow, ElementRow, Held};
+use crate::scene::rows::{BodyFlags, BodyRow, ElementFlags, ElementRow, Held};
 use crate::scene::state::Scene;
 use bevy::ecs::entity::EntityHashSet;
 use bevy::prelude::*;
@@ -32,8 +32,9 @@ pub(crate) fn refresh(
     // What changes while nothing is stepped is kept for the step that comes.
     marked.retain(|index| {
         let row = &mut rows[*index];
-        row.changed = !row.has_acted(bodies, stepped);
-        row.changed
+        let waits = !row.has_acted(bodies, stepped);
+        row.flags.set(ElementFlags::CHANGED, waits);
+        waits
     });
     if !stepped.is_empty() {
         *shifted = false;
@@ -46,9 +47,10 @@ pub(crate) fn refresh(
         let Some(index) = row_of.get(&entity) else {
             return false;
         };
-        let row = &mut rows[*index];
-        if !std::mem::replace(&mut row.changed, true) {
-            marked.push(*index);
+        let row = &mut rows[*index as usize];
+        if !row.has(ElementFlags::CHANGED) {
+            row.flags.insert(ElementFlags::CHANGED);
+            marked.push(*index as usize);
         }
         let new = parts.parameters().and_then(|new| {
             new.check()?;
@@ -76,17 +78,19 @@ fn refit(
     companions: &Companions,
 ) -> bool {
     let entity = row.entity;
-    if !parameters.is_held_like(&row.parameters)
-        || companion.guide != row.companion.guide
+    if !parameters.ties.is_held_like(&row.rare.ties)
+        || companion.guide != row.rare.guide
         || companions.tuning(entity).is_some()
         || companions.pose(entity).is_some()
     {
         return false;
     }
-    row.refitted |= parameters != row.parameters || companions.touched.contains(&entity);
+    if parameters != row.parameters() || companions.touched.contains(&entity) {
+        row.flags.insert(ElementFlags::REFITTED);
+    }
     row.change(|row| {
-        row.parameters = parameters;
-        row.companion = companion;
+        row.set_parameters(parameters);
+        row.set_companion(companion);
     });
     true
 }
@@ -99,15 +103,15 @@ fn follow(
     bodies: &[BodyRow],
     shifted: &mut bool,
 ) -> bool {
-    let p = &row.parameters;
+    let rare = &mut *row.rare;
     let found = finder.place(
-        p.ends[end],
-        p.anchors[end],
-        p.names.ends[end],
-        &mut row.memory.scales[end],
+        rare.ties.ends[end],
+        rare.ties.anchors[end],
+        rare.ties.names.ends[end],
+        &mut rare.scales[end],
     );
     let on = row.movable(end);
-    match (&mut row.held[end], found) {
+    match (&mut row.rare.held[end], found) {
         (
             Held::Body {
                 body,
@@ -123,7 +127,7 @@ fn follow(
         ) if *body == now_on && *context == now_in => {
             if *local != now_at {
                 // Whether it turns the body may have changed.
-                if on.is_some_and(|b| !bodies[b].turns) {
+                if on.is_some_and(|b| !bodies[b].has(BodyFlags::TURNS)) {
                     return false;
                 }
                 *local = now_at;
@@ -133,7 +137,7 @@ fn follow(
         }
         (Held::Path { from, to }, Ok(Place::Point(now))) => {
             // Where it was after the last step.
-            *from = row.memory.places[end].unwrap_or(now);
+            *from = row.rare.places[end].unwrap_or(now);
             *to = now;
             *shifted |= from != to;
             true
@@ -150,7 +154,7 @@ pub(crate) fn still_faulty(
     modified: &EntityHashSet,
     commands: &mut Commands,
 ) -> bool {
-    if row.trouble.lasting().is_none() || row.parameters.ends == Parameters::NONE.ends {
+    if row.trouble.lasting().is_none() || row.rare.ties.ends == Ties::NONE.ends {
         return true;
     }
     match judge(row, companions, finder, modified) {
@@ -170,9 +174,9 @@ fn judge(
     finder: &mut impl Finder,
     modified: &EntityHashSet,
 ) -> Result<(), Fault> {
-    let (entity, mut parameters) = (row.entity, row.parameters);
+    let (entity, mut parameters) = (row.entity, row.parameters());
     let guide = companions.of(entity, &parameters)?.guide;
-    let found = finder.find(&parameters, guide, &mut row.memory.scales, modified)?;
+    let found = finder.find(&parameters, guide, &mut row.rare.scales, modified)?;
     if let Some(tuning) = companions.tuning(entity) {
         finder.tune(tuning, guide, &found.places, &mut parameters)?;
         parameters.check()?;

@@ -1,17 +1,19 @@
 //! All rows anew: elements and bodies entered, what was known of both carried over.
 
 use crate::backend::{Finder, Found, Place};
+use crate::dynamics::guide::Guide;
 use crate::element::{HoldPose, Preload};
 use crate::input::check::{Fault, Parameters};
 use crate::input::companions::Companions;
 use crate::input::parts::{Acts, Parts, PartsItem};
+use crate::scene::lone;
 use crate::scene::report::report;
-use crate::scene::rows::{BodyRow, ElementRow, mix};
-use crate::scene::scratch::{Scratch, Wanted};
+use crate::scene::rows::{BodyFlags, BodyRow, ElementFlags, ElementRow, mix};
 use crate::scene::state::Scene;
+use crate::scene::wanted::Wanted;
 use bevy::ecs::entity::EntityHashSet;
 use bevy::prelude::*;
-use std::mem::{swap, take};
+use std::mem::take;
 
 impl Scene {
     /// Makes all rows anew. Bodies stand in the order of their entities, and within a component elements
@@ -24,7 +26,7 @@ impl Scene {
         modified: &EntityHashSet,
         commands: &mut Commands,
     ) {
-        let mut scratch = take(&mut self.scratch);
+        let mut found_all = Vec::with_capacity(self.elements.len());
         self.changed.clear();
         self.faulty.clear();
         self.followed.clear();
@@ -33,70 +35,68 @@ impl Scene {
             let is_new = self.place_row(parts.entity, index);
             let row = &mut self.elements[index];
             // What changed while nothing was stepped has yet to act.
-            row.changed &= !row.has_acted(&self.bodies, &self.stepped);
-            row.changed |= is_new || companions.is_new(&parts);
-            row.changed |= companions.touched.contains(&parts.entity);
-            let held_by = row.parameters;
+            let waits =
+                row.has(ElementFlags::CHANGED) && !row.has_acted(&self.bodies, &self.stepped);
+            let changed = waits
+                || is_new
+                || companions.is_new(&parts)
+                || companions.touched.contains(&parts.entity);
+            row.flags.set(ElementFlags::CHANGED, changed);
+            let held_by = row.rare.ties;
             let found = row.read_anew(&parts, companions, finder, modified, commands);
             row.trouble.set_lasting(found.as_ref().err().copied());
             report(row, commands);
-            if row.changed {
+            if changed {
                 self.changed.push(index);
             }
             if found.is_err() {
                 self.faulty.push(index);
             }
-            if found.is_err() || !held_by.is_held_like(&row.parameters) {
+            if found.is_err() || !held_by.is_held_like(&row.rare.ties) {
                 self.left.extend(row.take_inside());
             }
-            scratch.found.push(found.ok());
+            found_all.push(found.ok());
         }
-        for mut gone in self.elements.drain(scratch.found.len()..) {
+        for mut gone in self.elements.drain(found_all.len()..) {
             self.row_of.remove(&gone.entity);
             self.left.extend(gone.take_inside());
         }
-        self.enter_bodies(&mut scratch, modified);
-        self.let_bodies_go(&scratch);
-        self.hold_ends(&scratch);
+        let signatures = self.enter_bodies(&found_all, modified);
+        self.hold_ends(&found_all);
+        self.notice_other_elements(&signatures);
         self.leave_what_moves_nothing();
         self.groups.find(&self.elements, &self.bodies);
         self.number_groups();
-        scratch.clear();
-        self.scratch = scratch;
-    }
-
-    /// Notes what bodies that no element moves any more have besides forces.
-    fn let_bodies_go(&mut self, scratch: &Scratch) {
-        let entered = |body: &&BodyRow| self.index.contains_key(&body.entity);
-        let gone = scratch.bodies.iter().filter(|body| !entered(body));
-        let raised = gone.filter(|row| row.raised.is_any());
-        self.unloaded
-            .extend(raised.map(|row| (row.context, row.id, row.raised)));
     }
 
     /// Ties rows of elements to those of their bodies.
-    fn hold_ends(&mut self, scratch: &Scratch) {
-        let found_all = self.elements.iter_mut().zip(&scratch.found);
-        for (index, (row, found)) in found_all.enumerate() {
+    fn hold_ends(&mut self, found_all: &[Option<Found>]) {
+        for (index, (row, found)) in self.elements.iter_mut().zip(found_all).enumerate() {
             let Some(found) = found else { continue };
             for end in 0..2 {
                 row.hold(end, &found.places[end], &self.index);
-                if row.watched[end] {
+                if row.is_watched(end) {
                     self.followed.push((index, end));
                 }
-                if let (Place::OnBody { entity, .. }, None) = (found.places[end], row.on[end]) {
+                if let (Place::OnBody { entity, .. }, None) = (found.places[end], row.movable(end))
+                {
                     self.walls.insert(entity);
                 }
             }
-            for body in row.on.iter().flatten() {
-                let body = &mut self.bodies[*body as usize];
-                body.elements += 1;
-                body.signature = body.signature.wrapping_add(mix(row.entity.to_bits()));
+            let plain = row.rare.guide == Guide::Centres && row.movable(0) != row.movable(1);
+            row.flags.set(ElementFlags::IS_PLAIN, plain);
+            for body in row.all_movable() {
+                let rare = &mut self.bodies[body].rare;
+                rare.signature = rare.signature.wrapping_add(mix(row.entity.to_bits()));
             }
         }
-        for (body, wanted) in self.bodies.iter_mut().zip(&scratch.wanted) {
-            if wanted.signature != body.signature {
-                body.disturbed = true;
+    }
+
+    /// Notices bodies that other elements act on than before, when these were their signatures.
+    fn notice_other_elements(&mut self, before: &[u64]) {
+        for (body, before) in self.bodies.iter_mut().zip(before) {
+            if *before != body.rare.signature {
+                body.flags.insert(BodyFlags::DISTURBED);
                 // Other elements may push it elsewhere.
                 body.clear = 0;
             }
@@ -121,13 +121,27 @@ impl Scene {
         self.handles.clear();
         for (g, group) in self.groups.list().iter().enumerate() {
             for (slot, b) in self.groups.members(group).bodies.iter().enumerate() {
-                let row = &mut self.bodies[*b];
-                (row.group, row.slot) = (g as u32, slot);
-                self.handles.insert((row.context, row.id), *b as u32);
+                let row = &mut self.bodies[*b as usize];
+                (row.rare.group, row.rare.slot) = (g as u32, slot as u32);
+                self.handles.insert((row.rare.context, row.id), *b);
             }
         }
         self.groups
             .assign_assemblies(&mut self.assemblies, &self.elements, &self.bodies);
+        self.list_lone();
+        self.touch_changed = true;
+    }
+
+    /// Lists the elements that need no assembly.
+    pub(crate) fn list_lone(&mut self) {
+        let groups = self.groups.list();
+        let group = |row: &ElementRow| {
+            let body = row.all_movable().next()?;
+            groups.get(self.bodies[body].rare.group as usize)
+        };
+        self.lone = lone::list(&self.elements, &self.bodies, |row| {
+            group(row).is_some_and(|group| group.assembly.is_none())
+        });
     }
 
     /// Brings the row of an element to its place, after all those before it; says whether it is a new one.
@@ -136,27 +150,21 @@ impl Scene {
         if rows.get(index).is_some_and(|row| row.entity == entity) {
             return false;
         }
-        let known = self.row_of.get(&entity).copied();
+        let known = self.row_of.get(&entity).map(|from| *from as usize);
         let from = known.unwrap_or_else(|| {
             rows.push(ElementRow::new(entity));
             rows.len() - 1
         });
         rows.swap(index, from);
-        self.row_of.insert(rows[from].entity, from);
-        self.row_of.insert(entity, index);
+        self.row_of.insert(rows[from].entity, from as u32);
+        self.row_of.insert(entity, index as u32);
         known.is_none()
     }
 
-    /// Rows of all movable bodies: those that there are, if they are still the same.
-    fn enter_bodies(&mut self, scratch: &mut Scratch, modified: &EntityHashSet) {
-        let Scratch {
-            found,
-            bodies,
-            wanted,
-        } = scratch;
-        for found in found.iter().flatten() {
-            wanted.extend(Wanted::of(found));
-        }
+    /// Rows of all movable bodies: those that there are, if they are still the same. Returns which elements acted on each
+    /// before, as a hash.
+    fn enter_bodies(&mut self, found_all: &[Option<Found>], modified: &EntityHashSet) -> Vec<u64> {
+        let mut wanted: Vec<_> = found_all.iter().flatten().flat_map(Wanted::of).collect();
         wanted.sort_unstable_by_key(|body| body.entity);
         wanted.dedup_by(|again, first| {
             let same = again.entity == first.entity;
@@ -165,30 +173,45 @@ impl Scene {
         });
         let is_same =
             |(row, body): (&BodyRow, &Wanted)| row.entity == body.entity && row.id == body.id;
-        if wanted.len() != self.bodies.len() || !self.bodies.iter().zip(&*wanted).all(is_same) {
-            swap(&mut self.bodies, bodies);
-            self.index.clear();
-            let mut before = bodies.iter().peekable();
-            for (slot, body) in wanted.iter().enumerate() {
-                while before.next_if(|row| row.entity < body.entity).is_some() {}
-                let row = before.next_if(|row| row.entity == body.entity);
-                let fresh = BodyRow {
-                    rank: body.rank,
-                    ..BodyRow::new(body.entity, body.id, body.context)
-                };
-                let same = row.filter(|row| row.id == body.id);
-                self.bodies.push(same.copied().unwrap_or(fresh));
-                self.index.insert(body.entity, slot);
+        if wanted.len() != self.bodies.len() || !self.bodies.iter().zip(&wanted).all(is_same) {
+            self.replace_bodies(&wanted);
+        }
+        let rows = self.bodies.iter_mut().zip(&wanted);
+        rows.map(|(row, body)| {
+            row.flags.set(BodyFlags::TURNS, body.turns);
+            row.rare.context = body.context;
+            if modified.contains(&row.entity) {
+                row.flags.insert(BodyFlags::DISTURBED);
             }
-        }
-        for (row, body) in self.bodies.iter_mut().zip(wanted) {
             // A new one is disturbed anyway.
-            body.signature = take(&mut row.signature);
-            row.turns = body.turns;
-            row.elements = 0;
-            row.context = body.context;
-            row.disturbed |= modified.contains(&row.entity);
+            take(&mut row.rare.signature)
+        })
+        .collect()
+    }
+
+    /// Rows of these bodies; of one that no element moves any more it is noted what it has besides forces.
+    fn replace_bodies(&mut self, wanted: &[Wanted]) {
+        self.index.clear();
+        let before = take(&mut self.bodies);
+        let mut before = before.into_iter().peekable();
+        let mut gone = Vec::new();
+        for (slot, body) in wanted.iter().enumerate() {
+            while let Some(row) = before.next_if(|row| row.entity < body.entity) {
+                gone.push(row);
+            }
+            let row = before.next_if(|row| row.entity == body.entity);
+            let same = row.filter(|row| row.id == body.id);
+            self.bodies.push(same.unwrap_or_else(|| {
+                let mut row = BodyRow::new(body.entity, body.id, body.context);
+                row.rare.rank = body.rank;
+                row
+            }));
+            self.index.insert(body.entity, slot as u32);
         }
+        let raised = gone.into_iter().chain(before);
+        let raised = raised.filter(|row| row.rare.raised.is_any());
+        self.unloaded
+            .extend(raised.map(|row| (row.rare.context, row.id, row.rare.raised)));
     }
 }
 
@@ -206,43 +229,46 @@ impl ElementRow {
         self.reset();
         let parameters = parts
             .parameters()
-            .inspect_err(|_| self.parameters = Parameters::NONE)?;
-        if !parameters.is_held_like(&self.parameters) {
+            .inspect_err(|_| self.set_parameters(Parameters::NONE))?;
+        if !parameters.ties.is_held_like(&self.rare.ties) {
             // What is remembered belongs to other ends.
-            self.memory.places = [None; 2];
-            self.memory.scales = [None; 2];
-            self.memory.direction = None;
-            self.memory.angle = 0.0;
+            self.rare.places = [None; 2];
+            self.rare.scales = [None; 2];
+            self.set_direction(None);
+            self.rare.angle = 0.0;
         }
-        self.refitted |= parameters != self.parameters || companions.touched.contains(&entity);
-        self.change(|row| row.parameters = parameters);
+        if parameters != self.parameters() || companions.touched.contains(&entity) {
+            self.flags.insert(ElementFlags::REFITTED);
+        }
+        self.change(|row| row.set_parameters(parameters));
         parameters.check()?;
         let mut companion = companions.of(entity, &parameters)?;
-        if companion.guide != self.companion.guide {
-            self.memory.places = [None; 2];
+        if companion.guide != self.rare.guide {
+            self.rare.places = [None; 2];
         }
         let guide = companion.guide;
-        let found = finder.find(&parameters, guide, &mut self.memory.scales, modified)?;
+        let found = finder.find(&parameters, guide, &mut self.rare.scales, modified)?;
         if let Some(tuning) = companions.tuning(entity) {
             let mut tuned = parameters;
             let can_touch = finder.tune(tuning, guide, &found.places, &mut tuned)?;
             tuned.check()?;
             companion = companions.of(entity, &tuned)?;
-            self.parameters = tuned;
-            self.tuned = true;
-            self.tuned_again = can_touch && !self.tuned_again;
+            self.set_parameters(tuned);
+            let again = can_touch && !self.has(ElementFlags::TUNED_AGAIN);
+            self.flags.insert(ElementFlags::TUNED);
+            self.flags.set(ElementFlags::TUNED_AGAIN, again);
         }
         if let Some(pose) = companions.pose(entity) {
             let places = &found.places;
-            let held = companions.hold(entity, pose, &self.parameters, guide, places, finder)?;
+            let held = companions.hold(entity, pose, &self.parameters(), guide, places, finder)?;
             companion = held.0;
             let mut element = commands.entity(entity);
             element.try_insert(Preload(held.1));
-            if !self.tuned_again {
+            if !self.has(ElementFlags::TUNED_AGAIN) {
                 element.try_remove::<HoldPose>();
             }
         }
-        self.change(|row| row.companion = companion);
+        self.change(|row| row.set_companion(companion));
         Ok(found)
     }
 }

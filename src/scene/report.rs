@@ -17,7 +17,7 @@ pub(crate) fn report(row: &mut ElementRow, commands: &mut Commands) {
                 field: fault.field.into(),
                 reason: fault.reason.into(),
             };
-            let ends = row.parameters.ends;
+            let ends = row.rare.ties.ends;
             let lasts = row.trouble.lasting().is_some();
             let mut element = commands.entity(row.entity);
             element.queue_silenced(move |mut element: EntityWorldMut| {

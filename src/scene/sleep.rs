@@ -7,7 +7,7 @@
 
 use crate::backend::{Engine, Seen, Sight};
 use crate::dynamics::body::Body;
-use crate::scene::rows::{BodyRow, ElementRow, Members, Rest};
+use crate::scene::rows::{BodyFlags, BodyRow, ElementRow, Members, Rest, take};
 use crate::scene::step::Step;
 
 /// Speed (m/s, rad/s; times the engine's length unit) that counts as rest.
@@ -28,8 +28,15 @@ const QUIET: f32 = 2.0;
 /// of them with a speed of ω times that.
 const ROUNDING: f32 = 4.0;
 
-/// Whether a body moves, or has not rested long enough yet. `omega` is the natural frequency of the
-/// stiffest element on it, `size` the body's.
+/// Whether a body is so slow that it may rest. `omega` is the natural frequency of the stiffest element on it, `size` the body's.
+fn is_slow(body: &Seen, rest: f32, size: f32, omega: f32, length_unit: f32) -> bool {
+    let place = body.origin.abs().max_element() * f32::EPSILON;
+    let noise = ROUNDING * omega;
+    body.velocity.length() < rest * length_unit + noise * place
+        && body.spin.length() * size < rest + noise * f32::EPSILON
+}
+
+/// Whether a body moves, or has not rested long enough yet.
 fn is_restless(
     row: &mut BodyRow,
     body: &Seen,
@@ -40,31 +47,37 @@ fn is_restless(
 ) -> bool {
     let (position, rotation) = (body.origin, body.rotation);
     let place = position.abs().max_element() * f32::EPSILON;
-    let noise = ROUNDING * omega;
-    let held = row.lingers > 0.0;
     // Of what is held only its place tells: the engine's velocities are those of its last substep.
-    let rest = if held { HELD_REST } else { REST };
-    let slow = body.velocity.length() < rest * length_unit + noise * place
-        && body.spin.length() * size < rest + noise * f32::EPSILON;
+    let rest = if row.has(BodyFlags::LINGERS) {
+        HELD_REST
+    } else {
+        REST
+    };
+    let slow = is_slow(body, rest, size, omega, length_unit);
     if !slow {
-        row.rests = false;
+        row.flags.remove(BodyFlags::RESTS);
         return true;
     }
-    if !row.rests {
-        row.rests = true;
-        row.rest = Rest {
+    if !row.has(BodyFlags::RESTS) {
+        row.flags.insert(BodyFlags::RESTS);
+        row.flags.remove(BodyFlags::RESTS_LONG);
+        row.rare.rest = Rest {
             position,
             rotation,
             ..Rest::default()
         };
     }
-    let rest = &mut row.rest;
     // Trembling may be rounding; going somewhere is not.
-    let creep = if row.creeps { CREEP } else { REST };
+    let creep = if row.has(BodyFlags::CREEPS) {
+        CREEP
+    } else {
+        REST
+    };
+    let rest = &mut row.rare.rest;
     let strayed = rest.position.distance(position) > creep * QUIET * length_unit + ROUNDING * place
         || (rest.rotation.inverse() * rotation).xyz().length() * size > 0.5 * creep * QUIET;
     if strayed {
-        row.rests = false;
+        row.flags.remove(BodyFlags::RESTS);
         return true;
     }
     rest.seconds += time;
@@ -76,10 +89,10 @@ fn is_restless(
             rotation,
             seconds: 0.0,
             rate: rest.rate,
-            is_long: true,
         };
+        row.flags.insert(BodyFlags::RESTS_LONG);
     }
-    !rest.is_long
+    !row.has(BodyFlags::RESTS_LONG)
 }
 
 /// Whether a step would set a sleeping body moving: an acceleration that within a second is not rest.
@@ -95,6 +108,11 @@ pub(crate) fn omega_of(row: &ElementRow) -> f32 {
 }
 
 impl Step {
+    /// Whether a body that nothing but elements holds is so slow that it may rest.
+    pub(crate) fn is_slow(&self, body: &Seen, omega: f32) -> bool {
+        is_slow(body, REST, 1.0, omega, self.plan.length_unit)
+    }
+
     /// Whether all of a component that was asleep is so still, and nothing that holds it has moved.
     pub(crate) fn is_left_alone(
         &self,
@@ -103,15 +121,12 @@ impl Step {
         bodies: &[BodyRow],
         sight: &impl Sight,
     ) -> bool {
-        let sleeps = |b: &usize| {
-            let body = sight.see(bodies[*b].id);
-            body.is_some_and(|body| body.is_asleep)
-        };
+        let sleeps = |b: &u32| sight.is_asleep(bodies[*b as usize].id);
         members.bodies.iter().all(sleeps)
             && !members
                 .elements
                 .iter()
-                .any(|e| self.has_moved(&elements[*e], sight))
+                .any(|e| self.has_moved(&elements[*e as usize], sight))
     }
 
     /// Whether a body that is awake moves, or has not rested long enough yet.
@@ -123,7 +138,7 @@ impl Step {
         sight: &impl Sight,
     ) -> bool {
         // A small body that turns in what holds it does not go far by that.
-        let held = row.lingers > 0.0;
+        let held = row.has(BodyFlags::LINGERS);
         let size = if held { sight.size(row.id) } else { 1.0 };
         let time = self.plan.time as f32;
         is_restless(row, body, size, omega, time, self.plan.length_unit)
@@ -133,16 +148,16 @@ impl Step {
     pub(crate) fn wake_the_moved(
         &self,
         rows: &[BodyRow],
-        members: &[usize],
+        members: &[u32],
         start: &[Body],
         end: &[Body],
         engine: &mut impl Engine,
     ) {
-        let bodies = || members.iter().map(|b| rows[*b].id);
+        let bodies = || members.iter().map(|b| rows[*b as usize].id);
         let moved = bodies()
             .zip(start.iter().zip(end))
             .any(|(body, (start, end))| {
-                engine.see(body).is_some_and(|body| body.is_asleep)
+                engine.is_asleep(body)
                     && is_set_moving(start, end, self.plan.time, self.plan.length_unit)
             });
         if moved {
@@ -152,41 +167,41 @@ impl Step {
         }
     }
 
-    /// Wakes, keeps awake or lets sleep; says whether there is anything to do. `omega` is the natural
-    /// frequency of the stiffest element.
+    /// Whether there is anything to do for a component, and whether all its bodies are to be [roused](rouse). `omega` is the
+    /// natural frequency of the stiffest element.
     pub(crate) fn is_awake(
         &self,
         rows: &mut [BodyRow],
-        members: &[usize],
+        members: &[u32],
         omega: f32,
-        engine: &mut impl Engine,
+        sight: &impl Sight,
         mut disturbed: bool,
-    ) -> bool {
+    ) -> (bool, bool) {
         let mut all_asleep = true;
         let mut restless = false;
         for b in members {
-            let row = &mut rows[*b];
-            let Some(body) = engine.see(row.id) else {
+            let row = &mut rows[*b as usize];
+            let Some(body) = sight.see(row.id) else {
                 continue;
             };
-            disturbed |= std::mem::take(&mut row.disturbed);
+            disturbed |= take!(row.flags, BodyFlags::DISTURBED);
             if !body.is_asleep && body.is_movable {
                 all_asleep = false;
-                restless |= self.is_restless(row, &body, omega, engine);
+                restless |= self.is_restless(row, &body, omega, sight);
             }
         }
-        if all_asleep && !disturbed {
-            return false;
+        let awake = !all_asleep || disturbed;
+        (awake, awake && (disturbed || restless))
+    }
+}
+
+/// Wakes the bodies of a component, or keeps them awake.
+pub(crate) fn rouse(rows: &[BodyRow], members: &[u32], engine: &mut impl Engine) {
+    for b in members {
+        let body = rows[*b as usize].id;
+        if engine.is_asleep(body) {
+            engine.wake(body);
         }
-        if disturbed || restless {
-            for b in members {
-                let body = rows[*b].id;
-                if engine.see(body).is_some_and(|body| body.is_asleep) {
-                    engine.wake(body);
-                }
-                engine.keep_awake(body);
-            }
-        }
-        true
+        engine.keep_awake(body);
     }
 }

@@ -2,10 +2,10 @@
 
 use crate::backend::BodyId;
 use crate::scene::assembly::Assembly;
-use crate::scene::group::Groups;
+use crate::scene::group::{Group, Groups};
 use crate::scene::held::Inside;
-use crate::scene::rows::{BodyRow, ElementRow, Raised, Sweeps};
-use crate::scene::scratch::Scratch;
+use crate::scene::lone::Lone;
+use crate::scene::rows::{BodyFlags, BodyRow, ElementRow, Raised, Sweeps};
 use crate::scene::still::Still;
 use bevy::ecs::change_detection::Tick;
 use bevy::ecs::entity::{EntityHashMap, EntityHashSet};
@@ -19,7 +19,7 @@ pub struct Scene {
     /// In the order of the query that finds them, inert ones too.
     pub(crate) elements: Vec<ElementRow>,
     /// Indices of the elements.
-    pub(crate) row_of: EntityHashMap<usize>,
+    pub(crate) row_of: EntityHashMap<u32>,
     /// Elements that changed since the last step.
     pub(crate) changed: Vec<usize>,
     /// Elements that take no part.
@@ -28,14 +28,23 @@ pub struct Scene {
     pub(crate) followed: Vec<(usize, usize)>,
     /// In the order of their entities.
     pub(crate) bodies: Vec<BodyRow>,
-    pub(crate) index: EntityHashMap<usize>,
+    pub(crate) index: EntityHashMap<u32>,
     /// Indices of the bodies by what the engine calls them.
     pub(crate) handles: HashMap<(Entity, BodyId), u32>,
-    pub(crate) scratch: Scratch,
     /// Bodies that hold elements, but that these cannot move.
     pub(crate) walls: EntityHashSet,
     pub(crate) groups: Groups,
     pub(crate) assemblies: Vec<Assembly>,
+    /// What needs no assembly, world by world.
+    pub(crate) lone: Vec<Lone>,
+    /// Components of which contacts or joints may hold some body: indices of their groups.
+    pub(crate) tangible: Vec<u32>,
+    /// These have to be found anew: some body has colliders that had none, or the other way round.
+    pub(crate) touch_changed: bool,
+    /// There were joints when they were found last.
+    pub(crate) had_joints: bool,
+    /// Number of the tick.
+    pub(crate) tick: u32,
     /// The contexts that are stepped in this tick.
     pub(crate) stepped: Vec<Entity>,
     /// Seconds that the engine will step in this tick; 0 if it will not.
@@ -44,6 +53,8 @@ pub struct Scene {
     pub(crate) stale: bool,
     /// A user's force on some body changed in this tick.
     pub(crate) loaded: bool,
+    /// Some body was given something in this tick whose place several elements may ask for afterwards.
+    pub(crate) noting: bool,
     /// Some body was given something in this tick.
     pub(crate) delivered: bool,
     /// Some followed end was not where it had been.
@@ -75,6 +86,32 @@ impl Scene {
         self.index.contains_key(&entity)
             || self.walls.contains(&entity)
             || self.row_of.contains_key(&entity)
+    }
+
+    /// Finds the components of which contacts may hold some body, or joints, where there are any.
+    pub(crate) fn find_tangible(&mut self, any_joints: bool) {
+        let changed = std::mem::replace(&mut self.had_joints, any_joints) != any_joints;
+        if !(changed || self.touch_changed) {
+            return;
+        }
+        self.touch_changed = false;
+        let tangible = BodyFlags::CAN_TOUCH | BodyFlags::LINGERS | BodyFlags::NEW;
+        let (groups, bodies) = (&self.groups, &self.bodies);
+        let may_be_held = |group: &Group| {
+            let mut bodies = groups
+                .members(group)
+                .bodies
+                .iter()
+                .map(|b| &bodies[*b as usize]);
+            any_joints
+                || group.inside
+                || group.held
+                || bodies.any(|row| row.flags.intersects(tangible))
+        };
+        let all = groups.list().iter().enumerate();
+        let found = all.filter(|(_, group)| may_be_held(group));
+        self.tangible.clear();
+        self.tangible.extend(found.map(|(g, _)| g as u32));
     }
 
     /// The row of a body that says it stands at `slot`.

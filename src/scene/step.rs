@@ -21,6 +21,8 @@ pub(crate) struct Step {
     pub alike: Option<usize>,
     /// Nothing but their own bodies and moved ends can have woken what sleeps.
     pub quiet: bool,
+    /// Its number, counted on from tick to tick.
+    pub tick: u32,
     /// Something was given to some body.
     pub delivered: AtomicBool,
 }
@@ -60,13 +62,13 @@ impl Step {
 
     /// Whether an end moves or turns, or is not where or as it was after the last step.
     pub(crate) fn has_moved(&self, row: &ElementRow, sight: &impl Sight) -> bool {
-        if row.watched == [false; 2] && row.moves() == 2 {
+        if !row.is_any_watched() && row.moves() == 2 {
             // Held by what elements move, and where it says.
             return false;
         }
         (0..2).any(|end| {
-            let now = match row.held[end] {
-                Held::Body { local, .. } if row.on[end].is_some() => local,
+            let now = match row.rare.held[end] {
+                Held::Body { local, .. } if row.movable(end).is_some() => local,
                 ref held => {
                     let [from, to] = self.path(held, sight);
                     if from != to || self.has_turned(row, end, sight) {
@@ -75,23 +77,23 @@ impl Step {
                     to
                 }
             };
-            row.memory.places[end].is_some_and(|last| last != now)
+            row.rare.places[end].is_some_and(|last| last != now)
         })
     }
 
     /// Whether an end that elements cannot turn turns, or is not turned as after the last step, where its element has an
     /// axis of its own.
     fn has_turned(&self, row: &ElementRow, end: usize, sight: &impl Sight) -> bool {
-        if row.companion.guide == Guide::Centres || row.memory.places[end].is_none() {
+        if row.rare.guide == Guide::Centres || row.rare.places[end].is_none() {
             return false;
         }
-        let (rotation, turning) = facing(&row.held[end], self.plan.time, sight);
-        turning != DVec3::ZERO || rotation != row.memory.facings[end]
+        let (rotation, turning) = facing(&row.rare.held[end], self.plan.time, sight);
+        turning != DVec3::ZERO || rotation != row.rare.facings[end]
     }
 
-    /// The engine's equal substeps of a body.
-    fn substeps(&self, seen: &Seen) -> Schedule {
-        match self.alike.unwrap_or(seen.more_substeps) {
+    /// The engine's equal substeps of a body that asks for so many more than others.
+    fn substeps(&self, more: usize) -> Schedule {
+        match self.alike.unwrap_or(more) {
             0 => self.schedule,
             more => self.plan.schedule(self.plan.substeps + more),
         }
@@ -102,21 +104,22 @@ impl Step {
         if seen.turns_fast {
             f64::INFINITY
         } else {
-            self.substeps(seen).farthest_turn(self.plan.farthest_turn)
+            self.substeps(seen.more_substeps)
+                .farthest_turn(self.plan.farthest_turn)
         }
     }
 
-    /// How the engine is to step a body.
-    pub(crate) fn terms(&self, seen: &Seen) -> Terms {
+    /// How the engine is to step a body that asks for so many substeps more than others.
+    #[inline(always)]
+    pub(crate) fn terms(&self, more: usize) -> Terms {
         // One substep has room for a force or an impulse, not for both.
-        let second_substep = self.plan.substeps * self.plan.calls as usize == 1
-            && seen.more_substeps == 0
-            && self.alike.is_none();
+        let second_substep =
+            self.plan.substeps * self.plan.calls as usize == 1 && more == 0 && self.alike.is_none();
         Terms {
             schedule: if second_substep {
                 self.plan.schedule(self.plan.substeps + 1)
             } else {
-                self.substeps(seen)
+                self.substeps(more)
             },
             second_substep,
         }

@@ -1,11 +1,12 @@
 //! A network of points that only the engine has moved since its last step goes on as it is: no more is read
 //! than where its bodies are, and no more written than what they are given.
 
-use crate::backend::{Engine, Seen, Sight};
+use crate::backend::{Engine, Push, Seen, Sight};
 use crate::scene::assembly::{Assembly, State};
-use crate::scene::rows::{BodyRow, ElementRow, Members, pull_mark};
+use crate::scene::rows::{BodyFlags, BodyRow, ElementRow, Members, pull_mark, take};
 use crate::scene::step::Step;
 use bevy::math::Vec3;
+use std::sync::atomic::Ordering;
 
 /// What is known of such a network.
 #[derive(Default)]
@@ -44,7 +45,10 @@ impl Assembly {
         if goes_on.is_none() {
             // What has been taken note of is not lost.
             if let Some(first) = members.bodies.first() {
-                bodies[*first].disturbed |= disturbed;
+                let row = &mut bodies[*first as usize];
+                if disturbed {
+                    row.flags.insert(BodyFlags::DISTURBED);
+                }
             }
             return false;
         }
@@ -71,21 +75,21 @@ impl Assembly {
         warm.restless = false;
         warm.seen.clear();
         for (slot, b) in members.bodies.iter().enumerate() {
-            let row = &mut bodies[*b];
+            let row = &mut bodies[*b as usize];
             let body = sight.see(row.id)?;
             let same = warm.centers[slot] == body.local_center;
             if !body.is_movable || body.is_asleep || body.is_locked || !same {
                 return None;
             }
-            row.can_touch = body.can_touch;
+            self.touch_changed |= row.notice_colliders(body.can_touch);
             let point = row.point(&body);
             warm.perturbed |= row.was_perturbed(&body, point.position);
             if points.origin(slot).acceleration != point.acceleration {
                 // Written only then: it lies apart from what every step needs.
-                row.pulled = pull_mark(point.acceleration);
+                row.rare.pulled = pull_mark(point.acceleration);
                 warm.perturbed = true;
             }
-            *disturbed |= std::mem::take(&mut row.disturbed);
+            *disturbed |= take!(row.flags, BodyFlags::DISTURBED);
             warm.restless |= step.is_restless(row, &body, warm.omega, sight);
             if !points.place(slot, &point) {
                 return None;
@@ -93,11 +97,11 @@ impl Assembly {
             warm.seen.push(body);
         }
         for (index, (element, end)) in warm.ends.iter().enumerate() {
-            let row = &elements[members.elements[*element]];
+            let row = &elements[members.elements[*element] as usize];
             let has_moved = step.has_moved(row, sight);
             warm.perturbed |= has_moved;
             *disturbed |= has_moved;
-            let [from, to] = step.path(&row.held[*end], sight);
+            let [from, to] = step.path(&row.rare.held[*end], sight);
             if has_moved && from == to {
                 // It has leapt: what work that was is to be found.
                 return None;
@@ -119,16 +123,21 @@ impl Assembly {
         let points = self.component.warm_points();
         for (slot, b) in members.bodies.iter().enumerate() {
             let (origin, flight) = (points.origin(slot), points.flight(slot));
-            let row = &mut bodies[*b];
-            let push = step.push_point(&self.warm.seen[slot], &origin, &flight);
-            step.deliver(row, &push, self.warm.restless, engine);
+            let row = &mut bodies[*b as usize];
+            let more = self.warm.seen[slot].more_substeps;
+            let push = Push {
+                keep_awake: self.warm.restless,
+                ..step.push_point(more, &origin, &flight)
+            };
+            row.give(&push, step.tick, engine);
         }
+        step.delivered.store(true, Ordering::Relaxed);
         for (e, (direction, heat, work)) in members.elements.iter().zip(points.take_results()) {
-            let row = &mut elements[*e];
-            row.outcome = self.outcome;
+            let row = &mut elements[*e as usize];
+            row.solved = self.outcome.into();
             row.ledger.dissipated += heat;
             row.ledger.work += work;
-            row.memory.direction = direction;
+            row.set_direction(direction);
         }
     }
 }

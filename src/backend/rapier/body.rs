@@ -209,6 +209,11 @@ impl<B: Borrow<RigidBodySet> + Sync> Sight for Bodies<B> {
         self.get(body).map(|body| see(body, self.gravity))
     }
 
+    #[inline(always)]
+    fn is_asleep(&self, body: BodyId) -> bool {
+        self.get(body).is_some_and(RigidBody::is_sleeping)
+    }
+
     fn body(&self, body: BodyId, user: &Wrench, turns: bool) -> Option<Body> {
         let body = self.get(body)?;
         Some(read(body, self.gravity, user, turns))
@@ -254,6 +259,10 @@ impl<B: BorrowMut<RigidBodySet> + Sync> Engine for Bodies<B> {
 /// Gives a body velocities, and the elements' share of force and torque beside the user's.
 #[inline(always)]
 pub(crate) fn give(body: &mut RigidBody, push: &Push, user: &Wrench) {
+    if push.keep_awake {
+        // The engine's sleep timer.
+        body.activation_mut().time_since_can_sleep = 0.0;
+    }
     if push.second_substep {
         body.set_additional_solver_iterations(1);
     }

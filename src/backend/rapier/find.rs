@@ -53,9 +53,9 @@ impl Finder for RapierFinder<'_, '_> {
         let mut places = [Place::Point(DVec3::ZERO); 2];
         for (i, place) in places.iter_mut().enumerate() {
             *place = self.ends.find(
-                parameters.ends[i],
-                parameters.anchors[i],
-                parameters.names.ends[i],
+                parameters.ties.ends[i],
+                parameters.ties.anchors[i],
+                parameters.ties.names.ends[i],
                 &mut scales[i],
             )?;
         }
@@ -66,15 +66,15 @@ impl Finder for RapierFinder<'_, '_> {
             && a != b
         {
             return Err(Fault::new(
-                parameters.names.ends[1],
+                parameters.ties.names.ends[1],
                 "is in another Rapier context than body_a",
             ));
         }
         let mut movable = [None; 2];
         for (i, place) in places.iter().enumerate() {
-            let field = parameters.names.ends[i];
+            let field = parameters.ties.names.ends[i];
             let alone = matches!(place, Place::Point(_));
-            if alone && (parameters.twist.is_some() || (guide.turns() && i == 0)) {
+            if alone && (parameters.ties.twist.is_some() || (guide.turns() && i == 0)) {
                 return Err(Fault::new(
                     field,
                     "is not a rigid body, so it has no frame to turn in",

@@ -2,8 +2,9 @@
 
 use super::body;
 use crate::backend::{Push, Wrench};
-use crate::scene::rows::BodyRow;
+use crate::scene::rows::BodyFlags;
 use crate::scene::state::Scene;
+use crate::scene::threads;
 use bevy::ecs::entity_disabling::Disabled;
 use bevy::ecs::query::Allow;
 use bevy::prelude::*;
@@ -40,11 +41,26 @@ pub(crate) type Loads<'w, 's> = Query<
         Entity,
         &'static mut SpringLoad,
         Option<&'static mut ExternalForce>,
-        Option<&'static RapierRigidBodyHandle>,
-        Option<&'static RapierContextEntityLink>,
     ),
     Allow<Disabled>,
 >;
+
+/// One of them.
+type LoadsItem<'a> = (Entity, Mut<'a, SpringLoad>, Option<Mut<'a, ExternalForce>>);
+
+/// Where bodies are in the engine, those of disabled ones too.
+pub(crate) type Handles<'w, 's> = Query<
+    'w,
+    's,
+    (
+        &'static RapierRigidBodyHandle,
+        &'static RapierContextEntityLink,
+    ),
+    Allow<Disabled>,
+>;
+
+/// Bodies above which it is worth waking other threads. Pinned by the benchmark `own/isolated`.
+const WORTH_SHARING: usize = 4096;
 
 /// In the crate's own numbers.
 pub(crate) fn wrench(force: &ExternalForce) -> Wrench {
@@ -132,24 +148,31 @@ pub(crate) fn read_users(
         let new = load.read_user(component);
         scene.loaded |= new;
         if let Some(row) = scene.body(load.slot, entity) {
-            row.disturbed |= new;
-            row.user = wrench(&load.user);
+            if new {
+                row.flags.insert(BodyFlags::DISTURBED);
+            }
+            row.set_user(wrench(&load.user));
         }
     }
 }
 
 /// Shows on every stepped body what it was given.
-pub(crate) fn show(scene: &mut Scene, loads: &mut Loads) {
+pub(crate) fn show(scene: &Scene, loads: &mut Loads) {
     if !scene.delivered {
         return;
     }
-    for (entity, mut load, mut component, ..) in loads {
-        let slot = load.slot;
-        let share = scene.body(slot, entity).and_then(BodyRow::take_share);
-        if let Some((elements, raised_iterations)) = share {
-            load.show(external(elements), component.as_mut());
-            load.raised_iterations |= raised_iterations;
+    let (bodies, tick) = (&scene.bodies, scene.tick);
+    let show = |(entity, mut load, mut component): LoadsItem| {
+        let row = bodies.get(load.slot).filter(|row| row.entity == entity);
+        if let Some((row, share)) = row.and_then(|row| Some((row, row.share(tick)?))) {
+            load.show(external(share), component.as_mut());
+            load.raised_iterations |= row.has(BodyFlags::SECOND_SUBSTEP);
         }
+    };
+    if threads::count() > 1 && bodies.len() >= WORTH_SHARING {
+        loads.par_iter_mut().for_each(show);
+    } else {
+        loads.iter_mut().for_each(show);
     }
 }
 
@@ -166,14 +189,15 @@ fn take_in(share: &mut Vec3, now: Vec3, left: Vec3) {
 pub(crate) fn release(
     scene: &mut Scene,
     loads: &mut Loads,
+    handles: &Handles,
     sets: &mut Query<&mut RapierRigidBodySet>,
     commands: &mut Commands,
 ) {
-    for (entity, mut load, mut component, handle, link) in loads {
+    for (entity, mut load, mut component) in loads {
         if scene.index.contains_key(&entity) {
             continue;
         }
-        if let (Some(handle), Some(link)) = (handle, link)
+        if let Ok((handle, link)) = handles.get(entity)
             && let Ok(mut set) = sets.get_mut(link.0)
             && let Some(body) = set.bodies.get_mut(handle.0)
         {

@@ -76,19 +76,23 @@ fn enter_loads(
             load.user
         });
         if let (Some(user), true) = (known, force.is_some()) {
-            row.user = wrench(&user);
+            row.set_user(wrench(&user));
             continue;
         }
-        let engine = finder.sets.get(row.context).ok().and_then(|(set, ..)| {
-            let body = set.bodies.get(handle(row.id))?;
-            Some(ExternalForce {
-                force: body.user_force(),
-                torque: body.user_torque(),
-            })
-        });
+        let engine = finder
+            .sets
+            .get(row.rare.context)
+            .ok()
+            .and_then(|(set, ..)| {
+                let body = set.bodies.get(handle(row.id))?;
+                Some(ExternalForce {
+                    force: body.user_force(),
+                    torque: body.user_torque(),
+                })
+            });
         // A force written to the engine alone belongs to the user too.
         let present = force.copied().or(engine).unwrap_or_default();
-        row.user = wrench(&known.unwrap_or(present));
+        row.set_user(wrench(&known.unwrap_or(present)));
         let mut entity = commands.entity(row.entity);
         if force.is_none() {
             entity.try_insert(present);

@@ -3,7 +3,7 @@
 use super::body::{Bodies, handle};
 use super::timestep;
 use crate::backend::StepPlan;
-use crate::backend::rapier::forces::{self, Loads};
+use crate::backend::rapier::forces::{self, Handles, Loads};
 use crate::backend::rapier::held::{EngineParts, Solver, View, give_back, remove};
 use crate::scene::free;
 use crate::scene::state::Scene;
@@ -40,13 +40,14 @@ pub(crate) fn solve(
     mut contexts: Query<ContextParts>,
     mut sets: Query<&mut RapierRigidBodySet>,
     mut loads: Loads,
+    handles: Handles,
     users: Query<&AdditionalSolverIterations>,
     mut spare: Local<Spare>,
     mut commands: Commands,
 ) {
     let scene = &mut *scene;
     if scene.renewed {
-        forces::release(scene, &mut loads, &mut sets, &mut commands);
+        forces::release(scene, &mut loads, &handles, &mut sets, &mut commands);
     }
     scene.begin();
     for (context, mut simulation, mut colliders, mut joints, configuration, lag) in &mut contexts {
@@ -66,7 +67,7 @@ pub(crate) fn solve(
             continue;
         };
         let simulation = &mut *simulation;
-        let mut step = Step::new(plan, &settings, quiet);
+        let mut step = Step::new(plan, &settings, quiet, scene.tick);
         let mut engine = EngineParts {
             bodies: &mut set.bodies,
             joints: &mut joints,
@@ -98,7 +99,7 @@ pub(crate) fn solve(
 }
 
 impl Step {
-    fn new(plan: StepPlan, settings: &CoiloverSettings, quiet: bool) -> Self {
+    fn new(plan: StepPlan, settings: &CoiloverSettings, quiet: bool, tick: u32) -> Self {
         Self {
             plan,
             schedule: plan.schedule(plan.substeps),
@@ -106,6 +107,7 @@ impl Step {
             most_substeps: settings.max_substeps.max(1),
             alike: None,
             quiet,
+            tick,
             delivered: AtomicBool::new(false),
         }
     }
@@ -115,8 +117,10 @@ impl Scene {
     /// Forgets what was so of the last step alone.
     fn begin(&mut self) {
         self.time = 0.0;
+        self.tick = self.tick.wrapping_add(1).max(1);
         self.stepped.clear();
         self.delivered = false;
+        self.noting = false;
         self.engine_went_back = false;
     }
 

@@ -49,7 +49,7 @@ impl RapierFinder<'_, '_> {
         if !(value > 0.0 && value.is_finite() && ratio >= 0.0 && ratio.is_finite()) {
             return fault("has a number that is negative, zero or not finite");
         }
-        if parameters.names.stiffness.is_empty() {
+        if parameters.ties.names.stiffness.is_empty() {
             return fault("stands on a damper without a spring");
         }
         let lever = self.lever(guide, places).map(|lever| {
@@ -61,17 +61,18 @@ impl RapierFinder<'_, '_> {
         };
         let mass = left.recip() as f32;
         let (stiffness, damping) = tuning.coefficients(mass, lever.gravity.length());
-        parameters.stiffness = stiffness;
-        if !parameters.names.damping.is_empty() {
-            parameters.damping = damping;
+        parameters.numbers.stiffness = stiffness;
+        if !parameters.ties.names.damping.is_empty() {
+            parameters.numbers.damping = damping;
         }
-        let sags = matches!(tuning, SpringTuning::Sag { .. }) && parameters.rest_length.is_none();
+        let sags =
+            matches!(tuning, SpringTuning::Sag { .. }) && parameters.numbers.rest_length.is_none();
         if let Some(stretch) = self.stretch(&lever, stiffness).filter(|_| sags) {
             let rest = lever.line.distance() - stretch;
             if guide == Guide::Centres && rest < 0.0 {
                 return fault("has a sag that is longer than the element");
             }
-            parameters.rest_length = Some(rest as f32);
+            parameters.numbers.rest_length = Some(rest as f32);
         }
         Ok(lever.can_touch)
     }

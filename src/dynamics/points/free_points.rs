@@ -24,8 +24,6 @@ pub(crate) struct Flight {
     pub moved: DVec3,
     /// At the end, m/s.
     pub velocity: DVec3,
-    /// Impulse of the elements, N s.
-    pub given: DVec3,
 }
 
 impl Points {
@@ -84,7 +82,6 @@ impl Points {
         Flight {
             moved: end.position - start.position,
             velocity: end.velocity,
-            given: end.given,
         }
     }
 

@@ -6,13 +6,15 @@
 
 mod inside;
 mod map;
+mod memory;
 
 use crate::backend::BodyId;
 use crate::dynamics::step::Remembered;
+use crate::dynamics::tolerance::Controller;
 use crate::readout::SpringReadout;
 use crate::scene::held::{KeptJoint, Leeway};
-use crate::scene::rows::{EnergyLedger, Memory, Raised, Rest, Sweeps};
-use bevy::math::{DVec3, Vec3};
+use crate::scene::rows::{BodyFlags, ElementFlags, EnergyLedger, Raised, Rest, Sweeps};
+use bevy::math::{DQuat, DVec3, Vec3};
 use bevy::prelude::Entity;
 
 /// No body.
@@ -59,16 +61,30 @@ pub(crate) struct KeptElement {
     /// Stiffness and damping that acted last, N/m and N s/m, and the rest length, m.
     pub(crate) numbers: [f32; 2],
     pub(crate) rest_length: Option<f32>,
-    pub(crate) changed: bool,
-    pub(crate) refitted: bool,
-    pub(crate) captured: bool,
-    pub(crate) tuned: bool,
-    pub(crate) tuned_again: bool,
-    pub(crate) active: bool,
+    pub(crate) flags: ElementFlags,
     pub(crate) ledger: EnergyLedger,
     pub(crate) readout: SpringReadout,
     pub(crate) inside: Option<Box<KeptInside>>,
     pub(crate) memory: Memory,
+}
+
+/// What an element remembers.
+#[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct Memory {
+    /// Last direction from end A to end B that was well defined.
+    pub(crate) direction: Option<DVec3>,
+    /// Last length or twist.
+    pub(crate) length: f64,
+    pub(crate) controller: Controller,
+    /// Where its ends were after the last step.
+    pub(crate) places: [Option<DVec3>; 2],
+    /// Last twist, full turns counted.
+    pub(crate) angle: f64,
+    /// How what holds its ends was turned then.
+    pub(crate) facings: [DQuat; 2],
+    /// The bodies' scales.
+    pub(crate) scales: [Option<DVec3>; 2],
 }
 
 /// A body that elements move: all fields of its row that are not found anew.
@@ -77,18 +93,8 @@ pub(crate) struct KeptElement {
 pub(crate) struct KeptBody {
     pub(crate) entity: Entity,
     pub(crate) rank: u64,
-    pub(crate) disturbed: bool,
-    pub(crate) rests: bool,
-    pub(crate) is_alone: bool,
-    pub(crate) is_noted: bool,
-    pub(crate) is_fresh: bool,
-    pub(crate) is_new: bool,
-    pub(crate) can_touch: bool,
-    pub(crate) jointed: bool,
-    pub(crate) touched: bool,
-    pub(crate) pressed: bool,
-    pub(crate) creeps: bool,
-    pub(crate) carries_share: bool,
+    pub(crate) flags: BodyFlags,
+    /// Its second substep is ours.
     pub(crate) raised_iterations: bool,
     /// s.
     pub(crate) lingers: f32,

@@ -2,16 +2,18 @@
 
 mod body;
 mod element;
+mod flags;
 mod marks;
 mod raised;
 
-pub(crate) use body::{BodyRow, Rest, Share};
-pub(crate) use element::{ElementRow, EnergyLedger, Held, Memory};
+pub(crate) use body::{BodyRow, RareBody, Rest};
+pub(crate) use element::{ElementRow, EnergyLedger, Held, RareElement, Solved};
+pub(crate) use flags::{BodyFlags, ElementFlags, take};
 pub(crate) use marks::{mix, pull_mark, turning_mark};
 pub(crate) use raised::{Raised, Sweeps};
 
 /// The rows of one component within the scene's.
 pub(crate) struct Members<'a> {
-    pub elements: &'a [usize],
-    pub bodies: &'a [usize],
+    pub elements: &'a [u32],
+    pub bodies: &'a [u32],
 }

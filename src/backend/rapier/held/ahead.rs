@@ -1,7 +1,7 @@
 //! How far ahead the engine has to see the contacts of what stiff springs push.
 
 use super::lend;
-use crate::scene::rows::BodyRow;
+use crate::scene::rows::{BodyFlags, BodyRow};
 use bevy_rapier3d::rapier::dynamics::RigidBody as RapierBody;
 
 /// ω·dt of a body's springs above which its contacts have to be seen a step ahead. What the engine finds too late it pushes
@@ -16,12 +16,13 @@ const AHEAD: f32 = 1.5;
 /// `time` seconds; says whether they are stiff.
 pub(crate) fn look_ahead(row: &mut BodyRow, body: &mut RapierBody, time: f64) -> bool {
     let inverse_mass = f64::from(body.mass_properties().local_mprops.inv_mass);
-    let stiff = row.can_touch && row.stiffness * inverse_mass * time * time > STIFF * STIFF;
+    let stiff = row.has(BodyFlags::CAN_TOUCH)
+        && row.rare.stiffness * inverse_mass * time * time > STIFF * STIFF;
     let way = if stiff {
         AHEAD * time as f32 * body.linvel().length()
     } else {
         0.0
     };
-    lend::look_ahead(&mut row.raised, body, way);
+    lend::look_ahead(&mut row.rare.raised, body, way);
     stiff
 }

@@ -23,7 +23,7 @@ impl ElementRow {
         let middle = 0.5 * (from + length);
         let drag = self.drag(middle, rate);
         let heat = drag * rate * time;
-        let won = if self.companion.law.is_some() {
+        let won = if self.law.is_some() {
             let stored = |length: f64| self.elastic(length).energy;
             stored(length) - stored(from) - pieces.work([from, length])
         } else {

@@ -153,7 +153,7 @@ impl Order {
     }
 
     fn frame(&self, row: &ElementRow, holders: [BodyId; 2]) -> Frame {
-        let anchors = row.held.map(|held| match held {
+        let anchors = row.rare.held.map(|held| match held {
             Held::Body { local, .. } => local.as_vec3(),
             Held::Path { .. } => Vec3::ZERO,
         });

@@ -10,10 +10,9 @@ use crate::dynamics::line::Line;
 use crate::dynamics::pieces::{Outreach, Piece, Pieces};
 use crate::scene::element::element;
 use crate::scene::held::{Inside, Turn};
-use crate::scene::rows::{BodyRow, ElementRow, Members};
+use crate::scene::rows::{BodyFlags, BodyRow, ElementFlags, ElementRow, Members};
 use crate::scene::step::Step;
 use bevy::math::DVec3;
-use std::mem::take;
 
 /// A component before its step.
 #[derive(Default)]
@@ -99,16 +98,19 @@ impl Plan {
         self.orders.clear();
         self.disturbed = false;
         for b in members.bodies {
-            let row = &bodies[*b];
+            let row = &bodies[*b as usize];
             if step.movable(sight, row.id, stale).is_none() {
                 return false;
             }
-            self.bodies.extend(sight.body(row.id, &row.user, true));
+            self.bodies.extend(sight.body(row.id, &row.user(), true));
         }
         let time = step.plan.time;
-        self.jointed = members.bodies.iter().any(|b| bodies[*b].jointed);
+        self.jointed = members.bodies.iter().any(|b| {
+            let row = &bodies[*b as usize];
+            row.has(BodyFlags::JOINTED)
+        });
         for e in members.elements {
-            self.read_element(*e, step, members, elements, bodies, all);
+            self.read_element(*e as usize, step, members, elements, bodies, all);
         }
         self.balance(members, elements, bodies, time);
         for at in 0..self.orders.len() {
@@ -131,10 +133,10 @@ impl Plan {
         let (sight, time) = (&all.sight(), step.plan.time);
         let row = &mut elements[e];
         let has_moved = step.has_moved(row, sight);
-        self.disturbed |= row.changed || has_moved;
-        take(&mut row.refitted);
+        self.disturbed |= row.has(ElementFlags::CHANGED) || has_moved;
+        row.flags.remove(ElementFlags::REFITTED);
         let ends = [0, 1].map(|end| step.end(row, end, bodies, sight));
-        let is_twist = row.companion.guide.is_twist();
+        let is_twist = row.rare.guide.is_twist();
         let found = element(row, ends, &self.bodies).and_then(|element| {
             let line = element.line(&self.bodies)?;
             let turn = Turn::of(&element, &line, &self.bodies, time);
@@ -150,20 +152,24 @@ impl Plan {
         if has_moved {
             row.account_for_leap(line.distance());
         }
-        let on = row.on.iter().flatten();
-        let touched = on.fold(false, |any, b| any | bodies[*b as usize].touched);
-        let inside = row.inside.get_or_insert_default();
-        inside.context = members.bodies.first().map(|b| bodies[*b].context);
-        let by = row.on.map(|on| {
-            on.map_or((false, false), |b| {
-                let body = &bodies[b as usize];
-                (body.jointed, body.pressed)
+        let is_touched = |b: usize| bodies[b].has(BodyFlags::TOUCHED);
+        let touched = row.all_movable().any(is_touched);
+        let by = [0, 1].map(|end| {
+            row.movable(end).map_or((false, false), |b| {
+                let body = &bodies[b];
+                let is = |flag| body.has(flag);
+                (is(BodyFlags::JOINTED), is(BodyFlags::PRESSED))
             })
         });
+        let inside = row.inside.get_or_insert_default();
+        inside.context = members
+            .bodies
+            .first()
+            .map(|b| bodies[*b as usize].rare.context);
         if by != [(false, false); 2] {
             // Before its first step the engine knows no contacts.
             if inside.leeway.is_due(by, inside.rates.is_some()) {
-                let on = |body: usize| handle(bodies[members.bodies[body]].id);
+                let on = |body: usize| handle(bodies[members.bodies[body] as usize].id);
                 inside.leeway.left = inverse_mass(&line, on, all);
                 inside.leeway.jointed = if by[0].0 || by[1].0 {
                     let contacts = false;
@@ -209,10 +215,10 @@ impl Plan {
                 }
             }
         }
-        let pressed = members.bodies.iter().map(|b| &bodies[*b]);
-        let pressed = pressed.filter(|row| row.pressed);
+        let pressed = members.bodies.iter().map(|b| &bodies[*b as usize]);
+        let pressed = pressed.filter(|row| row.has(BodyFlags::PRESSED));
         // How fast what lies on something goes, if there is any such body.
-        let creeping = pressed.map(|row| row.rest.rate).reduce(f32::max);
+        let creeping = pressed.map(|row| row.rare.rest.rate).reduce(f32::max);
         let pulled = self.bodies.iter().zip(&self.pulls);
         self.tense = creeping.is_some()
             && pulled.into_iter().any(|(body, pull)| {
@@ -220,12 +226,13 @@ impl Plan {
                 weight > 0.0 && pull.all > TENSE * weight
             });
         for (b, pull) in members.bodies.iter().zip(&self.pulls) {
-            let row = &mut bodies[*b];
+            let row = &mut bodies[*b as usize];
             let taken_along = creeping.is_some_and(|rate| {
                 pull.net.length() < BALANCE * pull.all
-                    || (row.jointed && row.rest.rate <= ALONG * rate)
+                    || (row.has(BodyFlags::JOINTED) && row.rare.rest.rate <= ALONG * rate)
             });
-            row.creeps = row.pressed || taken_along;
+            let creeps = row.has(BodyFlags::PRESSED) || taken_along;
+            row.flags.set(BodyFlags::CREEPS, creeps);
         }
     }
 
@@ -333,7 +340,10 @@ impl Plan {
         for order in &mut self.orders {
             let ends = order.line.holds.iter().filter_map(|hold| hold.body);
             order.omega = ends.clone().map(|body| self.sums[body]).sum::<f64>().sqrt();
-            let lifted = ends.filter(|body| !bodies[members.bodies[*body]].pressed);
+            let lifted = ends.filter(|body| {
+                let row = &bodies[members.bodies[*body] as usize];
+                !row.has(BodyFlags::PRESSED)
+            });
             order.lively = lifted.map(|body| self.sums[body]).sum::<f64>().sqrt();
             self.omega = self.omega.max(order.omega);
         }

@@ -17,23 +17,24 @@ impl Solver {
     ) {
         self.pushes.clear();
         self.pushes.resize(members.bodies.len(), 0.0);
-        let elements = members.elements.iter().map(|e| &elements[*e]);
-        for row in elements.filter(|row| !row.companion.guide.is_twist()) {
-            if row.parameters.rest_length.is_none() {
+        let elements = members.elements.iter().map(|e| &elements[*e as usize]);
+        for row in elements.filter(|row| !row.rare.guide.is_twist()) {
+            if row.numbers.rest_length.is_none() {
                 continue;
             }
-            let [a, b] = [0, 1].map(|end| match row.held[end] {
-                Held::Body { body, local, .. } if row.on[end].is_some() => {
+            let [a, b] = [0, 1].map(|end| match row.rare.held[end] {
+                Held::Body { body, local, .. } if row.movable(end).is_some() => {
                     sight.see(body).map_or(local, |body| body.point(local).0)
                 }
                 ref held => step.path(held, sight)[0],
             });
             let force = row.elastic(a.distance(b)).force.abs();
-            for body in row.on.iter().flatten() {
-                let of = &bodies[*body as usize];
+            for body in row.all_movable() {
+                let of = &bodies[body];
                 if let Some(body) = sight.see(of.id) {
                     let inverse_mass = f64::from(body.inverse_mass);
-                    self.pushes[of.slot] += (force * inverse_mass * step.plan.time) as f32;
+                    self.pushes[of.rare.slot as usize] +=
+                        (force * inverse_mass * step.plan.time) as f32;
                 }
             }
         }

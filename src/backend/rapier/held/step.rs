@@ -1,15 +1,17 @@
 //! The components of a context that contacts or joints hold, through the step.
 
 use super::ahead::look_ahead;
+use super::touch::any_joints;
 use crate::backend::rapier::body::{handle, id};
 use crate::backend::rapier::held::near::Outlook;
 use crate::backend::rapier::held::touch::{Crowd, Surroundings};
 use crate::backend::rapier::held::write::{Engine, Solver};
-use crate::scene::rows::{BodyRow, ElementRow};
+use crate::scene::rows::{BodyFlags, BodyRow, ElementFlags, ElementRow};
 use crate::scene::state::Scene;
 use crate::scene::step::Step;
 use bevy::prelude::Entity;
 use bevy_rapier3d::rapier::geometry::{DefaultBroadPhase, NarrowPhase};
+use std::mem::take;
 
 /// What is known of contacts in a context.
 #[derive(Clone, Copy)]
@@ -34,11 +36,15 @@ impl Scene {
         if !self.changed.is_empty() || self.renewed {
             add_up(&self.elements, &mut self.bodies);
         }
-        let new = |row: &BodyRow| row.is_new && row.context == view.context;
-        let any_new = self.bodies.iter().any(new);
+        let any_joints = any_joints(engine.joints);
+        self.find_tangible(any_joints);
+        let tangible = take(&mut self.tangible);
+        let any_new = tangible
+            .iter()
+            .any(|g| self.is_new(*g as usize, view.context));
         let crowd = any_new.then(|| Crowd::new(engine.colliders));
         let mut all_asleep = true;
-        for g in 0..self.groups.list().len() {
+        for g in tangible.iter().map(|g| *g as usize) {
             let group = &self.groups.list()[g];
             if group.context != view.context {
                 continue;
@@ -54,19 +60,29 @@ impl Scene {
             }
             all_asleep &= self.step_group(g, view, step, engine, crowd.as_ref(), solver);
         }
+        self.tangible = tangible;
         let Self {
             elements,
             bodies,
             groups,
             ..
         } = self;
+        self.noting |= solver.is_any();
         solver.write(step, groups, elements, bodies, engine, finest);
         let links = engine.joints.multibody_joints.multibodies().next();
         step.alike = links.map(|_| {
-            let more = |row: &BodyRow| row.raised.substeps();
+            let more = |row: &BodyRow| row.rare.raised.substeps();
             bodies.iter().map(more).max().unwrap_or(0).max(finest)
         });
         all_asleep
+    }
+
+    /// Whether some body of a component in a context is yet to be stepped.
+    fn is_new(&self, group: usize, context: Entity) -> bool {
+        let group = &self.groups.list()[group];
+        let mut bodies = self.groups.members(group).bodies.iter();
+        let is_new = |b: &u32| self.bodies[*b as usize].has(BodyFlags::NEW);
+        group.context == context && bodies.any(is_new)
     }
 
     /// Takes a component in if it is held, and lets go of one that no longer is; says whether it needs no solving here.
@@ -91,7 +107,7 @@ impl Scene {
         let members = groups.members(&groups.list()[g]);
         let held = held && !members.elements.is_empty();
         if !(held || groups.list()[g].inside) {
-            groups.at(g).held = false;
+            groups.set_held(g, false, elements);
             return true;
         }
         let narrow = view.narrow;
@@ -100,11 +116,10 @@ impl Scene {
             solver.release(step, groups, elements, bodies, engine);
         }
         if let Some(index) = groups.list()[g].assembly {
-            assemblies[index].forget();
+            assemblies[index as usize].forget();
         }
-        let group = groups.at(g);
-        group.held = held || !awake;
-        group.is_asleep = !awake;
+        groups.set_held(g, held || !awake, elements);
+        groups.at(g).is_asleep = !awake;
         !awake || !held
     }
 
@@ -127,7 +142,10 @@ impl Scene {
         } = self;
         let members = groups.members(&groups.list()[g]);
         // What is new may touch something already: the engine does not know before its first step.
-        let any_new = members.bodies.iter().any(|b| bodies[*b].is_new);
+        let any_new = members.bodies.iter().any(|b| {
+            let row = &bodies[*b as usize];
+            row.has(BodyFlags::NEW)
+        });
         if any_new {
             solver.find_pushes(step, &members, elements, bodies, &engine.sight());
         }
@@ -135,10 +153,11 @@ impl Scene {
         let time = step.plan.time / f64::from(step.plan.calls.max(1));
         let (mut held, mut stiff, mut clear) = (false, false, u8::MAX);
         for (slot, b) in members.bodies.iter().enumerate() {
-            let row = &mut bodies[*b];
+            let row = &mut bodies[*b as usize];
             clear = clear.min(row.clear);
             let push = if any_new { solver.pushes[slot] } else { 0.0 };
-            if (row.can_touch || around.any_joints || row.lingers > 0.0)
+            let tangible = BodyFlags::CAN_TOUCH | BodyFlags::LINGERS;
+            if (row.flags.intersects(tangible) || around.any_joints)
                 && let Some(body) = engine.bodies.get_mut(handle(row.id))
             {
                 held |= around.look(row, body, step.plan.time, push);
@@ -146,8 +165,11 @@ impl Scene {
             }
         }
         // Other numbers may push it elsewhere.
-        let is_changed =
-            !changed.is_empty() && members.elements.iter().any(|e| elements[*e].changed);
+        let is_changed = !changed.is_empty()
+            && members
+                .elements
+                .iter()
+                .any(|e| elements[*e as usize].has(ElementFlags::CHANGED));
         if is_changed {
             clear = 0;
         }
@@ -160,8 +182,9 @@ impl Scene {
         let left = clear.saturating_sub(1);
         for b in members.bodies {
             // Mostly zero, and what is not written need not go back to memory.
-            if bodies[*b].clear != left {
-                bodies[*b].clear = left;
+            let row = &mut bodies[*b as usize];
+            if row.clear != left {
+                row.clear = left;
             }
         }
         held
@@ -184,13 +207,17 @@ impl Scene {
         };
         let (bodies, handles) = (&self.bodies, &self.handles);
         let members = self.groups.members(&self.groups.list()[g]);
-        let rows: Vec<_> = members.bodies.iter().map(|b| &bodies[*b]).collect();
+        let rows: Vec<_> = members
+            .bodies
+            .iter()
+            .map(|b| &bodies[*b as usize])
+            .collect();
         let (near, clear) = outlook.look(&rows, pushes, |handle| {
             let row = handles.get(&(view.context, id(handle)));
-            row.is_some_and(|b| bodies[*b as usize].group == g as u32)
+            row.is_some_and(|b| bodies[*b as usize].rare.group == g as u32)
         });
         for b in members.bodies {
-            self.bodies[*b].clear = clear;
+            self.bodies[*b as usize].clear = clear;
         }
         near
     }
@@ -199,19 +226,16 @@ impl Scene {
 /// Of each body the stiffness of all its elements.
 pub(crate) fn add_up(elements: &[ElementRow], bodies: &mut [BodyRow]) {
     for row in bodies.iter_mut() {
-        row.stiffness = 0.0;
+        row.rare.stiffness = 0.0;
     }
-    for row in elements
-        .iter()
-        .filter(|row| !row.companion.guide.is_twist())
-    {
-        for body in row.on.iter().flatten() {
-            let stiffness = match row.companion.law {
+    for row in elements.iter().filter(|row| !row.rare.guide.is_twist()) {
+        for body in row.all_movable() {
+            let stiffness = match row.law {
                 // It may be anything where it kinks.
                 Some(_) => f64::INFINITY,
-                None => f64::from(row.parameters.stiffness),
+                None => f64::from(row.numbers.stiffness),
             };
-            bodies[*body as usize].stiffness += stiffness;
+            bodies[body].rare.stiffness += stiffness;
         }
     }
 }

@@ -3,7 +3,7 @@
 use super::joint::is_ours;
 use crate::backend::rapier::body;
 use crate::backend::rapier::held::near::speed_of;
-use crate::scene::rows::BodyRow;
+use crate::scene::rows::{BodyFlags, BodyRow, take};
 use bevy::math::Vec3;
 use bevy_rapier3d::parry;
 use bevy_rapier3d::parry::bounding_volume::BoundingVolume;
@@ -82,6 +82,12 @@ const REACH: f32 = 3.0;
 /// Extents above which a collider counts as boundless, m.
 const BOUNDLESS: f32 = 1e6;
 
+/// Whether there are joints at all.
+pub(crate) fn any_joints(joints: &RapierContextJoints) -> bool {
+    let mut links = joints.multibody_joints.multibodies();
+    links.next().is_some() || !joints.impulse_joints.is_empty()
+}
+
 /// What can hold bodies in a Rapier context.
 pub(crate) struct Surroundings<'a> {
     narrow: &'a NarrowPhase,
@@ -99,13 +105,12 @@ impl<'a> Surroundings<'a> {
         colliders: &'a ColliderSet,
         crowd: Option<&'a Crowd>,
     ) -> Self {
-        let links = joints.multibody_joints.multibodies().next().is_some();
         Self {
             narrow,
             joints,
             colliders,
             crowd,
-            any_joints: links || !joints.impulse_joints.is_empty(),
+            any_joints: any_joints(joints),
         }
     }
 
@@ -146,24 +151,33 @@ impl<'a> Surroundings<'a> {
     /// Looks what holds a body at the start of a step of `time` seconds; says whether anything does, or did a moment ago.
     /// `push` is how much faster springs can make it in the step, m/s.
     pub(crate) fn look(&self, row: &mut BodyRow, body: &RapierBody, time: f64, push: f32) -> bool {
-        row.can_touch = !body.colliders().is_empty();
+        let flags = &mut row.flags;
+        flags.set(BodyFlags::CAN_TOUCH, !body.colliders().is_empty());
         let handle = body::handle(row.id);
-        row.jointed = self.is_jointed(handle);
-        (row.touched, row.pressed) = self.touch(body, time);
-        if row.jointed || row.touched {
-            row.lingers = LINGER;
-        } else {
-            row.lingers = (row.lingers - time as f32).max(0.0);
+        let jointed = self.is_jointed(handle);
+        let (touched, pressed) = self.touch(body, time);
+        if jointed || touched {
+            row.rare.lingers = LINGER;
+        } else if row.has(BodyFlags::LINGERS) {
+            row.rare.lingers = (row.rare.lingers - time as f32).max(0.0);
         }
-        if !std::mem::take(&mut row.is_new) {
-            return row.lingers > 0.0;
+        let lingers = (jointed || touched || row.has(BodyFlags::LINGERS)) && row.rare.lingers > 0.0;
+        let flags = &mut row.flags;
+        flags.set(BodyFlags::JOINTED, jointed);
+        flags.set(BodyFlags::TOUCHED, touched);
+        flags.set(BodyFlags::PRESSED, pressed);
+        flags.set(BodyFlags::LINGERS, lingers);
+        if !take!(flags, BodyFlags::NEW) {
+            return lingers;
         }
         let near = |way: f32| {
             self.crowd
                 .is_some_and(|crowd| crowd.is_near(handle, body, way, self.colliders))
         };
-        row.pressed |= near(NEAR);
+        if near(NEAR) {
+            flags.insert(BodyFlags::PRESSED);
+        }
         let way = NEAR + 2.0 * (speed_of(body) + push) * time as f32;
-        row.lingers > 0.0 || row.pressed || near(way)
+        lingers || flags.contains(BodyFlags::PRESSED) || near(way)
     }
 }

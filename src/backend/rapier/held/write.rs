@@ -7,10 +7,10 @@ use crate::backend::rapier::held::linkage::Holding;
 use crate::backend::rapier::held::plan::Plan;
 use crate::backend::{self, Push, Sight, Wrench};
 use crate::dynamics::soft::Fineness;
-use crate::dynamics::tolerance::Outcome;
 use crate::scene::group::Groups;
 use crate::scene::held::{Inside, Wanted};
-use crate::scene::rows::{BodyRow, ElementRow, Members};
+use crate::scene::rows::{BodyFlags, BodyRow, ElementFlags, ElementRow, Members, Solved};
+use crate::scene::sleep::rouse;
 use crate::scene::step::Step;
 use bevy::math::Vec3;
 use bevy_rapier3d::prelude::RapierContextJoints;
@@ -67,6 +67,11 @@ impl Solver {
         (self.used, self.sweeps) = (0, 1);
     }
 
+    /// Whether there is anything to write.
+    pub(crate) fn is_any(&self) -> bool {
+        self.used > 0
+    }
+
     /// Sweeps over all joints and contacts that a substep of what has been written needs.
     pub(crate) fn sweeps(&self) -> usize {
         self.sweeps
@@ -100,9 +105,17 @@ impl Solver {
         let there = plan.read(step, members, elements, bodies, all, stale);
         let (omega, disturbed) = (plan.omega as f32, plan.disturbed);
         let world = &mut engine.world();
-        let awake = there && step.is_awake(bodies, members.bodies, omega, world, disturbed);
+        let (awake, must_rouse) = if there {
+            step.is_awake(bodies, members.bodies, omega, world, disturbed)
+        } else {
+            (false, false)
+        };
+        if must_rouse {
+            rouse(bodies, members.bodies, world);
+        }
         for e in members.elements {
-            elements[*e].active = awake;
+            let flags = &mut elements[*e as usize].flags;
+            flags.set(ElementFlags::ACTIVE, awake);
         }
         self.used += usize::from(awake);
         awake
@@ -150,23 +163,24 @@ impl Solver {
             let wanted = &mut self.wanted;
             join(plan, wanted, &members, elements, engine, [h, time]);
             for e in members.elements {
-                let row = &mut elements[*e];
+                let row = &mut elements[*e as usize];
                 let acts = row.inside.as_ref().is_some_and(|inside| inside.active);
-                row.outcome = if acts {
-                    fineness.outcome(substeps)
+                row.solved = if acts {
+                    fineness.outcome(substeps).into()
                 } else {
-                    Outcome::default()
+                    Solved::default()
                 };
             }
             for b in members.bodies {
-                let row = &mut bodies[*b];
-                row.substep = h;
-                (row.is_fresh, row.is_alone) = (true, false);
+                let row = &mut bodies[*b as usize];
+                row.rare.substep = h;
+                row.flags.insert(BodyFlags::FRESH);
+                row.flags.remove(BodyFlags::IS_ALONE);
                 if let Some(body) = engine.bodies.get_mut(handle(row.id)) {
-                    raise(&mut row.raised, body, chosen - own);
+                    raise(&mut row.rare.raised, body, chosen - own);
                 }
             }
-            take_back_excess(plan, &members, bodies, &mut engine.world());
+            take_back_excess(plan, &members, bodies, step.tick, &mut engine.world());
             groups.at(plan.group).inside = true;
             step.delivered.store(true, Ordering::Relaxed);
         }
@@ -188,7 +202,10 @@ impl Solver {
         self.used = used;
         let plan = &mut self.plans[used];
         let members = groups.members(&groups.list()[plan.group]);
-        let substep = members.bodies.first().map_or(0.0, |b| bodies[*b].substep);
+        let substep = members
+            .bodies
+            .first()
+            .map_or(0.0, |b| bodies[*b as usize].rare.substep);
         stagger(plan, 0.5 * substep, step, &members, bodies, engine);
         leave(&members, elements, bodies, engine);
         groups.at(plan.group).inside = false;
@@ -200,14 +217,15 @@ fn take_back_excess(
     plan: &Plan,
     members: &Members,
     bodies: &mut [BodyRow],
+    tick: u32,
     engine: &mut impl backend::Engine,
 ) {
     let excess = plan.orders.iter().filter_map(|o| o.excess_torque());
     for (slot, b) in members.bodies.iter().enumerate() {
-        let row = &mut bodies[*b];
+        let row = &mut bodies[*b as usize];
         let too_much = excess.clone().filter(|(of, _)| *of == slot);
         let torque = -too_much.map(|(_, torque)| torque.as_vec3()).sum::<Vec3>();
-        if torque != Vec3::ZERO || row.carries_share {
+        if torque != Vec3::ZERO || row.has(BodyFlags::CARRIES_SHARE) {
             let push = Push {
                 share: Wrench {
                     force: Vec3::ZERO,
@@ -215,8 +233,9 @@ fn take_back_excess(
                 },
                 ..Push::default()
             };
-            row.give(&push, engine);
-            row.carries_share = torque != Vec3::ZERO;
+            row.give(&push, tick, engine);
+            let carries = torque != Vec3::ZERO;
+            row.flags.set(BodyFlags::CARRIES_SHARE, carries);
         }
     }
 }
@@ -229,14 +248,14 @@ pub(crate) fn leave(
     engine: &mut Engine,
 ) {
     for e in members.elements {
-        if let Some(mut inside) = elements[*e].inside.take() {
+        if let Some(mut inside) = elements[*e as usize].inside.take() {
             remove(&mut inside, engine);
         }
     }
     for b in members.bodies {
-        let row = &mut bodies[*b];
+        let row = &mut bodies[*b as usize];
         if let Some(body) = engine.bodies.get_mut(handle(row.id)) {
-            raise(&mut row.raised, body, 0);
+            raise(&mut row.rare.raised, body, 0);
         }
     }
 }
@@ -264,8 +283,9 @@ fn stagger(
         order.line.impulse(&mut moved, impulse);
     }
     for (b, moved) in members.bodies.iter().zip(&moved) {
-        let row = &bodies[*b];
-        let seen = engine.sight().see(row.id).filter(|_| !row.pressed);
+        let row = &bodies[*b as usize];
+        let free = !row.has(BodyFlags::PRESSED);
+        let seen = engine.sight().see(row.id).filter(|_| free);
         let (Some(seen), Some(body)) = (seen, engine.bodies.get_mut(handle(row.id))) else {
             continue;
         };
@@ -299,7 +319,7 @@ fn leave_misfits(
         }
     }
     for e in members.elements {
-        if let Some(inside) = &mut elements[*e].inside
+        if let Some(inside) = &mut elements[*e as usize].inside
             && !(fit && inside.active)
         {
             inside.joints.remove(set);
@@ -318,14 +338,14 @@ fn join(
     [substep, time]: [f64; 2],
 ) {
     for e in members.elements {
-        if let Some(inside) = &mut elements[*e].inside {
+        if let Some(inside) = &mut elements[*e as usize].inside {
             inside.active = false;
         }
     }
     wanted.clear();
     for order in &mut plan.orders {
         let row = &mut elements[order.row];
-        let held = row.held;
+        let held = row.rare.held;
         let inside = row.inside.get_or_insert_default();
         let holders = [0, 1].map(|end| holder(inside, end, &held[end], engine));
         wanted.push(order.joints(row, holders, substep, time));

@@ -40,7 +40,7 @@ impl Kept {
             let _ = row.take_inside();
         }
         for row in &mut scene.bodies {
-            row.raised = Raised::default();
+            row.rare.raised = Raised::default();
         }
         scene.left = insides;
         scene.unloaded = raised;

@@ -91,7 +91,7 @@ impl Kept {
             let of = body.get::<RapierRigidBodyHandle>()?.0;
             let meanwhile = scene.and_then(|scene| {
                 let row = scene.index.get(&known.entity)?;
-                Some(scene.bodies[*row].raised)
+                Some(scene.bodies[*row as usize].rare.raised)
             });
             let meanwhile = meanwhile.unwrap_or_default();
             Some(fits(&known.raised, set.bodies.get(of)?, meanwhile))
@@ -105,9 +105,9 @@ impl Kept {
         // What no element moved then had nothing.
         let then: EntityHashSet = self.bodies.iter().map(|body| body.entity).collect();
         let had_nothing = |row: &BodyRow| {
-            let set = world.get::<RapierRigidBodySet>(row.context)?;
+            let set = world.get::<RapierRigidBodySet>(row.rare.context)?;
             let body = set.bodies.get(handle(row.id))?;
-            Some(fits(&Raised::default(), body, row.raised))
+            Some(fits(&Raised::default(), body, row.rare.raised))
         };
         let new = scene.iter().flat_map(|scene| &scene.bodies);
         let mut new = new.filter(|row| !then.contains(&row.entity));

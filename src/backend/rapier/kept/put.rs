@@ -10,7 +10,7 @@ use crate::input::companions::Companions;
 use crate::input::parts::{Acts, Parts};
 use crate::readout::SpringReadout;
 use crate::scene::kept::{Kept, KeptBody, KeptElement, NONE};
-use crate::scene::rows::{BodyRow, ElementRow};
+use crate::scene::rows::{BodyFlags, BodyRow, ElementFlags, ElementRow, RareBody};
 use crate::scene::state::Scene;
 use crate::snapshot::SnapshotError;
 use bevy::ecs::change_detection::Tick;
@@ -102,12 +102,12 @@ impl Kept {
                 // What has been said of it is not said again.
                 row.trouble = before.trouble;
             }
-            row.memory = kept.memory;
-            scene.row_of.insert(kept.entity, index);
+            kept.memory.put(&mut row);
+            scene.row_of.insert(kept.entity, index as u32);
             scene.elements.push(row);
         }
         let lent = scene.bodies.drain(..);
-        let lent = lent.map(|row| (row.entity, (row.context, row.id, row.raised)));
+        let lent = lent.map(|row| (row.entity, (row.rare.context, row.id, row.rare.raised)));
         let mut lent: EntityHashMap<_> = lent.filter(|_| self.engine_stays).collect();
         scene.index.clear();
         for kept in &self.bodies {
@@ -119,7 +119,7 @@ impl Kept {
                 let mut row = kept.row(id, context);
                 if self.engine_stays {
                     let lent = lent.remove(&kept.entity);
-                    row.raised = lent.map(|lent| lent.2).unwrap_or_default();
+                    row.rare.raised = lent.map(|lent| lent.2).unwrap_or_default();
                 }
                 scene.bodies.push(row);
             }
@@ -130,7 +130,7 @@ impl Kept {
         let rows = scene.bodies.iter().enumerate();
         scene
             .index
-            .extend(rows.map(|(slot, row)| (row.entity, slot)));
+            .extend(rows.map(|(slot, row)| (row.entity, slot as u32)));
         scene.assemblies.clear();
         scene.pending.clear();
     }
@@ -140,9 +140,9 @@ impl Kept {
             let Some(index) = scene.row_of.get(&kept.entity) else {
                 continue;
             };
-            let row = &mut scene.elements[*index];
+            let row = &mut scene.elements[*index as usize];
             let body = row.movable(0).or(row.movable(1));
-            let context = body.map(|body| scene.bodies[body].context);
+            let context = body.map(|body| scene.bodies[body].rare.context);
             let differs = kept.fill(row, context);
             let to_find =
                 companions.tuning(kept.entity).is_some() || companions.pose(kept.entity).is_some();
@@ -151,16 +151,18 @@ impl Kept {
             }
         }
         let rows = scene.elements.iter().enumerate();
-        let changed = rows.filter(|(_, row)| row.changed);
+        let changed = rows.filter(|(_, row)| row.has(ElementFlags::CHANGED));
         scene.changed = changed.map(|(index, _)| index).collect();
     }
 
     fn fill_bodies(&self, scene: &mut Scene) {
         for kept in &self.bodies {
             if let Some(row) = scene.index.get(&kept.entity)
-                && let Some(row) = scene.bodies.get_mut(*row)
+                && let Some(row) = scene.bodies.get_mut(*row as usize)
             {
-                (row.disturbed, row.clear) = (kept.disturbed, kept.clear);
+                let disturbed = kept.flags.contains(BodyFlags::DISTURBED);
+                row.flags.set(BodyFlags::DISTURBED, disturbed);
+                row.clear = kept.clear;
             }
         }
         add_up(&scene.elements, &mut scene.bodies);
@@ -171,13 +173,13 @@ impl Kept {
         let mut elements = vec![NONE; scene.elements.len()];
         for (place, kept) in self.elements.iter().enumerate() {
             if let Some(index) = scene.row_of.get(&kept.entity) {
-                elements[*index] = place as u32;
+                elements[*index as usize] = place as u32;
             }
         }
         let mut bodies = vec![NONE; scene.bodies.len()];
         for (place, kept) in self.bodies.iter().enumerate() {
             if let Some(index) = scene.index.get(&kept.entity) {
-                bodies[*index] = place as u32;
+                bodies[*index as usize] = place as u32;
             }
         }
         scene.groups.arrange(&elements, &bodies, &scene.elements);
@@ -186,26 +188,31 @@ impl Kept {
         for kept in &self.groups {
             let body = self.bodies.get(kept.body as usize);
             let row = body.and_then(|body| scene.index.get(&body.entity));
-            let Some(g) = row.map(|row| scene.bodies[*row].group as usize) else {
+            let Some(g) = row.map(|row| scene.bodies[*row as usize].rare.group as usize) else {
                 continue;
             };
             if g >= scene.groups.list().len() {
                 continue;
             }
+            scene.groups.set_held(g, kept.held, &mut scene.elements);
             let group = scene.groups.at(g);
-            (group.held, group.is_asleep) = (kept.held, kept.is_asleep);
+            group.is_asleep = kept.is_asleep;
             if let Some(remembered) = &kept.assembly {
                 if group.assembly.is_none() {
                     scene.groups.promote(g, &mut scene.assemblies);
                 }
                 if let Some(index) = scene.groups.list()[g].assembly {
-                    scene.assemblies[index].component.remember(remembered);
+                    scene.assemblies[index as usize]
+                        .component
+                        .remember(remembered);
                 }
             }
         }
     }
 
     fn fill_scene(&self, scene: &mut Scene) {
+        // Some have got an assembly.
+        scene.list_lone();
         scene.time = self.time;
         let stepped = self.contexts.iter().filter(|context| context.stepped);
         scene.stepped = stepped.map(|context| context.entity).collect();
@@ -221,7 +228,8 @@ impl Kept {
             // What elements had that are at fault now.
             if let [context] = &self.contexts[..] {
                 for kept in &self.elements {
-                    let row = scene.row_of.get(&kept.entity).map(|i| &scene.elements[*i]);
+                    let row = scene.row_of.get(&kept.entity);
+                    let row = row.map(|i| &scene.elements[*i as usize]);
                     if let Some(inside) = kept.inside.as_deref()
                         && row.is_none_or(|row| row.inside.is_none())
                     {
@@ -267,7 +275,7 @@ impl Kept {
                 scene.index.get(&kept.entity),
                 world.get_entity_mut(kept.entity),
             ) {
-                kept.show(*slot, body, now);
+                kept.show(*slot as usize, body, now);
             }
         }
     }
@@ -276,19 +284,15 @@ impl Kept {
 impl KeptElement {
     /// Gives a row its memory; says whether its component's numbers are others than acted last.
     fn fill(&self, row: &mut ElementRow, context: Option<Entity>) -> bool {
-        let p = &mut row.parameters;
+        let p = &mut row.numbers;
         let rest = p.rest_length.or(self.rest_length);
         let differs = [p.stiffness, p.damping] != self.numbers || rest != self.rest_length;
         [p.stiffness, p.damping] = self.numbers;
         p.rest_length = self.rest_length;
-        row.changed = self.changed;
-        row.refitted = self.refitted;
-        row.captured = self.captured;
-        row.tuned = self.tuned;
-        row.tuned_again = self.tuned_again;
-        row.active = self.active;
+        row.flags.remove(ElementFlags::KEPT);
+        row.flags.insert(self.flags & ElementFlags::KEPT);
         row.ledger = self.ledger;
-        row.memory = self.memory;
+        self.memory.put(row);
         let inside = self.inside.as_deref();
         row.inside = inside.and_then(|inside| Some(inside.put(context?)));
         differs
@@ -298,31 +302,25 @@ impl KeptElement {
 impl KeptBody {
     fn row(&self, id: BodyId, context: Entity) -> BodyRow {
         let [force, torque] = self.user;
-        BodyRow {
-            rank: self.rank,
-            disturbed: self.disturbed,
-            rests: self.rests,
-            is_alone: self.is_alone,
-            is_noted: self.is_noted,
-            is_fresh: self.is_fresh,
-            is_new: self.is_new,
-            can_touch: self.can_touch,
-            jointed: self.jointed,
-            touched: self.touched,
-            pressed: self.pressed,
-            creeps: self.creeps,
-            lingers: self.lingers,
+        let new = BodyRow::new(self.entity, id, context);
+        let mut row = BodyRow {
+            flags: self.flags & BodyFlags::KEPT,
             clear: self.clear,
-            user: Wrench { force, torque },
-            carries_share: self.carries_share,
-            now: self.now,
-            rest: self.rest,
-            raised: self.raised,
-            substep: self.substep,
-            pulled: self.pulled,
-            turned: self.turned,
-            ..BodyRow::new(self.entity, id, context)
-        }
+            rare: Box::new(RareBody {
+                rank: self.rank,
+                lingers: self.lingers,
+                now: self.now,
+                rest: self.rest,
+                raised: self.raised,
+                substep: self.substep,
+                pulled: self.pulled,
+                turned: self.turned,
+                ..*new.rare
+            }),
+            ..new
+        };
+        row.set_user(Wrench { force, torque });
+        row
     }
 
     /// Both shares of its force, without telling anyone: what is told wakes the body.

@@ -3,8 +3,10 @@
 use crate::backend::Wrench;
 use crate::backend::rapier::forces::{SpringLoad, wrench};
 use crate::readout::SpringReadout;
-use crate::scene::kept::{Kept, KeptBody, KeptContext, KeptElement, KeptGroup, KeptInside, NONE};
-use crate::scene::rows::{BodyRow, ElementRow, Memory};
+use crate::scene::kept::{
+    Kept, KeptBody, KeptContext, KeptElement, KeptGroup, KeptInside, Memory, NONE,
+};
+use crate::scene::rows::{BodyFlags, BodyRow, ElementFlags, ElementRow, RareBody, RareElement};
 use crate::scene::state::Scene;
 use bevy::prelude::*;
 
@@ -28,12 +30,13 @@ impl Kept {
             let members = scene.groups.members(group);
             let first = kept.bodies.len() as u32;
             for index in members.bodies {
-                let row = &scene.bodies[*index];
-                places[*index] = kept.bodies.len() as u32;
+                let index = *index as usize;
+                let row = &scene.bodies[index];
+                places[index] = kept.bodies.len() as u32;
                 kept.bodies.push(take_body(row, world));
             }
             let assembly = group.assembly.map(|index| {
-                let assembly = &scene.assemblies[index];
+                let assembly = &scene.assemblies[index as usize];
                 Box::new(assembly.component.remembered())
             });
             if assembly.is_some() || group.held || group.is_asleep {
@@ -47,7 +50,7 @@ impl Kept {
         }
         let in_groups = scene.groups.list().iter().flat_map(|group| {
             let members = scene.groups.members(group);
-            members.elements.iter().copied()
+            members.elements.iter().map(|e| *e as usize)
         });
         let mut others = vec![true; scene.elements.len()];
         for index in in_groups {
@@ -78,50 +81,40 @@ impl Kept {
 
 fn take_element(row: &ElementRow, places: &[u32], world: &World) -> KeptElement {
     // What is not kept is found anew from the components.
-    let ElementRow {
-        parameters,
-        changed,
-        refitted,
-        captured,
-        tuned,
-        tuned_again,
-        active,
-        watched: _,
-        placed: _,
-        entity,
-        companion: _,
-        trouble: _,
-        inverse_mass: _,
-        outcome: _,
-        ledger,
-        on,
-        memory,
+    let RareElement {
+        ties: _,
+        guide: _,
         held: _,
-        inside,
-    } = row;
+        places: ends,
+        facings,
+        angle,
+        scales,
+        controller,
+    } = *row.rare;
+    let on = |end: usize| row.movable(end).map_or(NONE, |body| places[body]);
     KeptElement {
-        entity: *entity,
-        on: on.map(|body| body.map_or(NONE, |body| places[body as usize])),
-        numbers: [parameters.stiffness, parameters.damping],
-        rest_length: parameters.rest_length,
-        changed: *changed,
-        refitted: *refitted,
-        captured: *captured,
-        tuned: *tuned,
-        tuned_again: *tuned_again,
-        active: *active,
-        ledger: *ledger,
+        entity: row.entity,
+        on: [on(0), on(1)],
+        numbers: [row.numbers.stiffness, row.numbers.damping],
+        rest_length: row.numbers.rest_length,
+        flags: row.flags & ElementFlags::KEPT,
+        ledger: row.ledger,
         readout: world
-            .get::<SpringReadout>(*entity)
+            .get::<SpringReadout>(row.entity)
             .copied()
             .unwrap_or_default(),
-        inside: inside
+        inside: row
+            .inside
             .as_deref()
             .map(|inside| Box::new(KeptInside::of(inside))),
         memory: Memory {
-            // The same numbers give the same coefficients.
-            memo: Default::default(),
-            ..*memory
+            direction: row.direction(),
+            length: row.length,
+            controller,
+            places: ends,
+            angle,
+            facings,
+            scales,
         },
     }
 }
@@ -131,60 +124,41 @@ fn take_body(row: &BodyRow, world: &World) -> KeptBody {
     let BodyRow {
         entity,
         id: _,
-        turns: _,
-        disturbed,
-        rests,
-        is_alone,
-        is_noted,
-        is_fresh,
-        is_new,
-        can_touch,
-        jointed,
-        touched,
-        pressed,
-        creeps,
-        lingers,
-        clear,
-        user,
+        flags,
         // Shown in the components when a tick is over.
-        share: _,
-        carries_share,
+        given: _,
+        share_force: _,
+        user_force: _,
+        clear,
+        ref rare,
+    } = *row;
+    let RareBody {
         context: _,
-        now,
-        rest,
-        torque: _,
-        raised,
-        stiffness: _,
-        substep,
         group: _,
         slot: _,
         rank,
-        elements: _,
         signature: _,
+        rest,
+        lingers,
+        user_torque: _,
+        share_torque: _,
+        raised,
+        stiffness: _,
+        substep,
+        now,
         pulled,
         turned,
-    } = *row;
+    } = **rare;
     let load = world.get::<SpringLoad>(entity);
     let both = |wrench: &Wrench| [wrench.force, wrench.torque];
     KeptBody {
         entity,
         rank,
-        disturbed,
-        rests,
-        is_alone,
-        is_noted,
-        is_fresh,
-        is_new,
-        can_touch,
-        jointed,
-        touched,
-        pressed,
-        creeps,
-        carries_share,
+        flags: flags & BodyFlags::KEPT,
         raised_iterations: load.is_some_and(SpringLoad::raised_iterations),
         lingers,
         clear,
-        user: both(&user),
+        user: both(&row.user()),
         elements: load.map_or_else(Default::default, |load| both(&wrench(&load.elements))),
         now,
         rest,

@@ -1,27 +1,7 @@
-//! What is needed only while rows are made anew.
+//! The bodies that there are to be rows of.
 
 use crate::backend::{BodyId, Found, Movable, Place};
-use crate::scene::rows::BodyRow;
 use bevy::prelude::Entity;
-
-/// Kept between, for its memory alone.
-#[derive(Default)]
-pub(crate) struct Scratch {
-    /// The ends of every element, or none of an inert one.
-    pub(crate) found: Vec<Option<Found>>,
-    /// The rows of bodies as they were.
-    pub(crate) bodies: Vec<BodyRow>,
-    /// The bodies that there are to be, in the order of their entities.
-    pub(crate) wanted: Vec<Wanted>,
-}
-
-impl Scratch {
-    pub(crate) fn clear(&mut self) {
-        self.found.clear();
-        self.bodies.clear();
-        self.wanted.clear();
-    }
-}
 
 /// A body that elements can move.
 pub(crate) struct Wanted {
@@ -31,8 +11,6 @@ pub(crate) struct Wanted {
     pub(crate) turns: bool,
     /// See [`Movable::rank`].
     pub(crate) rank: u64,
-    /// Which elements acted on it before, as a hash.
-    pub(crate) signature: u64,
 }
 
 impl Wanted {
@@ -54,7 +32,6 @@ impl Wanted {
                 context,
                 turns,
                 rank,
-                signature: 0,
             }),
             _ => None,
         })

@@ -1,0 +1,17 @@
+//! What an element remembers, back into its row.
+
+use crate::scene::kept::Memory;
+use crate::scene::rows::ElementRow;
+
+impl Memory {
+    pub(crate) fn put(&self, row: &mut ElementRow) {
+        row.set_direction(self.direction);
+        row.length = self.length;
+        let rare = &mut *row.rare;
+        rare.controller = self.controller;
+        rare.places = self.places;
+        rare.angle = self.angle;
+        rare.facings = self.facings;
+        rare.scales = self.scales;
+    }
+}

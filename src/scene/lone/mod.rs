@@ -1,0 +1,102 @@
+//! Elements that share their bodies with no other and turn neither: each is the closed form of [`crate::dynamics::pair`].
+//!
+//! Most elements of most scenes are of this kind. All of them are read and solved first, several at a time and on all threads
+//! ([`solve`]), and then what they have come to is given to their bodies ([`deliver`]). One that has anything special (locked
+//! axes, ends that coincide, one of two bodies asleep) is left to [`super::assembly`] for a step.
+
+mod deliver;
+mod solve;
+
+use super::rows::{BodyRow, ElementFlags, ElementRow};
+use bevy::math::Vec3;
+use bevy::prelude::Entity;
+pub(crate) use solve::Worker;
+
+/// The lone elements of a world of the engine.
+pub(crate) struct Lone {
+    pub context: Entity,
+    /// Indices of their rows, from the least on.
+    pub elements: Vec<u32>,
+}
+
+/// How a lone element goes through the step.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) enum Route {
+    /// It has nothing to do with this step.
+    #[default]
+    None,
+    /// Solved; its bodies are to be given what that takes.
+    Solved,
+    /// It has no body any more that it could move.
+    Gone,
+    /// Asleep.
+    Asleep,
+    /// By the general solver in this step.
+    GeneralOnce,
+    /// By the general solver for as long as can be seen.
+    General,
+}
+
+/// What a body is given, m/s and N.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Given {
+    pub velocity: Vec3,
+    pub force: Vec3,
+}
+
+/// What has become of a lone element in the step.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Way {
+    /// For the bodies at both ends.
+    pub given: [Given; 2],
+    pub route: Route,
+    /// Each of them is slow enough to be at rest.
+    pub slow: [bool; 2],
+    /// Each of them has colliders.
+    pub can_touch: [bool; 2],
+    /// The engine takes one substep alone, and so a second one.
+    pub second_substep: bool,
+    /// Something was done to it: its bodies must not fall asleep.
+    pub disturbed: bool,
+}
+
+/// Elements above which it is worth waking other threads. Pinned by the benchmark `own/isolated`.
+const WORTH_SHARING: usize = 1024;
+
+/// Pieces for each thread: what one has done sooner, another need not wait for.
+const PIECES: usize = 4;
+
+/// Solves all lone elements of a world, in as many pieces as there are workers for; see [`Worker::solve`].
+pub(crate) fn pieces(elements: usize, threads: usize) -> usize {
+    if elements < WORTH_SHARING || threads < 2 {
+        1
+    } else {
+        PIECES * threads
+    }
+}
+
+/// Lists the lone elements of every world; `is_lone` says which rows are.
+pub(crate) fn list(
+    elements: &[ElementRow],
+    bodies: &[BodyRow],
+    is_lone: impl Fn(&ElementRow) -> bool,
+) -> Vec<Lone> {
+    let mut all: Vec<Lone> = Vec::new();
+    for (index, row) in elements.iter().enumerate() {
+        let Some(body) = row.all_movable().next() else {
+            continue;
+        };
+        if row.trouble.lasting().is_some() || !row.has(ElementFlags::IS_PLAIN) || !is_lone(row) {
+            continue;
+        }
+        let context = bodies[body].rare.context;
+        let of = all.iter().position(|lone| lone.context == context);
+        let of = of.unwrap_or_else(|| {
+            let elements = Vec::new();
+            all.push(Lone { context, elements });
+            all.len() - 1
+        });
+        all[of].elements.push(index as u32);
+    }
+    all
+}

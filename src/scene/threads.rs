@@ -1,0 +1,35 @@
+//! Work on several threads, where there are more than one and it is worth it.
+
+use bevy::tasks::ComputeTaskPool;
+use std::num::NonZeroUsize;
+use std::sync::LazyLock;
+use std::thread::available_parallelism;
+
+/// More threads than these would only wait for each other.
+static CORES: LazyLock<usize> =
+    LazyLock::new(|| available_parallelism().map_or(1, NonZeroUsize::get));
+
+/// How many threads there are.
+pub(crate) fn count() -> usize {
+    // The one that waits for the pool works too: on two cores the pool has just one.
+    let pool = ComputeTaskPool::try_get().map_or(0, |pool| pool.thread_num());
+    (*CORES).min(pool + 1)
+}
+
+/// Does some work on each of these pieces, on all threads if they are more than one: so cut pieces only where the work is worth
+/// waking other threads, and the few allocations that this takes.
+pub(crate) fn share<T: Send>(
+    mut pieces: impl ExactSizeIterator<Item = T>,
+    work: impl Fn(T) + Sync,
+) {
+    if pieces.len() == 1 {
+        pieces.by_ref().for_each(work);
+        return;
+    }
+    let work = &work;
+    ComputeTaskPool::get().scope(|scope| {
+        for piece in pieces {
+            scope.spawn(async move { work(piece) });
+        }
+    });
+}
