@@ -54,6 +54,12 @@ impl Schedule {
         }
     }
 
+    /// β dt (s) and 1/((1 − β) dt) (1/s), of more than one substep.
+    #[inline]
+    pub(crate) fn spread(&self) -> (f64, f64) {
+        (self.reach, self.per_rest)
+    }
+
     /// Jump and rate for a wanted displacement beyond `time·velocity` and a wanted change of velocity.
     pub(crate) fn reach(&self, displacement: DVec3, change: DVec3) -> Delivery {
         if self.substeps < 2 {

@@ -83,7 +83,7 @@ impl Separation {
 impl Pair {
     /// (ω h)².
     pub(super) fn stiffness_number(&self, step: f64) -> f64 {
-        self.stiffness * self.inverse_mass * step * step
+        stiffness_number(self.stiffness, self.inverse_mass, step)
     }
 
     pub(super) fn poles(&self, step: f64, memo: &mut Memo) -> Poles {
@@ -93,14 +93,10 @@ impl Pair {
 
     /// Whether a step's energy is watched.
     fn is_watched(&self, step: f64) -> bool {
-        self.damping * self.inverse_mass * step >= STRONG
-            || !is_resolved(self.stiffness_number(step))
-    }
-
-    /// Whether micro-steps of so long are kicks along the line and nothing else: then it can go
-    /// several at once in [`super::lanes`].
-    pub(crate) fn is_plain(&self, step: f64) -> bool {
-        self.rest_length > 0.0 && !self.is_watched(step)
+        is_watched(
+            self.damping * self.inverse_mass * step,
+            self.stiffness_number(step),
+        )
     }
 
     pub(super) fn microsteps(
@@ -367,6 +363,30 @@ impl Line {
         }
         line::backward_rate(self.length, self.axial, self.lateral_square, step)
     }
+}
+
+/// (ω h)².
+fn stiffness_number(stiffness: f64, inverse_mass: f64, step: f64) -> f64 {
+    stiffness * inverse_mass * step * step
+}
+
+/// Whether the energy of a step is watched: c h/m, and (ω h)².
+fn is_watched(damping: f64, stiffness_number: f64) -> bool {
+    damping >= STRONG || !is_resolved(stiffness_number)
+}
+
+/// The poles of an element whose micro-steps of so long are kicks along the line and nothing else: then it can go several at
+/// once in [`super::lanes`]. Its rest length is above zero.
+#[inline(always)]
+pub(crate) fn plain_poles(
+    [stiffness, damping]: [f64; 2],
+    inverse_mass: f64,
+    step: f64,
+    memo: &mut Memo,
+) -> Option<Poles> {
+    let damping = damping * inverse_mass * step;
+    let stiffness = stiffness_number(stiffness, inverse_mass, step);
+    (!is_watched(damping, stiffness)).then(|| memo.poles(stiffness, damping / 2.0))
 }
 
 fn is_resolved(z: f64) -> bool {

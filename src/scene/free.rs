@@ -2,7 +2,7 @@
 
 use crate::backend::{Engine, Sight};
 use crate::scene::assembly::Assembly;
-use crate::scene::lone::{Lone, Route, Way, Worker, pieces};
+use crate::scene::lone::{Lone, Piece, Route, Way, Worker, pieces};
 use crate::scene::rows::{BodyRow, ElementRow};
 use crate::scene::state::Scene;
 use crate::scene::step::Step;
@@ -107,13 +107,18 @@ impl Scene {
             // The rows of this piece, cut off the rest.
             let end = lone.last().map_or(first, |last| *last as usize + 1);
             let (own, others) = take(&mut rows).split_at_mut(end - first);
-            let own = (std::mem::replace(&mut first, end), own);
             rows = others;
-            (lone, ways, worker, own)
+            let piece = Piece {
+                lone,
+                rows: own,
+                first: std::mem::replace(&mut first, end),
+                bodies,
+                ways,
+                sight,
+            };
+            (worker, piece)
         });
-        threads::share(parts, |(lone, ways, worker, own)| {
-            worker.solve(step, lone, own, bodies, ways, sight);
-        });
+        threads::share(parts, |(worker, piece)| worker.solve(step, piece));
         self.stale |= spare.workers.iter().any(|worker| worker.stale);
         let mut routes = spare.ways.iter().map(|way| way.route);
         routes.all(|route| matches!(route, Route::Asleep | Route::None))

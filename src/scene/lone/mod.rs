@@ -4,13 +4,16 @@
 //! ([`solve`]), and then what they have come to is given to their bodies ([`deliver`]). One that has anything special (locked
 //! axes, ends that coincide, one of two bodies asleep) is left to [`super::assembly`] for a step.
 
+mod alone;
 mod deliver;
 mod solve;
+#[cfg(test)]
+mod tests;
 
 use super::rows::{BodyRow, ElementFlags, ElementRow};
 use bevy::math::Vec3;
 use bevy::prelude::Entity;
-pub(crate) use solve::Worker;
+pub(crate) use solve::{Piece, Worker};
 
 /// The lone elements of a world of the engine.
 pub(crate) struct Lone {
@@ -50,7 +53,7 @@ pub(crate) struct Way {
     /// For the bodies at both ends.
     pub given: [Given; 2],
     pub route: Route,
-    /// Each of them is slow enough to be at rest.
+    /// Each of them may be slow enough to be at rest.
     pub slow: [bool; 2],
     /// Each of them has colliders.
     pub can_touch: [bool; 2],
@@ -66,7 +69,7 @@ const WORTH_SHARING: usize = 1024;
 /// Pieces for each thread: what one has done sooner, another need not wait for.
 const PIECES: usize = 4;
 
-/// Solves all lone elements of a world, in as many pieces as there are workers for; see [`Worker::solve`].
+/// Into how many pieces lone elements are cut.
 pub(crate) fn pieces(elements: usize, threads: usize) -> usize {
     if elements < WORTH_SHARING || threads < 2 {
         1

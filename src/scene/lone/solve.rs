@@ -1,349 +1,309 @@
 //! Reads lone elements and solves them. Nothing is written but their own rows and what has become of them.
 
+use super::alone::Alone;
 use super::{Given, Route, Way};
-use crate::backend::{Seen, Sight};
-use crate::dynamics::body::is_within;
-use crate::dynamics::element::rounding;
-use crate::dynamics::lanes::{LANES, Lanes};
-use crate::dynamics::moving::Moving;
-use crate::dynamics::nonlinear_pair::NonlinearPair;
-use crate::dynamics::pair::{Pair, Separation};
-use crate::dynamics::points::{Flight, FreePoint};
+use crate::backend::Sight;
+use crate::dynamics::lanes::{LANES, Lanes, Stride};
+use crate::dynamics::pair::plain_poles;
+use crate::dynamics::points::FreePoint;
+use crate::dynamics::poles::Poles;
 use crate::dynamics::tolerance::{Method, Outcome};
+use crate::input::check::Numbers;
 use crate::scene::rows::{BodyFlags, BodyRow, ElementFlags, ElementRow, Solved};
 use crate::scene::step::Step;
 
-/// How many are read before they are solved.
-const BATCH: usize = 2 * LANES;
-
-/// An element between reading and solving.
-struct Pending {
+/// An element that goes through the step in a lane beside others.
+#[derive(Clone, Copy)]
+struct InLane {
     /// Its place among those of the worker.
-    at: usize,
-    points: [FreePoint; 2],
-    /// Substeps beyond those of all of the bodies at both ends; none of an end that it does not move.
-    moves: [Option<usize>; 2],
-    pair: Pair,
-    start: Separation,
-    /// Energy at the start, where some is lost.
-    energy: Option<f64>,
-    /// It is solved in a lane beside others.
-    plain: bool,
+    at: u32,
+    /// It moves the body at each end.
+    moves: [bool; 2],
 }
 
 /// What reads and solves a piece of all lone elements, kept from step to step.
 #[derive(Default)]
 pub(crate) struct Worker {
-    pending: Vec<Pending>,
-    lanes: Vec<Lanes>,
-    plain: usize,
+    lanes: Lanes,
+    /// What is in its lanes.
+    taken: Vec<InLane>,
     /// Some body can be moved no more.
     pub stale: bool,
 }
 
-/// The bodies that a lone element moves, as they are; none at an end that it does not.
-type Ends = [Option<Seen>; 2];
+/// The step, as each lane takes it.
+#[derive(Clone, Copy)]
+pub(super) struct Pace {
+    pub(super) stride: Stride,
+    /// A micro-step, s.
+    micro: f64,
+    solved: Solved,
+}
+
+/// What is at an end of a lone element: a body that it moves, or a point that it does not.
+#[derive(Clone, Copy, Default)]
+struct Found {
+    point: FreePoint,
+    /// Substeps beyond those of all; none of what it does not move.
+    more: Option<usize>,
+    is_asleep: bool,
+    is_locked: bool,
+    can_touch: bool,
+    is_disturbed: bool,
+    speed_square: f32,
+    /// Largest coordinate of its place, m.
+    place: f32,
+}
+
+/// A piece of all lone elements.
+pub(crate) struct Piece<'a, S> {
+    /// Indices of their rows.
+    pub lone: &'a [u32],
+    /// The rows that they are among, and the index of the first of these.
+    pub rows: &'a mut [ElementRow],
+    pub first: usize,
+    pub bodies: &'a [BodyRow],
+    pub ways: &'a mut [Way],
+    pub sight: &'a S,
+}
+
+impl<S> Piece<'_, S> {
+    fn row(&mut self, at: usize) -> &mut ElementRow {
+        &mut self.rows[self.lone[at] as usize - self.first]
+    }
+}
 
 impl Worker {
-    /// Takes a piece through the step: elements with these indices, whose rows are these from the first one on.
-    pub(crate) fn solve(
-        &mut self,
-        step: &Step,
-        lone: &[u32],
-        (first, rows): (usize, &mut [ElementRow]),
-        bodies: &[BodyRow],
-        ways: &mut [Way],
-        sight: &impl Sight,
-    ) {
+    /// Takes a piece through the step.
+    pub(crate) fn solve(&mut self, step: &Step, mut piece: Piece<impl Sight>) {
         self.stale = false;
-        for (at, element) in lone.iter().enumerate() {
-            let row = &mut rows[*element as usize - first];
+        let pace = step.pace();
+        for at in 0..piece.lone.len() {
             let mut way = Way::default();
-            way.route = match self.read(step, at, row, bodies, &mut way, sight) {
+            way.route = match self.take(step, pace.as_ref(), at, &mut piece, &mut way) {
                 Ok(()) => Route::Solved,
                 Err(route) => route,
             };
-            ways[at] = way;
-            if self.pending.len() == BATCH {
-                self.finish(step, lone, (first, rows), ways);
+            piece.ways[at] = way;
+            if let Some(pace) = &pace
+                && self.taken.len() == LANES
+            {
+                self.finish(step, pace, &mut piece);
             }
         }
-        self.finish(step, lone, (first, rows), ways);
+        if let Some(pace) = &pace {
+            self.finish(step, pace, &mut piece);
+        }
     }
 
-    /// Reads an element, if it is an ordinary one.
+    /// Reads an element, and solves it or puts it into a lane.
     #[inline(always)]
-    fn read(
+    fn take(
         &mut self,
         step: &Step,
+        pace: Option<&Pace>,
         at: usize,
-        row: &mut ElementRow,
-        bodies: &[BodyRow],
+        piece: &mut Piece<impl Sight>,
         way: &mut Way,
-        sight: &impl Sight,
     ) -> Result<(), Route> {
+        let (bodies, sight) = (piece.bodies, piece.sight);
+        let row = piece.row(at);
         if row.has(ElementFlags::HELD) {
             return Err(Route::None);
         }
-        let seen = self.find_bodies(step, row, bodies, way, sight)?;
-        let mut points = [FreePoint::default(); 2];
-        for (end, point) in points.iter_mut().enumerate() {
-            *point = match (&seen[end], row.movable(end)) {
-                (Some(seen), _) if seen.is_locked => return Err(Route::General),
-                (Some(seen), Some(body)) => bodies[body].point(seen),
-                _ => {
-                    let [from, to] = step.path(&row.rare.held[end], sight);
-                    FreePoint {
-                        position: from,
-                        velocity: (to - from) / step.plan.time,
-                        ..FreePoint::default()
-                    }
-                }
-            };
+        if step.quiet && row.has(ElementFlags::DOZES) && sleeps(row, bodies, sight) {
+            return Err(Route::Asleep);
         }
-        let has_moved = step.has_moved(row, sight);
-        let Some((pair, start)) = pair_of(row, &points, has_moved) else {
-            return Err(Route::GeneralOnce);
-        };
-        way.disturbed = has_moved || row.has(ElementFlags::CHANGED);
-        let omega = (row.slope() * pair.inverse_mass).sqrt() as f32;
-        for (end, seen) in seen.iter().enumerate() {
-            if let Some(seen) = seen {
-                way.slow[end] = step.is_slow(seen, omega);
-                way.can_touch[end] = seen.can_touch;
-            }
+        let found = [
+            self.find(step, row, 0, bodies, sight)?,
+            self.find(step, row, 1, bodies, sight)?,
+        ];
+        let [a, b] = &found;
+        row.flags.remove(ElementFlags::DOZES);
+        way.disturbed = a.is_disturbed | b.is_disturbed | row.has(ElementFlags::CHANGED);
+        if a.is_asleep | b.is_asleep {
+            return Err(rests(step, row, &found, way.disturbed, sight));
+        }
+        if a.is_locked | b.is_locked {
+            return Err(Route::General);
+        }
+        if step.has_moved(row, sight) {
+            way.disturbed = true;
+            row.account_for_leap((b.point.position - a.point.position).length());
         }
         row.flags.insert(ElementFlags::ACTIVE);
         row.trouble.set_passing(None);
-        row.inverse_mass = pair.inverse_mass;
-        // What is lost is what its damper took: exact for a linear one at any damping.
-        let damped = row.is_damped();
-        let energy = damped.then(|| row.energy_of(&pair, &start, row.length));
-        let plain = self.put_in_lane(step, row, &pair, &start);
-        self.pending.push(Pending {
-            at,
-            points,
-            moves: seen.map(|seen| seen.map(|seen| seen.more_substeps)),
-            pair,
-            start,
-            energy,
-            plain,
-        });
-        Ok(())
-    }
-
-    /// The bodies that an element moves, if all of them are awake.
-    #[inline(always)]
-    fn find_bodies(
-        &mut self,
-        step: &Step,
-        row: &mut ElementRow,
-        bodies: &[BodyRow],
-        way: &mut Way,
-        sight: &impl Sight,
-    ) -> Result<Ends, Route> {
-        let on = [0, 1].map(|end| row.movable(end).map(|body| &bodies[body]));
-        if step.quiet && row.has(ElementFlags::DOZES) {
-            let sleeps = |body: &BodyRow| sight.is_asleep(body.id);
-            if on.into_iter().flatten().all(sleeps) {
-                return Err(Route::Asleep);
-            }
-        }
-        let mut sleepers = 0;
-        let mut found = [None; 2];
-        for (found, body) in found.iter_mut().zip(on) {
-            let Some(body) = body else { continue };
-            let Some(seen) = step.movable(sight, body.id, &mut self.stale) else {
-                row.flags.remove(ElementFlags::ACTIVE);
-                return Err(Route::Gone);
-            };
-            sleepers += usize::from(seen.is_asleep);
-            way.disturbed |= body.has(BodyFlags::DISTURBED);
-            *found = Some(seen);
-        }
-        row.flags.remove(ElementFlags::DOZES);
-        if sleepers == 0 {
-            return Ok(found);
-        }
-        let disturbed = way.disturbed || row.has(ElementFlags::CHANGED);
-        if sleepers < row.moves() || disturbed || step.has_moved(row, sight) {
-            return Err(Route::GeneralOnce);
-        }
-        let known = row.moves() == 2 && !row.is_any_watched();
-        row.flags.set(ElementFlags::DOZES, known);
-        row.flags.remove(ElementFlags::ACTIVE);
-        Err(Route::Asleep)
-    }
-
-    /// Has a linear element solved in a lane beside others, if it is plain; says whether.
-    #[inline(always)]
-    fn put_in_lane(
-        &mut self,
-        step: &Step,
-        row: &mut ElementRow,
-        pair: &Pair,
-        start: &Separation,
-    ) -> bool {
-        let count = step.accuracy.plain();
-        let Some(count) = count.filter(|_| row.law.is_none()) else {
-            return false;
-        };
-        let micro = step.plan.time / f64::from(count);
-        if !pair.is_plain(micro) {
-            return false;
-        }
-        let (at, lane) = (self.plain / LANES, self.plain % LANES);
-        if self.lanes.len() <= at {
-            self.lanes.push(Lanes::default());
-        }
-        self.lanes[at].take_in(lane, pair, start, micro, &mut row.memo);
-        self.plain += 1;
-        true
-    }
-
-    /// Solves what has been read.
-    fn finish(
-        &mut self,
-        step: &Step,
-        lone: &[u32],
-        (first, rows): (usize, &mut [ElementRow]),
-        ways: &mut [Way],
-    ) {
-        if let Some(count) = step.accuracy.plain() {
-            for lanes in &mut self.lanes[..self.plain.div_ceil(LANES)] {
-                lanes.run(step.plan.time, count);
-            }
-        }
-        let mut plain = 0;
-        for pending in &self.pending {
-            let row = &mut rows[lone[pending.at] as usize - first];
-            let together = pending.plain.then(|| {
-                let (at, lane) = (plain / LANES, plain % LANES);
-                plain += 1;
-                self.lanes[at].state(lane)
+        let inverse_mass = a.point.inverse_mass + b.point.inverse_mass;
+        let omega_square = (row.slope() * inverse_mass) as f32;
+        way.slow = [a, b].map(|end| step.may_rest(end.speed_square, end.place, omega_square));
+        way.can_touch = [a.can_touch, b.can_touch];
+        let points = [a.point, b.point];
+        let more = [a.more, b.more];
+        if let Some(pace) = pace.filter(|_| more.iter().flatten().all(|more| *more == 0))
+            && let Some((numbers, poles)) = plain(row, inverse_mass, pace)
+        {
+            row.inverse_mass = inverse_mass;
+            self.lanes
+                .take_in(self.taken.len(), &points, numbers, &poles);
+            self.taken.push(InLane {
+                at: at as u32,
+                moves: more.map(|more| more.is_some()),
             });
-            let (outcome, end, length) = match together.flatten() {
-                Some((end, length)) => (Outcome::plain(&step.accuracy), end, length),
-                None => {
-                    let (outcome, end) = alone(step, row, pending);
-                    (outcome, end, end.d.length())
+            return Ok(());
+        }
+        let alone = Alone { points, more };
+        if alone.solve(step, row, way) {
+            Ok(())
+        } else {
+            Err(Route::GeneralOnce)
+        }
+    }
+
+    /// What is at an end.
+    #[inline(always)]
+    fn find(
+        &mut self,
+        step: &Step,
+        row: &mut ElementRow,
+        end: usize,
+        bodies: &[BodyRow],
+        sight: &impl Sight,
+    ) -> Result<Found, Route> {
+        let Some(body) = row.movable(end) else {
+            let [from, to] = step.path(&row.rare.held[end], sight);
+            let point = FreePoint {
+                position: from,
+                velocity: (to - from) / step.plan.time,
+                ..FreePoint::default()
+            };
+            // It is slow whatever it does.
+            return Ok(Found {
+                point,
+                ..Found::default()
+            });
+        };
+        let body = &bodies[body];
+        let Some(seen) = step.movable(sight, body.id, &mut self.stale) else {
+            row.flags.remove(ElementFlags::ACTIVE);
+            return Err(Route::Gone);
+        };
+        Ok(Found {
+            point: body.point(&seen),
+            more: Some(seen.more_substeps),
+            is_asleep: seen.is_asleep,
+            is_locked: seen.is_locked,
+            can_touch: seen.can_touch,
+            is_disturbed: body.has(BodyFlags::DISTURBED),
+            speed_square: seen.velocity.length_squared(),
+            place: seen.origin.abs().max_element(),
+        })
+    }
+
+    /// Solves what is in the lanes.
+    fn finish(&mut self, step: &Step, pace: &Pace, piece: &mut Piece<impl Sight>) {
+        if self.taken.is_empty() {
+            return;
+        }
+        self.lanes.run(&pace.stride);
+        for (lane, taken) in self.taken.iter().enumerate() {
+            let at = taken.at as usize;
+            let way = &mut piece.ways[at];
+            let row = &mut piece.rows[piece.lone[at] as usize - piece.first];
+            let Some(reached) = self.lanes.way(lane) else {
+                let alone = Alone {
+                    points: self.lanes.points(lane),
+                    more: taken.moves.map(|moves| moves.then_some(0)),
+                };
+                if !alone.solve(step, row, way) {
+                    way.route = Route::GeneralOnce;
                 }
-            };
-            let way = &mut ways[pending.at];
-            let sound = end.d.is_finite() && end.v.is_finite();
-            if !(sound && arrive(step, row, pending, &end, way)) {
-                way.route = Route::GeneralOnce;
                 continue;
-            }
-            row.set_direction(end.direction);
-            row.solved = Solved {
-                method: Method::ClosedForm,
-                ..outcome.into()
             };
-            if let Some(before) = pending.energy {
-                row.ledger.dissipated += before - row.energy_of(&pending.pair, &end, length);
+            row.set_direction(Some(reached.direction));
+            row.length = reached.length;
+            row.solved = pace.solved;
+            if row.numbers.damping > 0.0 {
+                row.ledger.dissipated += reached.heat;
+            }
+            for end in 0..2 {
+                let push = self.lanes.push(lane, end);
+                if taken.moves[end] {
+                    way.given[end] = Given {
+                        velocity: push.velocity,
+                        force: push.force,
+                    };
+                } else {
+                    // What holds this end moves it against what the other end is given.
+                    row.ledger.work -= push.work;
+                }
             }
         }
-        self.pending.clear();
-        self.plain = 0;
+        self.taken.clear();
     }
 }
 
-/// The element and its motion; none where its direction or its law means nothing. Captures its rest length if need be.
+impl Step {
+    /// How lanes take the step; none if a step is not like any other.
+    pub(super) fn pace(&self) -> Option<Pace> {
+        let count = self.accuracy.plain()?;
+        if self.alike.is_some() || self.terms(0).second_substep {
+            return None;
+        }
+        Some(Pace {
+            stride: Stride {
+                schedule: self.schedule,
+                count,
+                fastest: self.plan.fastest,
+            },
+            micro: self.plan.time / f64::from(count),
+            solved: Solved {
+                method: Method::ClosedForm,
+                ..Outcome::plain(&self.accuracy).into()
+            },
+        })
+    }
+}
+
+/// Stiffness and rest length, and the poles of a linear element that a lane is for.
 #[inline(always)]
-fn pair_of(
+pub(super) fn plain(
     row: &mut ElementRow,
-    [a, b]: &[FreePoint; 2],
-    has_moved: bool,
-) -> Option<(Pair, Separation)> {
-    let (d, v) = (b.position - a.position, b.velocity - a.velocity);
-    let rounding = rounding(a.position, b.position);
-    let rest_length = row.numbers.rest_length.map(f64::from);
-    let coincide = d.length_squared() <= rounding * rounding;
-    if coincide && row.direction().is_none() && rest_length != Some(0.0) {
-        return None;
-    }
-    let length = d.length();
-    if has_moved {
-        row.account_for_leap(length);
-    }
-    row.length = length;
-    if !row.is_sound(v, d) {
-        return None;
-    }
-    let rest_length = rest_length.unwrap_or_else(|| {
-        row.numbers.rest_length = Some(length as f32);
-        row.flags.insert(ElementFlags::CAPTURED);
-        f64::from(length as f32)
-    });
-    let pair = Pair {
-        stiffness: f64::from(row.numbers.stiffness),
-        damping: f64::from(row.numbers.damping),
+    inverse_mass: f64,
+    pace: &Pace,
+) -> Option<([f64; 2], Poles)> {
+    let Numbers {
+        stiffness,
+        damping,
         rest_length,
-        inverse_mass: a.inverse_mass + b.inverse_mass,
-        outside: b.acceleration - a.acceleration,
-        rounding,
-    };
-    Some((pair, Separation::new(d, v, row.direction())))
+    } = row.numbers;
+    let rest_length = rest_length.filter(|rest| row.law.is_none() && *rest > 0.0)?;
+    let [stiffness, damping, rest_length] = [stiffness, damping, rest_length].map(f64::from);
+    let both = [stiffness, damping];
+    let poles = plain_poles(both, inverse_mass, pace.micro, &mut row.memo)?;
+    Some(([stiffness, rest_length], poles))
 }
 
-/// Solves one by itself.
-fn alone(step: &Step, row: &mut ElementRow, pending: &Pending) -> (Outcome, Separation) {
-    let time = step.plan.time;
-    let Pending { pair, start, .. } = pending;
-    let controller = &mut row.rare.controller;
-    match &row.law {
-        None => {
-            let mut moving = Moving::new(pair, *start, &mut row.memo);
-            let outcome = controller.drive(&mut moving, time, step.accuracy);
-            (outcome, moving.state)
-        }
-        Some(law) => {
-            let mut moving = NonlinearPair::new(pair, law, *start, &mut row.memo);
-            let outcome = controller.drive(&mut moving, time, step.accuracy);
-            (outcome, moving.state)
-        }
-    }
+/// Whether all bodies that an element moves are asleep.
+fn sleeps(row: &ElementRow, bodies: &[BodyRow], sight: &impl Sight) -> bool {
+    row.all_movable()
+        .all(|body| sight.is_asleep(bodies[body].id))
 }
 
-/// Finds what both bodies are to be given; false if one of them would fly faster than the engine lets it.
-#[inline(always)]
-fn arrive(
+/// The route of an element with a body that is asleep.
+#[cold]
+fn rests(
     step: &Step,
     row: &mut ElementRow,
-    pending: &Pending,
-    end: &Separation,
-    way: &mut Way,
-) -> bool {
-    let time = step.plan.time;
-    let Pending { pair, start, .. } = pending;
-    // What the element adds to the free motion of the separation.
-    let moved = end.d - start.d - time * (start.v + 0.5 * time * pair.outside);
-    let sped = end.v - start.v - time * pair.outside;
-    let mut work = 0.0;
-    for (end, point) in pending.points.iter().enumerate() {
-        let sign = if end == 0 { -1.0 } else { 1.0 };
-        let Some(more) = pending.moves[end] else {
-            // What holds this end moves it against what the other end is given.
-            work -= (sign / pair.inverse_mass * sped).dot(point.velocity);
-            continue;
-        };
-        let share = sign * point.inverse_mass / pair.inverse_mass;
-        let pulled = time * point.acceleration;
-        let flight = Flight {
-            moved: time * (point.velocity + 0.5 * pulled) + share * moved,
-            velocity: point.velocity + pulled + share * sped,
-        };
-        if !is_within(flight.moved, flight.velocity, step.plan.fastest, time) {
-            return false;
-        }
-        let push = step.push_point(more, point, &flight);
-        way.given[end] = Given {
-            velocity: push.velocity.unwrap_or_default(),
-            force: push.share.force,
-        };
-        way.second_substep |= push.second_substep;
+    found: &[Found; 2],
+    disturbed: bool,
+    sight: &impl Sight,
+) -> Route {
+    let awake = found.iter().any(|end| end.more.is_some() && !end.is_asleep);
+    if awake || disturbed || step.has_moved(row, sight) {
+        return Route::GeneralOnce;
     }
-    row.ledger.work += work;
-    true
+    let known = row.moves() == 2 && !row.is_any_watched();
+    row.flags.set(ElementFlags::DOZES, known);
+    row.flags.remove(ElementFlags::ACTIVE);
+    Route::Asleep
 }

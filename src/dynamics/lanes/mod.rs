@@ -1,0 +1,271 @@
+//! Four lone elements at a time, from their bodies' places to what these are to be given: to the last bit what
+//! [`super::moving`] and [`super::delivery`] make of each. One after the other they would wait for their roots and divisions.
+
+mod run;
+mod vectors;
+
+use super::delivery::Schedule;
+use super::points::FreePoint;
+use super::poles::Poles;
+use bevy::math::{DVec3, Vec3};
+use run::{Reached, Run};
+pub(crate) use vectors::LANES;
+use vectors::{Each, EachVector, Vectors, all, get, put, rounding};
+use wide::{CmpGe, CmpLe, f64x4};
+
+/// Numbers of four elements.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Lanes {
+    ends: [Ends; 2],
+    /// N/m.
+    stiffness: Each,
+    /// m.
+    rest_length: Each,
+    poles: [Each; 4],
+    reached: Outcome,
+}
+
+/// Four points at one end of them each.
+#[derive(Clone, Debug, Default)]
+struct Ends {
+    position: EachVector,
+    velocity: EachVector,
+    acceleration: EachVector,
+    inverse_mass: Each,
+}
+
+/// What has become of the four.
+#[derive(Clone, Debug, Default)]
+struct Outcome {
+    direction: EachVector,
+    length: Each,
+    /// Energy lost, J.
+    heat: Each,
+    given: [Pushes; 2],
+    /// Lanes in which nothing special was met, bit by bit.
+    plain: u32,
+}
+
+/// What four ends are to be given: a velocity at the start of the step, and a force over it.
+#[derive(Clone, Debug, Default)]
+struct Pushes {
+    velocity: EachVector,
+    force: EachVector,
+    /// Work of the point on its element, where that does not move it, J.
+    work: Each,
+}
+
+/// What has become of one.
+pub(crate) struct Way {
+    pub direction: DVec3,
+    pub length: f64,
+    /// Energy lost, J.
+    pub heat: f64,
+}
+
+/// What one of its ends is to be given.
+pub(crate) struct EndPush {
+    pub velocity: Vec3,
+    pub force: Vec3,
+    /// Work of the point on the element, where that does not move it, J.
+    pub work: f64,
+}
+
+/// The step that all four take.
+#[derive(Clone, Copy)]
+pub(crate) struct Stride {
+    pub schedule: Schedule,
+    /// Micro-steps.
+    pub count: u32,
+    /// The engine's cap on speeds, m/s.
+    pub fastest: f64,
+}
+
+impl Lanes {
+    /// Takes one in. It has a rest length above zero, its step is resolved and no strong damper in it: see
+    /// `Pair::is_plain`.
+    #[inline(always)]
+    pub(crate) fn take_in(
+        &mut self,
+        lane: usize,
+        points: &[FreePoint; 2],
+        [stiffness, rest_length]: [f64; 2],
+        poles: &Poles,
+    ) {
+        for (ends, point) in self.ends.iter_mut().zip(points) {
+            put(&mut ends.position, lane, point.position);
+            put(&mut ends.velocity, lane, point.velocity);
+            put(&mut ends.acceleration, lane, point.acceleration);
+            ends.inverse_mass[lane] = point.inverse_mass;
+        }
+        self.stiffness[lane] = stiffness;
+        self.rest_length[lane] = rest_length;
+        let Poles {
+            restoring,
+            loss,
+            speed,
+            skew,
+        } = *poles;
+        let poles = [restoring, loss, speed, skew];
+        for (each, pole) in self.poles.iter_mut().zip(poles) {
+            each[lane] = pole;
+        }
+    }
+
+    /// The points that were taken in.
+    pub(crate) fn points(&self, lane: usize) -> [FreePoint; 2] {
+        self.ends.each_ref().map(|ends| FreePoint {
+            position: get(&ends.position, lane),
+            velocity: get(&ends.velocity, lane),
+            acceleration: get(&ends.acceleration, lane),
+            inverse_mass: ends.inverse_mass[lane],
+        })
+    }
+
+    /// What has become of one; none if that is not for here: its ends met on the way, or the engine would not fly a body so
+    /// fast.
+    #[inline(always)]
+    pub(crate) fn way(&self, lane: usize) -> Option<Way> {
+        let Outcome {
+            direction,
+            length,
+            heat,
+            plain,
+            ..
+        } = &self.reached;
+        (plain & (1 << lane) != 0).then(|| Way {
+            direction: get(direction, lane),
+            length: length[lane],
+            heat: heat[lane],
+        })
+    }
+
+    /// What one of its ends is to be given.
+    #[inline(always)]
+    pub(crate) fn push(&self, lane: usize, end: usize) -> EndPush {
+        let Pushes {
+            velocity,
+            force,
+            work,
+        } = &self.reached.given[end];
+        EndPush {
+            velocity: get(velocity, lane).as_vec3(),
+            force: get(force, lane).as_vec3(),
+            work: work[lane],
+        }
+    }
+
+    /// Takes all of them over the step.
+    pub(crate) fn run(&mut self, stride: &Stride) {
+        let time = stride.schedule.time;
+        let [a, b] = self.ends.each_ref().map(Loaded::of);
+        let d = b.position.minus(a.position);
+        let v = b.velocity.minus(a.velocity);
+        let outside = b.acceleration.minus(a.acceleration);
+        let inverse_mass = a.inverse_mass + b.inverse_mass;
+        let [stiffness, rest_length] = [self.stiffness, self.rest_length].map(f64x4::new);
+        let stored = |length: f64x4| {
+            let stretch = length - rest_length;
+            all(0.5) * stiffness * stretch * stretch
+        };
+        let energy = |d: Vectors, v: Vectors, length: f64x4| {
+            stored(length) + (all(0.5) * v.dot(v) - outside.dot(d)) / inverse_mass
+        };
+        let length = d.length();
+        let run = Run {
+            step: time / f64::from(stride.count),
+            count: stride.count,
+            outside,
+            rest_length,
+            square: stiffness * inverse_mass,
+            poles: self.poles.map(f64x4::new),
+            rounding: rounding(a.position, b.position),
+        };
+        let end = run.go(d, v, length);
+        let heat = energy(d, v, length) - energy(end.d, end.v, end.length);
+        // What the element adds to the free motion of the separation.
+        let all_time = all(time);
+        let drifted = v.plus(outside.times(all(0.5 * time)));
+        let moved = end.d.minus(d).minus(drifted.times(all_time));
+        let sped = end.v.minus(v).minus(outside.times(all_time));
+        let Reached {
+            side, length, met, ..
+        } = end;
+        let mut odd = met;
+        for (i, (ends, sign)) in [(a, -1.0), (b, 1.0)].into_iter().enumerate() {
+            let share = all(sign) * ends.inverse_mass / inverse_mass;
+            let way = [moved.times(share), sped.times(share)];
+            let (pushes, too_fast) = ends.push(way, stride);
+            self.reached.given[i] = pushes;
+            self.reached.given[i].work = sped
+                .times(all(sign) / inverse_mass)
+                .dot(ends.velocity)
+                .to_array();
+            odd |= too_fast;
+        }
+        self.reached.direction = side.store();
+        self.reached.length = length.to_array();
+        self.reached.heat = heat.to_array();
+        self.reached.plain = !odd.move_mask() as u32;
+    }
+}
+
+/// Four points at one end.
+#[derive(Clone, Copy)]
+struct Loaded {
+    position: Vectors,
+    velocity: Vectors,
+    acceleration: Vectors,
+    inverse_mass: f64x4,
+}
+
+impl Loaded {
+    fn of(ends: &Ends) -> Self {
+        Self {
+            position: Vectors::load(&ends.position),
+            velocity: Vectors::load(&ends.velocity),
+            acceleration: Vectors::load(&ends.acceleration),
+            inverse_mass: f64x4::new(ends.inverse_mass),
+        }
+    }
+
+    /// What takes them along, if elements add so much to where they go and how fast they are then; and in which lanes they
+    /// would be faster than the engine lets them. See `is_within` and [`Schedule::reach`].
+    #[inline(always)]
+    fn push(&self, [moved, sped]: [Vectors; 2], stride: &Stride) -> (Pushes, f64x4) {
+        let Stride {
+            schedule, fastest, ..
+        } = stride;
+        let time = all(schedule.time);
+        let pulled = self.acceleration.times(time);
+        let straight = self.velocity.plus(pulled.times(all(0.5)));
+        let moved = straight.times(time).plus(moved);
+        let reached = self.velocity.plus(pulled).plus(sped);
+        let first = moved.times(all(2.0 / schedule.time)).minus(reached);
+        let cap = all(fastest * fastest);
+        // Numbers that are none are beyond it too.
+        let beyond = |v: Vectors| !v.dot(v).cmp_le(cap);
+        let mut odd = beyond(first) | beyond(reached);
+        let displacement = moved.minus(self.velocity.times(time));
+        let change = reached.minus(self.velocity);
+        let (reach, per_rest) = schedule.spread();
+        let jump = displacement.minus(change.times(all(reach)));
+        let jump = jump.times(all(per_rest));
+        let rate = change.minus(jump).times(all(schedule.per_time));
+        let begun = self.velocity.plus(jump);
+        odd |= beyond(begun.plus(rate.times(all(schedule.substep))));
+        odd |= beyond(begun.plus(rate.times(time)));
+        let given = begun.rounded();
+        // The engine's velocity is rounded; the force makes up for it.
+        let rate = rate.plus(begun.minus(given).times(all(schedule.per_time)));
+        let force = rate.minus(self.acceleration).over(self.inverse_mass);
+        let pushes = Pushes {
+            velocity: given.store(),
+            force: force.store(),
+            work: [0.0; LANES],
+        };
+        // What nothing moves here, nothing flies too fast.
+        let moves = self.inverse_mass.cmp_ge(all(f64::MIN_POSITIVE));
+        (pushes, odd & moves)
+    }
+}

@@ -1,0 +1,153 @@
+//! In a lane beside others, an element goes as it would alone.
+
+use super::alone::Alone;
+use super::solve::{Pace, plain};
+use super::{Given, Way};
+use crate::backend::StepPlan;
+use crate::dynamics::lanes::{LANES, Lanes};
+use crate::dynamics::points::FreePoint;
+use crate::dynamics::tolerance::Accuracy;
+use crate::input::check::Numbers;
+use crate::scene::rows::ElementRow;
+use crate::scene::step::Step;
+use bevy::math::{DVec3, Vec3};
+use bevy::prelude::Entity;
+
+/// A step in so many micro-steps.
+fn step(microsteps: u32) -> Step {
+    let plan = StepPlan {
+        time: 1.0 / 60.0,
+        calls: 1,
+        substeps: 4,
+        fastest: 400.0,
+        farthest_turn: 0.8,
+        length_unit: 1.0,
+    };
+    Step {
+        plan,
+        schedule: plan.schedule(plan.substeps),
+        accuracy: Accuracy {
+            microsteps,
+            resolve: 0,
+            extrapolate: false,
+            tolerance: None,
+            max_microsteps: 256,
+            max_iterations: 200,
+        },
+        most_substeps: 64,
+        alike: None,
+        quiet: false,
+        tick: 1,
+        delivered: false.into(),
+    }
+}
+
+/// Numbers between 0 and 1, the same in each run.
+struct Dice(u64);
+
+impl Dice {
+    fn number(&mut self) -> f64 {
+        self.0 = self
+            .0
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1);
+        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    fn vector(&mut self, size: f64) -> DVec3 {
+        let mut each = || size * (self.number() - 0.5);
+        DVec3::new(each(), each(), each())
+    }
+
+    /// As the engine has it.
+    fn rounded(&mut self, size: f64) -> DVec3 {
+        self.vector(size).as_vec3().as_dvec3()
+    }
+
+    /// An element, and its two ends; one of some elements does not move.
+    fn element(&mut self, lane: usize) -> (ElementRow, [FreePoint; 2], [bool; 2]) {
+        let mut row = ElementRow::new(Entity::PLACEHOLDER);
+        row.numbers = Numbers {
+            stiffness: (900.0 * self.number()) as f32,
+            damping: (4.0 * (self.number() - 0.3).max(0.0)) as f32,
+            rest_length: Some((0.1 + self.number()) as f32),
+        };
+        let moves = [lane != 1, true];
+        // Some are fast enough to leave the engine's bounds.
+        let speed = if self.number() < 0.02 { 900.0 } else { 20.0 };
+        let place = self.rounded(100.0);
+        let apart = self.rounded(if lane == 3 { 0.2 } else { 2.0 });
+        let points = [0.0, 1.0].map(|end| FreePoint {
+            position: place + end * apart,
+            velocity: self.rounded(speed),
+            acceleration: self.vector(20.0) * f64::from(lane as u32 % 2),
+            inverse_mass: if moves[end as usize] {
+                0.1 + 4.0 * self.number()
+            } else {
+                0.0
+            },
+        });
+        (row, points, moves)
+    }
+}
+
+fn bits(given: &Given) -> [[u32; 3]; 2] {
+    [given.velocity, given.force].map(|v: Vec3| v.to_array().map(f32::to_bits))
+}
+
+#[test]
+fn each_goes_as_it_would_alone_bit_for_bit() {
+    let mut dice = Dice(1);
+    let (mut odd, mut compared) = (0, 0);
+    for microsteps in [1, 2, 4, 16].repeat(400) {
+        let step = step(microsteps);
+        let pace: Pace = step.pace().expect("a plain step");
+        let mut some: [_; LANES] = std::array::from_fn(|lane| dice.element(lane));
+        let mut lanes = Lanes::default();
+        for (lane, (row, points, _)) in some.iter_mut().enumerate() {
+            let inverse_mass = points[0].inverse_mass + points[1].inverse_mass;
+            let (numbers, poles) = plain(row, inverse_mass, &pace).expect("nothing special");
+            lanes.take_in(lane, points, numbers, &poles);
+        }
+        lanes.run(&pace.stride);
+        for (lane, (mut row, points, moves)) in some.into_iter().enumerate() {
+            assert_eq!(
+                lanes.points(lane).map(|p| p.position),
+                points.map(|p| p.position)
+            );
+            let more = moves.map(|moves| moves.then_some(0));
+            let mut way = Way::default();
+            let before = row.ledger;
+            let solved = Alone { points, more }.solve(&step, &mut row, &mut way);
+            let Some(reached) = lanes.way(lane) else {
+                odd += 1;
+                continue;
+            };
+            assert!(solved, "lane {lane}");
+            compared += 1;
+            assert_eq!(row.direction(), Some(reached.direction), "lane {lane}");
+            for end in 0..2 {
+                let push = lanes.push(lane, end);
+                if moves[end] {
+                    let given = Given {
+                        velocity: push.velocity,
+                        force: push.force,
+                    };
+                    assert_eq!(bits(&way.given[end]), bits(&given), "lane {lane}");
+                } else {
+                    assert_eq!(
+                        row.ledger.work.to_bits(),
+                        (before.work - push.work).to_bits()
+                    );
+                }
+            }
+            if row.is_damped() {
+                assert_eq!(row.ledger.dissipated.to_bits(), reached.heat.to_bits());
+            }
+        }
+    }
+    assert!(
+        (20..compared / 4).contains(&odd),
+        "{odd} odd ones among {compared}"
+    );
+}
