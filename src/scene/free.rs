@@ -94,7 +94,7 @@ impl Scene {
         spare: &mut Spare,
     ) -> bool {
         let lone = &self.lone[lone].elements;
-        spare.ways.clear();
+        // Each is written anew.
         spare.ways.resize(lone.len(), Way::default());
         let count = pieces(lone.len(), threads::count());
         let each = lone.len().div_ceil(count).max(1);

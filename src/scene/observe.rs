@@ -114,7 +114,8 @@ impl ElementRow {
     /// Finds its length and rate after the step, and notes where its ends are.
     fn observe(&mut self, bodies: &[BodyRow], eyes: &Eyes<impl Worlds>) {
         let led = self.moves() == 0 && self.rare.places[0].is_some();
-        let points = [0, 1].map(|end| self.point(end, bodies, eyes));
+        // Each by itself, not as an array that is filled: this is asked of every element.
+        let points = [self.point(0, bodies, eyes), self.point(1, bodies, eyes)];
         if self.numbers.rest_length.is_none() {
             // No movable body: it took no part in the solve.
             let length = self.extent(points, eyes.worlds).0;

@@ -67,24 +67,16 @@ pub(crate) struct Piece<'a, S> {
     pub sight: &'a S,
 }
 
-impl<S> Piece<'_, S> {
-    fn row(&mut self, at: usize) -> &mut ElementRow {
-        &mut self.rows[self.lone[at] as usize - self.first]
-    }
-}
-
 impl Worker {
     /// Takes a piece through the step.
     pub(crate) fn solve(&mut self, step: &Step, mut piece: Piece<impl Sight>) {
         self.stale = false;
         let pace = step.pace();
         for at in 0..piece.lone.len() {
-            let mut way = Way::default();
-            way.route = match self.take(step, pace.as_ref(), at, &mut piece, &mut way) {
+            piece.ways[at].route = match self.take(step, pace.as_ref(), at, &mut piece) {
                 Ok(()) => Route::Solved,
                 Err(route) => route,
             };
-            piece.ways[at] = way;
             if let Some(pace) = &pace
                 && self.taken.len() == LANES
             {
@@ -104,10 +96,10 @@ impl Worker {
         pace: Option<&Pace>,
         at: usize,
         piece: &mut Piece<impl Sight>,
-        way: &mut Way,
     ) -> Result<(), Route> {
         let (bodies, sight) = (piece.bodies, piece.sight);
-        let row = piece.row(at);
+        let row = &mut piece.rows[piece.lone[at] as usize - piece.first];
+        let way = &mut piece.ways[at];
         if row.has(ElementFlags::HELD) {
             return Err(Route::None);
         }
@@ -135,8 +127,11 @@ impl Worker {
         row.trouble.set_passing(None);
         let inverse_mass = a.point.inverse_mass + b.point.inverse_mass;
         let omega_square = (row.slope() * inverse_mass) as f32;
-        way.slow = [a, b].map(|end| step.may_rest(end.speed_square, end.place, omega_square));
-        way.can_touch = [a.can_touch, b.can_touch];
+        for (end, found) in [a, b].into_iter().enumerate() {
+            way.slow[end] = step.may_rest(found.speed_square, found.place, omega_square);
+            way.can_touch[end] = found.can_touch;
+        }
+        way.second_substep = false;
         let points = [a.point, b.point];
         let more = [a.more, b.more];
         if let Some(pace) = pace.filter(|_| more.iter().flatten().all(|more| *more == 0))

@@ -138,6 +138,7 @@ impl Scene {
             bodies,
             groups,
             changed,
+            touch_changed,
             ..
         } = self;
         let members = groups.members(&groups.list()[g]);
@@ -160,6 +161,7 @@ impl Scene {
             if (row.flags.intersects(tangible) || around.any_joints)
                 && let Some(body) = engine.bodies.get_mut(handle(row.id))
             {
+                *touch_changed |= row.notice_colliders(!body.colliders().is_empty());
                 held |= around.look(row, body, step.plan.time, push);
                 stiff |= look_ahead(row, body, time);
             }

@@ -151,8 +151,6 @@ impl<'a> Surroundings<'a> {
     /// Looks what holds a body at the start of a step of `time` seconds; says whether anything does, or did a moment ago.
     /// `push` is how much faster springs can make it in the step, m/s.
     pub(crate) fn look(&self, row: &mut BodyRow, body: &RapierBody, time: f64, push: f32) -> bool {
-        let flags = &mut row.flags;
-        flags.set(BodyFlags::CAN_TOUCH, !body.colliders().is_empty());
         let handle = body::handle(row.id);
         let jointed = self.is_jointed(handle);
         let (touched, pressed) = self.touch(body, time);
