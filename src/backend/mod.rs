@@ -22,6 +22,14 @@ pub(crate) struct BodyId {
     pub generation: u32,
 }
 
+impl BodyId {
+    /// No body.
+    pub(crate) const NONE: Self = Self {
+        index: u32::MAX,
+        generation: u32::MAX,
+    };
+}
+
 /// What an engine calls one of its joints.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]

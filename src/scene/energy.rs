@@ -59,7 +59,7 @@ impl ElementRow {
     /// Energy of a lone element's motion about the common centre of mass, in the outside forces, and stored.
     pub(crate) fn energy_of(&self, pair: &Pair, state: &Separation, length: f64) -> f64 {
         let motion = 0.5 * state.v.length_squared() - pair.outside.dot(state.d);
-        self.elastic(length).energy + motion / pair.inverse_mass
+        self.elastic(length).energy + motion * pair.inverse_mass.recip()
     }
 
     /// Whether a law of a user's own gives numbers, for ends that are and move apart like this.

@@ -3,7 +3,6 @@
 use crate::backend::{Engine, Sight};
 use crate::scene::assembly::Assembly;
 use crate::scene::lone::{Lone, Piece, Route, Way, Worker, pieces};
-use crate::scene::rows::{BodyRow, ElementRow};
 use crate::scene::state::Scene;
 use crate::scene::step::Step;
 use crate::scene::threads;
@@ -93,7 +92,7 @@ impl Scene {
         sight: &impl Sight,
         spare: &mut Spare,
     ) -> bool {
-        let lone = &self.lone[lone].elements;
+        let lone = &self.lone[lone].pairs;
         // Each is written anew.
         spare.ways.resize(lone.len(), Way::default());
         let count = pieces(lone.len(), threads::count());
@@ -105,7 +104,7 @@ impl Scene {
         let parts = lone.chunks(each).zip(spare.ways.chunks_mut(each));
         let parts = parts.zip(&mut spare.workers).map(|((lone, ways), worker)| {
             // The rows of this piece, cut off the rest.
-            let end = lone.last().map_or(first, |last| *last as usize + 1);
+            let end = lone.last().map_or(first, |last| last.element as usize + 1);
             let (own, others) = take(&mut rows).split_at_mut(end - first);
             rows = others;
             let piece = Piece {
@@ -133,13 +132,13 @@ impl Scene {
         spare: &mut Spare,
     ) -> usize {
         spare.groups.clear();
-        let Some(lone) = lone.map(|lone| &self.lone[lone].elements) else {
+        let Some(lone) = lone.map(|lone| &self.lone[lone].pairs) else {
             return 0;
         };
         let general = |way: &Way| matches!(way.route, Route::General | Route::GeneralOnce);
         let ways = lone.iter().zip(&spare.ways);
-        for (element, _) in ways.filter(|(_, way)| general(way)) {
-            let Some(group) = group_of(*element, &self.elements, &self.bodies) else {
+        for (pair, _) in ways.filter(|(_, way)| general(way)) {
+            let Some(group) = pair.group(&self.bodies) else {
                 continue;
             };
             let at = spare.groups.len();
@@ -158,27 +157,21 @@ impl Scene {
 
     /// Gives lone elements an assembly of their own that will need the general solver again.
     fn promote(&mut self, lone: Option<usize>, ways: &[Way]) {
-        let Some(Lone { elements: lone, .. }) = lone.map(|lone| &mut self.lone[lone]) else {
+        let Some(Lone { pairs, .. }) = lone.map(|lone| &mut self.lone[lone]) else {
             return;
         };
         if ways.iter().all(|way| way.route != Route::General) {
             return;
         }
         let mut ways = ways.iter();
-        lone.retain(|element| {
+        pairs.retain(|pair| {
             let stays = ways.next().is_none_or(|way| way.route != Route::General);
-            if !stays && let Some(group) = group_of(*element, &self.elements, &self.bodies) {
+            if !stays && let Some(group) = pair.group(&self.bodies) {
                 self.groups.promote(group as usize, &mut self.assemblies);
             }
             stays
         });
     }
-}
-
-/// Index of the component of an element.
-fn group_of(element: u32, elements: &[ElementRow], bodies: &[BodyRow]) -> Option<u32> {
-    let body = elements[element as usize].all_movable().next()?;
-    Some(bodies[body].rare.group)
 }
 
 /// Integrates all assemblies, on several threads where that is worth it; each is on its own, so the

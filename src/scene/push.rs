@@ -57,7 +57,7 @@ impl Step {
             velocity: Some(velocity),
             spin: None,
             share: Wrench {
-                force: ((rate - point.acceleration) / point.inverse_mass).as_vec3(),
+                force: (point.inverse_mass.recip() * (rate - point.acceleration)).as_vec3(),
                 torque: Vec3::ZERO,
             },
             second_substep: terms.second_substep,

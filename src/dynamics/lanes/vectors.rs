@@ -59,12 +59,6 @@ impl Vectors {
         a * x + b * y + c * z
     }
 
-    /// Divided by one number in each lane.
-    pub(super) fn over(self, by: f64x4) -> Self {
-        let [a, b, c] = self.0;
-        Self([a / by, b / by, c / by])
-    }
-
     /// Rounded to single precision.
     pub(super) fn rounded(self) -> Self {
         let each = |x: f64x4| f64x4::new(x.to_array().map(|x| f64::from(x as f32)));

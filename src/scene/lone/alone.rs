@@ -60,15 +60,16 @@ impl Alone {
         // What the element adds to the free motion of the separation.
         let moved = end.d - start.d - time * (start.v + 0.5 * time * pair.outside);
         let sped = end.v - start.v - time * pair.outside;
+        let mass = pair.inverse_mass.recip();
         let mut work = 0.0;
         for (end, point) in self.points.iter().enumerate() {
             let sign = if end == 0 { -1.0 } else { 1.0 };
             let Some(more) = self.more[end] else {
                 // What holds this end moves it against what the other end is given.
-                work -= (sign / pair.inverse_mass * sped).dot(point.velocity);
+                work -= (sign * mass * sped).dot(point.velocity);
                 continue;
             };
-            let share = sign * point.inverse_mass / pair.inverse_mass;
+            let share = sign * point.inverse_mass * mass;
             let pulled = time * point.acceleration;
             let flight = Flight {
                 moved: time * (point.velocity + 0.5 * pulled) + share * moved,

@@ -20,23 +20,25 @@ impl Lone {
     ) -> bool {
         let mut touch_changed = false;
         let mut delivered = false;
-        let solved = self.elements.iter().zip(ways);
-        for (element, way) in solved.filter(|(_, way)| way.route == Route::Solved) {
-            let row = &elements[*element as usize];
+        let solved = self.pairs.iter().zip(ways);
+        for (pair, way) in solved.filter(|(_, way)| way.route == Route::Solved) {
             let mut restless = way.disturbed;
-            for (end, body) in row.movable_ends() {
+            let ends = [0, 1].into_iter();
+            let ends = ends.filter_map(|end| Some((end, pair.movable(end)?.0)));
+            for (end, body) in ends.clone() {
                 let body = &mut bodies[body];
                 touch_changed |= body.notice_colliders(way.can_touch[end]);
                 body.flags.remove(BodyFlags::DISTURBED);
                 restless |= if way.slow[end] {
                     let seen = engine.see(body.id);
-                    seen.is_none_or(|seen| step.is_restless(body, &seen, omega_of(row), engine))
+                    let omega = omega_of(&elements[pair.element as usize]);
+                    seen.is_none_or(|seen| step.is_restless(body, &seen, omega, engine))
                 } else {
                     body.flags.remove(BodyFlags::RESTS);
                     true
                 };
             }
-            for (end, body) in row.movable_ends() {
+            for (end, body) in ends {
                 let body = &mut bodies[body];
                 body.give_alone(
                     &way.given[end],

@@ -11,6 +11,7 @@ mod solve;
 mod tests;
 
 use super::rows::{BodyRow, ElementFlags, ElementRow};
+use crate::backend::BodyId;
 use bevy::math::Vec3;
 use bevy::prelude::Entity;
 pub(crate) use solve::{Piece, Worker};
@@ -18,8 +19,51 @@ pub(crate) use solve::{Piece, Worker};
 /// The lone elements of a world of the engine.
 pub(crate) struct Lone {
     pub context: Entity,
-    /// Indices of their rows, from the least on.
-    pub elements: Vec<u32>,
+    /// In the order of their rows.
+    pub pairs: Vec<Pair>,
+}
+
+/// One lone element, and what it moves. All that is needed of it to begin to read; what is read next is known soon enough to
+/// come from memory in time.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Pair {
+    /// Index of its row.
+    pub element: u32,
+    /// Indices of the rows of the bodies that it moves, or [`NONE`],
+    bodies: [u32; 2],
+    /// and what the engine calls those.
+    ids: [BodyId; 2],
+}
+
+/// No body.
+const NONE: u32 = u32::MAX;
+
+impl Pair {
+    fn of(index: usize, row: &ElementRow, bodies: &[BodyRow]) -> Self {
+        let mut pair = Self {
+            element: index as u32,
+            bodies: [NONE; 2],
+            ids: [BodyId::NONE; 2],
+        };
+        for (end, body) in row.movable_ends() {
+            pair.bodies[end] = body as u32;
+            pair.ids[end] = bodies[body].id;
+        }
+        pair
+    }
+
+    /// Index of the row of the body that it moves at an end, and what the engine calls that.
+    #[inline(always)]
+    pub(crate) fn movable(&self, end: usize) -> Option<(usize, BodyId)> {
+        let body = self.bodies[end];
+        (body != NONE).then_some((body as usize, self.ids[end]))
+    }
+
+    /// Index of its component.
+    pub(crate) fn group(&self, bodies: &[BodyRow]) -> Option<u32> {
+        let body = self.movable(0).or(self.movable(1))?;
+        Some(bodies[body.0].rare.group)
+    }
 }
 
 /// How a lone element goes through the step.
@@ -95,11 +139,11 @@ pub(crate) fn list(
         let context = bodies[body].rare.context;
         let of = all.iter().position(|lone| lone.context == context);
         let of = of.unwrap_or_else(|| {
-            let elements = Vec::new();
-            all.push(Lone { context, elements });
+            let pairs = Vec::new();
+            all.push(Lone { context, pairs });
             all.len() - 1
         });
-        all[of].elements.push(index as u32);
+        all[of].pairs.push(Pair::of(index, row, bodies));
     }
     all
 }

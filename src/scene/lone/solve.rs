@@ -1,7 +1,7 @@
 //! Reads lone elements and solves them. Nothing is written but their own rows and what has become of them.
 
 use super::alone::Alone;
-use super::{Given, Route, Way};
+use super::{Given, Pair, Route, Way};
 use crate::backend::Sight;
 use crate::dynamics::lanes::{LANES, Lanes, Stride};
 use crate::dynamics::pair::plain_poles;
@@ -57,8 +57,7 @@ struct Found {
 
 /// A piece of all lone elements.
 pub(crate) struct Piece<'a, S> {
-    /// Indices of their rows.
-    pub lone: &'a [u32],
+    pub lone: &'a [Pair],
     /// The rows that they are among, and the index of the first of these.
     pub rows: &'a mut [ElementRow],
     pub first: usize,
@@ -98,7 +97,8 @@ impl Worker {
         piece: &mut Piece<impl Sight>,
     ) -> Result<(), Route> {
         let (bodies, sight) = (piece.bodies, piece.sight);
-        let row = &mut piece.rows[piece.lone[at] as usize - piece.first];
+        let pair = &piece.lone[at];
+        let row = &mut piece.rows[pair.element as usize - piece.first];
         let way = &mut piece.ways[at];
         if row.has(ElementFlags::HELD) {
             return Err(Route::None);
@@ -107,8 +107,8 @@ impl Worker {
             return Err(Route::Asleep);
         }
         let found = [
-            self.find(step, row, 0, bodies, sight)?,
-            self.find(step, row, 1, bodies, sight)?,
+            self.find(step, row, pair, 0, bodies, sight)?,
+            self.find(step, row, pair, 1, bodies, sight)?,
         ];
         let [a, b] = &found;
         row.flags.remove(ElementFlags::DOZES);
@@ -160,11 +160,12 @@ impl Worker {
         &mut self,
         step: &Step,
         row: &mut ElementRow,
+        pair: &Pair,
         end: usize,
         bodies: &[BodyRow],
         sight: &impl Sight,
     ) -> Result<Found, Route> {
-        let Some(body) = row.movable(end) else {
+        let Some((body, id)) = pair.movable(end) else {
             let [from, to] = step.path(&row.rare.held[end], sight);
             let point = FreePoint {
                 position: from,
@@ -178,7 +179,7 @@ impl Worker {
             });
         };
         let body = &bodies[body];
-        let Some(seen) = step.movable(sight, body.id, &mut self.stale) else {
+        let Some(seen) = step.movable(sight, id, &mut self.stale) else {
             row.flags.remove(ElementFlags::ACTIVE);
             return Err(Route::Gone);
         };
@@ -203,7 +204,7 @@ impl Worker {
         for (lane, taken) in self.taken.iter().enumerate() {
             let at = taken.at as usize;
             let way = &mut piece.ways[at];
-            let row = &mut piece.rows[piece.lone[at] as usize - piece.first];
+            let row = &mut piece.rows[piece.lone[at].element as usize - piece.first];
             let Some(reached) = self.lanes.way(lane) else {
                 let alone = Alone {
                     points: self.lanes.points(lane),
