@@ -8,10 +8,10 @@ use super::delivery::Schedule;
 use super::points::FreePoint;
 use super::poles::Poles;
 use bevy::math::{DVec3, Vec3};
-use run::{Reached, Run};
+use pulp::{Simd, WithSimd};
+use run::Run;
 pub(crate) use vectors::LANES;
-use vectors::{Each, EachVector, Vectors, all, get, put, rounding};
-use wide::{CmpGe, CmpLe, f64x4};
+use vectors::{Each, EachVector, Four, Vectors, get, put, rounding};
 
 /// Numbers of four elements.
 #[derive(Clone, Debug, Default)]
@@ -155,85 +155,127 @@ impl Lanes {
         }
     }
 
-    /// Takes all of them over the step.
-    pub(crate) fn run(&mut self, stride: &Stride) {
+    /// Takes all of them over the step, with what reckons with vectors.
+    #[inline(always)]
+    pub(crate) fn run<S: Simd>(&mut self, simd: S, stride: &Stride) {
         let time = stride.schedule.time;
-        let [a, b] = self.ends.each_ref().map(Loaded::of);
+        let all = |number| Four::all(simd, number);
+        let [a, b] = [
+            Loaded::of(simd, &self.ends[0]),
+            Loaded::of(simd, &self.ends[1]),
+        ];
         let d = b.position.minus(a.position);
         let v = b.velocity.minus(a.velocity);
         let outside = b.acceleration.minus(a.acceleration);
         let inverse_mass = a.inverse_mass + b.inverse_mass;
         let mass = all(1.0) / inverse_mass;
-        let [stiffness, rest_length] = [self.stiffness, self.rest_length].map(f64x4::new);
-        let stored = |length: f64x4| {
-            let stretch = length - rest_length;
-            all(0.5) * stiffness * stretch * stretch
-        };
-        let energy = |d: Vectors, v: Vectors, length: f64x4| {
-            stored(length) + (all(0.5) * v.dot(v) - outside.dot(d)) * mass
+        let stiffness = Four::load(simd, &self.stiffness);
+        let rest_length = Four::load(simd, &self.rest_length);
+        let store = Store {
+            half: all(0.5),
+            stiffness,
+            rest_length,
+            outside,
+            mass,
         };
         let length = d.length();
         let run = Run {
+            simd,
             step: time / f64::from(stride.count),
             count: stride.count,
             outside,
             rest_length,
             square: stiffness * inverse_mass,
-            poles: self.poles.map(f64x4::new),
-            rounding: rounding(a.position, b.position),
+            poles: self.poles.each_ref().map(|pole| Four::load(simd, pole)),
+            rounding: rounding(simd, a.position, b.position),
         };
         let end = run.go(d, v, length);
-        let heat = energy(d, v, length) - energy(end.d, end.v, end.length);
+        let heat = store.energy(d, v, length) - store.energy(end.d, end.v, end.length);
         // What the element adds to the free motion of the separation.
         let all_time = all(time);
         let drifted = v.plus(outside.times(all(0.5 * time)));
         let moved = end.d.minus(d).minus(drifted.times(all_time));
         let sped = end.v.minus(v).minus(outside.times(all_time));
-        let Reached {
-            side, length, met, ..
-        } = end;
-        let mut odd = met;
-        for (i, (ends, sign)) in [(a, -1.0), (b, 1.0)].into_iter().enumerate() {
-            let share = all(sign) * ends.inverse_mass * mass;
-            let way = [moved.times(share), sped.times(share)];
-            let (pushes, too_fast) = ends.push(way, stride);
-            self.reached.given[i] = pushes;
-            self.reached.given[i].work = sped.times(all(sign) * mass).dot(ends.velocity).to_array();
-            odd |= too_fast;
-        }
-        self.reached.direction = side.store();
-        self.reached.length = length.to_array();
-        self.reached.heat = heat.to_array();
-        self.reached.plain = !odd.move_mask() as u32;
+        let reached = &mut self.reached;
+        let mut plain = !end.met.bits();
+        let [first, second] = &mut reached.given;
+        plain &= a.push(simd, [moved, sped], all(-1.0), mass, stride, first);
+        plain &= b.push(simd, [moved, sped], all(1.0), mass, stride, second);
+        reached.direction = end.side.store();
+        reached.length = end.length.store();
+        reached.heat = heat.store();
+        reached.plain = plain;
+    }
+}
+
+/// Does work with the widest vectors that the processor has, of those that have four lanes.
+pub(crate) fn widest(work: impl WithSimd<Output = ()>) {
+    #[cfg(target_arch = "x86_64")]
+    if let Some(simd) = pulp::x86::V3::try_new() {
+        return Simd::vectorize(simd, work);
+    }
+    work.with_simd(pulp::Scalar256b);
+}
+
+/// What tells energies.
+struct Store<S: Simd> {
+    half: Four<S>,
+    stiffness: Four<S>,
+    rest_length: Four<S>,
+    outside: Vectors<S>,
+    mass: Four<S>,
+}
+
+impl<S: Simd> Store<S> {
+    /// Of the motion about the common centres of mass, in the outside forces, and stored, J.
+    #[inline(always)]
+    fn energy(&self, d: Vectors<S>, v: Vectors<S>, length: Four<S>) -> Four<S> {
+        let stretch = length - self.rest_length;
+        let stored = self.half * self.stiffness * stretch * stretch;
+        stored + (self.half * v.dot(v) - self.outside.dot(d)) * self.mass
     }
 }
 
 /// Four points at one end.
 #[derive(Clone, Copy)]
-struct Loaded {
-    position: Vectors,
-    velocity: Vectors,
-    acceleration: Vectors,
-    inverse_mass: f64x4,
+struct Loaded<S: Simd> {
+    position: Vectors<S>,
+    velocity: Vectors<S>,
+    acceleration: Vectors<S>,
+    inverse_mass: Four<S>,
 }
 
-impl Loaded {
-    fn of(ends: &Ends) -> Self {
+impl<S: Simd> Loaded<S> {
+    #[inline(always)]
+    fn of(simd: S, ends: &Ends) -> Self {
         Self {
-            position: Vectors::load(&ends.position),
-            velocity: Vectors::load(&ends.velocity),
-            acceleration: Vectors::load(&ends.acceleration),
-            inverse_mass: f64x4::new(ends.inverse_mass),
+            position: Vectors::load(simd, &ends.position),
+            velocity: Vectors::load(simd, &ends.velocity),
+            acceleration: Vectors::load(simd, &ends.acceleration),
+            inverse_mass: Four::load(simd, &ends.inverse_mass),
         }
     }
 
-    /// What takes them along, if elements add so much to where they go and how fast they are then; and in which lanes they
-    /// would be faster than the engine lets them. See `is_within` and [`Schedule::reach`].
+    /// What takes them along, if elements add so much to the free motion of the separation, and how fast that is then. This
+    /// end's share goes by its mass, with a sign; `mass` is that of the pair. Returns the lanes in which they stay slower than
+    /// the engine lets them, bit by bit. See `is_within` and [`Schedule::reach`].
     #[inline(always)]
-    fn push(&self, [moved, sped]: [Vectors; 2], stride: &Stride) -> (Pushes, f64x4) {
+    fn push(
+        &self,
+        simd: S,
+        [moved, sped]: [Vectors<S>; 2],
+        sign: Four<S>,
+        mass: Four<S>,
+        stride: &Stride,
+        pushes: &mut Pushes,
+    ) -> u32 {
+        pushes.work = sped.times(sign * mass).dot(self.velocity).store();
+        let share = sign * self.inverse_mass * mass;
+        let (moved, sped) = (moved.times(share), sped.times(share));
         let Stride {
             schedule, fastest, ..
         } = stride;
+        let all = |number| Four::all(simd, number);
         let time = all(schedule.time);
         let pulled = self.acceleration.times(time);
         let straight = self.velocity.plus(pulled.times(all(0.5)));
@@ -247,22 +289,19 @@ impl Loaded {
         let rate = change.minus(jump).times(all(schedule.per_time));
         let begun = self.velocity.plus(jump);
         // With a third of the cap at the start, and no more than that to gain, it is not met anywhere; else it is looked at
-        // more closely elsewhere. Numbers that are none are beyond it too.
+        // more closely elsewhere. Four that are none are beyond it too.
         let third = all(fastest * fastest / 9.0);
         let gain = rate.times(time);
-        let odd = !(begun.dot(begun).cmp_le(third) & gain.dot(gain).cmp_le(third));
+        let slow = begun.dot(begun).at_most(third) & gain.dot(gain).at_most(third);
+        // What nothing moves here, nothing flies too fast.
+        let still = self.inverse_mass.at_most(all(0.0));
         let given = begun.rounded();
         // The engine's velocity is rounded; the force makes up for it.
         let rate = rate.plus(begun.minus(given).times(all(schedule.per_time)));
         let mass = all(1.0) / self.inverse_mass;
         let force = rate.minus(self.acceleration).times(mass);
-        let pushes = Pushes {
-            velocity: given.store(),
-            force: force.store(),
-            work: [0.0; LANES],
-        };
-        // What nothing moves here, nothing flies too fast.
-        let moves = self.inverse_mass.cmp_ge(all(f64::MIN_POSITIVE));
-        (pushes, odd & moves)
+        pushes.velocity = given.store();
+        pushes.force = force.store();
+        (slow | still).bits()
     }
 }

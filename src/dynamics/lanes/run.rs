@@ -1,47 +1,54 @@
 //! The plain micro-steps of [`crate::dynamics::pair`], each operation on four elements at once.
 
-use super::vectors::{Vectors, all};
-use wide::{CmpLe, f64x4};
+use super::vectors::{Four, Mask, Vectors};
+use pulp::Simd;
 
 /// Constants of a run.
-pub(super) struct Run {
+pub(super) struct Run<S: Simd> {
+    pub simd: S,
     /// Of one micro-step, s.
     pub step: f64,
     /// How many.
     pub count: u32,
-    pub outside: Vectors,
-    pub rest_length: f64x4,
+    pub outside: Vectors<S>,
+    pub rest_length: Four<S>,
     /// ω².
-    pub square: f64x4,
+    pub square: Four<S>,
     /// The poles' [`restoring`, `loss`, `speed`, `skew`](crate::dynamics::poles::Poles).
-    pub poles: [f64x4; 4],
+    pub poles: [Four<S>; 4],
     /// Separation below which it is rounding.
-    pub rounding: f64x4,
+    pub rounding: Four<S>,
 }
 
 /// What four separations have come to.
-pub(super) struct Reached {
-    pub d: Vectors,
-    pub v: Vectors,
+pub(super) struct Reached<S: Simd> {
+    pub d: Vectors<S>,
+    pub v: Vectors<S>,
     /// Unit vectors along them,
-    pub side: Vectors,
+    pub side: Vectors<S>,
     /// and their lengths.
-    pub length: f64x4,
+    pub length: Four<S>,
     /// Lanes whose ends came so close that the direction between them is rounding.
-    pub met: f64x4,
+    pub met: Mask<S>,
 }
 
 /// The lines at an instant: see `pair::Line`.
-struct Lines {
-    length: f64x4,
-    axial: f64x4,
-    lateral: Vectors,
-    lateral_square: f64x4,
-    pushed: f64x4,
+struct Lines<S: Simd> {
+    length: Four<S>,
+    axial: Four<S>,
+    lateral: Vectors<S>,
+    lateral_square: Four<S>,
+    pushed: Four<S>,
 }
 
-impl Run {
-    fn along(&self, v: Vectors, direction: Vectors, length: f64x4) -> Lines {
+impl<S: Simd> Run<S> {
+    #[inline(always)]
+    fn all(&self, number: f64) -> Four<S> {
+        Four::all(self.simd, number)
+    }
+
+    #[inline(always)]
+    fn along(&self, v: Vectors<S>, direction: Vectors<S>, length: Four<S>) -> Lines<S> {
         let axial = v.dot(direction);
         let lateral = v.minus(direction.times(axial));
         Lines {
@@ -54,40 +61,49 @@ impl Run {
     }
 
     /// See `line::turning`.
-    fn turning(&self, length: f64x4, lateral_square: f64x4) -> f64x4 {
-        let half = all(0.5) * all(self.step);
+    #[inline(always)]
+    fn turning(&self, length: Four<S>, lateral_square: Four<S>) -> Four<S> {
+        let half = self.all(0.5) * self.all(self.step);
         let reach = (length * length + half * half * lateral_square).sqrt();
-        (all(2.0) * lateral_square / (length.abs() + reach)).copysign(length)
+        (self.all(2.0) * lateral_square / (length.abs() + reach)).copysign(length)
     }
 
     /// See `line::backward_rate`.
-    fn backward_rate(&self, lines: &Lines) -> f64x4 {
-        let (step, length) = (all(self.step), lines.length);
+    #[inline(always)]
+    fn backward_rate(&self, lines: &Lines<S>) -> Four<S> {
+        let (step, length) = (self.all(self.step), lines.length);
         let along = length - step * lines.axial;
         let before = (along * along + step * step * lines.lateral_square).sqrt();
-        let flips = (along * length).cmp_le(all(0.0));
-        flips.blend(lines.axial, (length - before.copysign(along)) / step)
+        let flips = (along * length).at_most(self.all(0.0));
+        flips.select(lines.axial, (length - before.copysign(along)) / step)
     }
 
     /// What the elements have yet to answer at these lengths.
-    fn residual_acceleration(&self, length: f64x4, outside: f64x4) -> f64x4 {
+    #[inline(always)]
+    fn residual_acceleration(&self, length: Four<S>, outside: Four<S>) -> Four<S> {
         self.square * (length - self.rest_length) - outside
     }
 
     /// Takes all of them over the step. In one piece, for it is the recipe of `Moving`, line by line: a test holds them to the
     /// same bits.
-    pub(super) fn go(&self, mut d: Vectors, mut v: Vectors, mut length: f64x4) -> Reached {
+    #[inline(always)]
+    pub(super) fn go(
+        &self,
+        mut d: Vectors<S>,
+        mut v: Vectors<S>,
+        mut length: Four<S>,
+    ) -> Reached<S> {
         let run = self;
-        let step = all(run.step);
-        let half = all(0.5 * run.step);
-        let eighth = all(run.step * run.step / 8.0);
+        let step = self.all(run.step);
+        let half = self.all(0.5 * run.step);
+        let eighth = self.all(run.step * run.step / 8.0);
         let rounding = run.rounding;
         let [restoring, loss, speed, skew] = run.poles;
         let per_step = loss / step;
 
         // To the stepped velocities.
-        let mut met = length.cmp_le(rounding);
-        let mut side = d.times(all(1.0) / length);
+        let mut met = length.at_most(rounding);
+        let mut side = d.times(self.all(1.0) / length);
         let lines = run.along(v, side, length);
         let outside = lines.pushed + run.turning(length, lines.lateral_square);
         let offset = skew * step * run.residual_acceleration(length, outside);
@@ -97,14 +113,14 @@ impl Run {
             d = d.plus(v.times(half));
             // The kick.
             let distance = d.length();
-            met |= distance.cmp_le(rounding);
+            met = met | distance.at_most(rounding);
             length = distance.copysign(d.dot(side));
-            let direction = d.times(all(1.0) / length);
+            let direction = d.times(self.all(1.0) / length);
             let lines = run.along(v, direction, length);
             let rate = run.backward_rate(&lines);
             let across = run.outside.minus(direction.times(lines.pushed));
             let after = lines.lateral.plus(across.times(step));
-            let turning = all(0.5)
+            let turning = self.all(0.5)
                 * (run.turning(length, lines.lateral_square)
                     + run.turning(length, after.dot(after)));
             let outside = lines.pushed + turning;
@@ -115,8 +131,8 @@ impl Run {
             v = v.plus(pulled.plus(run.outside.times(step)));
             d = d.plus(v.times(half));
             length = d.length();
-            met |= length.cmp_le(rounding);
-            side = d.times(all(1.0) / length);
+            met = met | length.at_most(rounding);
+            side = d.times(self.all(1.0) / length);
         }
         // And back to the true ones.
         let lines = run.along(v, side, length);

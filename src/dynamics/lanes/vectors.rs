@@ -1,7 +1,8 @@
-//! Four numbers, and four vectors, side by side.
+//! Four numbers, and four vectors, side by side, as the processor can.
 
 use bevy::math::DVec3;
-use wide::f64x4;
+use pulp::Simd;
+use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Sub};
 
 /// Elements side by side.
 pub(crate) const LANES: usize = 4;
@@ -26,60 +27,178 @@ pub(super) fn get(from: &EachVector, lane: usize) -> DVec3 {
     DVec3::new(from[0][lane], from[1][lane], from[2][lane])
 }
 
+/// Four numbers, and what reckons with them. Its vectors of numbers must have four lanes.
+#[derive(Clone, Copy)]
+pub(super) struct Four<S: Simd>(S::f64s, S);
+
+/// Of each of four, whether it is so.
+#[derive(Clone, Copy)]
+pub(super) struct Mask<S: Simd>(S::m64s, S);
+
+impl<S: Simd> Four<S> {
+    #[inline(always)]
+    pub(super) fn load(simd: S, from: &Each) -> Self {
+        Self(pulp::cast(*from), simd)
+    }
+
+    #[inline(always)]
+    pub(super) fn store(self) -> Each {
+        pulp::cast(self.0)
+    }
+
+    /// The same number four times.
+    #[inline(always)]
+    pub(super) fn all(simd: S, number: f64) -> Self {
+        Self(simd.splat_f64s(number), simd)
+    }
+
+    #[inline(always)]
+    pub(super) fn sqrt(self) -> Self {
+        Self(self.1.sqrt_f64s(self.0), self.1)
+    }
+
+    #[inline(always)]
+    pub(super) fn abs(self) -> Self {
+        Self(self.1.abs_f64s(self.0), self.1)
+    }
+
+    #[inline(always)]
+    pub(super) fn max(self, other: Self) -> Self {
+        Self(self.1.max_f64s(self.0, other.0), self.1)
+    }
+
+    #[inline(always)]
+    pub(super) fn copysign(self, sign: Self) -> Self {
+        let simd = self.1;
+        let bit = simd.and_f64s(sign.0, simd.splat_f64s(-0.0));
+        Self(simd.or_f64s(simd.abs_f64s(self.0), bit), simd)
+    }
+
+    /// Where this is at most the other: not where either is no number.
+    #[inline(always)]
+    pub(super) fn at_most(self, other: Self) -> Mask<S> {
+        let so = self.1.less_than_or_equal_f64s(self.0, other.0);
+        Mask(so, self.1)
+    }
+}
+
+impl<S: Simd> Mask<S> {
+    /// The one number where it is so, the other where it is not.
+    #[inline(always)]
+    pub(super) fn select(self, yes: Four<S>, no: Four<S>) -> Four<S> {
+        Four(self.1.select_f64s(self.0, yes.0, no.0), self.1)
+    }
+
+    /// Bit by bit.
+    #[inline(always)]
+    pub(super) fn bits(self) -> u32 {
+        let [one, nothing] = [1.0, 0.0].map(|x| Four::all(self.1, x));
+        let each = self.select(one, nothing).store();
+        let bits = each.iter().enumerate();
+        bits.fold(0, |bits, (lane, x)| bits | u32::from(*x != 0.0) << lane)
+    }
+}
+
+macro_rules! operators {
+    ($($of:ident $operator:ident $function:ident $simd:ident),*) => {$(
+        impl<S: Simd> $operator for $of<S> {
+            type Output = Self;
+
+            #[inline(always)]
+            fn $function(self, other: Self) -> Self {
+                Self(self.1.$simd(self.0, other.0), self.1)
+            }
+        }
+    )*};
+}
+
+operators!(
+    Four Add add add_f64s,
+    Four Sub sub sub_f64s,
+    Four Mul mul mul_f64s,
+    Four Div div div_f64s,
+    Mask BitAnd bitand and_m64s,
+    Mask BitOr bitor or_m64s
+);
+
+impl<S: Simd> Neg for Four<S> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self(self.1.neg_f64s(self.0), self.1)
+    }
+}
+
 /// Four vectors.
 #[derive(Clone, Copy)]
-pub(super) struct Vectors(pub [f64x4; 3]);
+pub(super) struct Vectors<S: Simd>(pub [Four<S>; 3]);
 
-impl Vectors {
-    pub(super) fn load(from: &EachVector) -> Self {
-        Self(from.map(f64x4::new))
+impl<S: Simd> Vectors<S> {
+    #[inline(always)]
+    pub(super) fn load(simd: S, from: &EachVector) -> Self {
+        let [x, y, z] = from;
+        Self([
+            Four::load(simd, x),
+            Four::load(simd, y),
+            Four::load(simd, z),
+        ])
     }
 
+    #[inline(always)]
     pub(super) fn store(&self) -> EachVector {
-        self.0.map(f64x4::to_array)
+        let [x, y, z] = self.0;
+        [x.store(), y.store(), z.store()]
     }
 
+    #[inline(always)]
     pub(super) fn plus(self, other: Self) -> Self {
         let ([a, b, c], [x, y, z]) = (self.0, other.0);
         Self([a + x, b + y, c + z])
     }
 
+    #[inline(always)]
     pub(super) fn minus(self, other: Self) -> Self {
         let ([a, b, c], [x, y, z]) = (self.0, other.0);
         Self([a - x, b - y, c - z])
     }
 
-    pub(super) fn times(self, by: f64x4) -> Self {
+    #[inline(always)]
+    pub(super) fn times(self, by: Four<S>) -> Self {
         let [a, b, c] = self.0;
         Self([by * a, by * b, by * c])
     }
 
-    pub(super) fn dot(self, other: Self) -> f64x4 {
+    #[inline(always)]
+    pub(super) fn dot(self, other: Self) -> Four<S> {
         let ([a, b, c], [x, y, z]) = (self.0, other.0);
         a * x + b * y + c * z
     }
 
-    /// Rounded to single precision.
-    pub(super) fn rounded(self) -> Self {
-        let each = |x: f64x4| f64x4::new(x.to_array().map(|x| f64::from(x as f32)));
-        Self(self.0.map(each))
-    }
-
-    pub(super) fn length(self) -> f64x4 {
+    #[inline(always)]
+    pub(super) fn length(self) -> Four<S> {
         self.dot(self).sqrt()
     }
-}
 
-/// The same number four times.
-pub(super) fn all(value: f64) -> f64x4 {
-    f64x4::splat(value)
+    /// Rounded to single precision.
+    #[inline(always)]
+    pub(super) fn rounded(self) -> Self {
+        let round = |four: Four<S>| {
+            let rounded = four.store().map(|x| f64::from(x as f32));
+            Four::load(four.1, &rounded)
+        };
+        let [x, y, z] = self.0;
+        Self([round(x), round(y), round(z)])
+    }
 }
 
 /// Distance of two points below which it may be rounding of the engine's f32; see [`crate::dynamics::element::rounding`].
-pub(super) fn rounding(a: Vectors, b: Vectors) -> f64x4 {
-    let largest = |v: Vectors| {
-        let [x, y, z] = v.0.map(f64x4::abs);
-        x.max(y).max(z)
+#[inline(always)]
+pub(super) fn rounding<S: Simd>(simd: S, a: Vectors<S>, b: Vectors<S>) -> Four<S> {
+    let largest = |v: Vectors<S>| {
+        let [x, y, z] = v.0;
+        x.abs().max(y.abs()).max(z.abs())
     };
+    let all = |number| Four::all(simd, number);
     all(1e-9) * largest(a).max(largest(b)).max(all(1e-3))
 }

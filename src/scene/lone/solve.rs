@@ -3,7 +3,7 @@
 use super::alone::Alone;
 use super::{Given, Pair, Route, Way};
 use crate::backend::Sight;
-use crate::dynamics::lanes::{LANES, Lanes, Stride};
+use crate::dynamics::lanes::{LANES, Lanes, Stride, widest};
 use crate::dynamics::pair::plain_poles;
 use crate::dynamics::points::FreePoint;
 use crate::dynamics::poles::Poles;
@@ -11,6 +11,13 @@ use crate::dynamics::tolerance::{Method, Outcome};
 use crate::input::check::Numbers;
 use crate::scene::rows::{BodyFlags, BodyRow, ElementFlags, ElementRow, Solved};
 use crate::scene::step::Step;
+use pulp::{Simd, WithSimd};
+
+/// Lanes that are filled before they go: what has just been put into one cannot be taken out as a vector at once.
+const GROUPS: usize = 2;
+
+/// How many are read before they are solved.
+const BATCH: usize = GROUPS * LANES;
 
 /// An element that goes through the step in a lane beside others.
 #[derive(Clone, Copy)]
@@ -24,7 +31,7 @@ struct InLane {
 /// What reads and solves a piece of all lone elements, kept from step to step.
 #[derive(Default)]
 pub(crate) struct Worker {
-    lanes: Lanes,
+    lanes: [Lanes; GROUPS],
     /// What is in its lanes.
     taken: Vec<InLane>,
     /// Some body can be moved no more.
@@ -68,8 +75,13 @@ pub(crate) struct Piece<'a, S> {
 
 impl Worker {
     /// Takes a piece through the step.
-    pub(crate) fn solve(&mut self, step: &Step, mut piece: Piece<impl Sight>) {
+    pub(crate) fn solve(&mut self, step: &Step, piece: Piece<impl Sight>) {
         self.stale = false;
+        widest(Going(self, step, piece));
+    }
+
+    #[inline(always)]
+    fn go<S: Simd>(&mut self, simd: S, step: &Step, mut piece: Piece<impl Sight>) {
         let pace = step.pace();
         for at in 0..piece.lone.len() {
             piece.ways[at].route = match self.take(step, pace.as_ref(), at, &mut piece) {
@@ -77,13 +89,13 @@ impl Worker {
                 Err(route) => route,
             };
             if let Some(pace) = &pace
-                && self.taken.len() == LANES
+                && self.taken.len() == BATCH
             {
-                self.finish(step, pace, &mut piece);
+                self.finish(simd, step, pace, &mut piece);
             }
         }
         if let Some(pace) = &pace {
-            self.finish(step, pace, &mut piece);
+            self.finish(simd, step, pace, &mut piece);
         }
     }
 
@@ -138,8 +150,8 @@ impl Worker {
             && let Some((numbers, poles)) = plain(row, inverse_mass, pace)
         {
             row.inverse_mass = inverse_mass;
-            self.lanes
-                .take_in(self.taken.len(), &points, numbers, &poles);
+            let (group, lane) = (self.taken.len() / LANES, self.taken.len() % LANES);
+            self.lanes[group].take_in(lane, &points, numbers, &poles);
             self.taken.push(InLane {
                 at: at as u32,
                 moves: more.map(|more| more.is_some()),
@@ -196,18 +208,26 @@ impl Worker {
     }
 
     /// Solves what is in the lanes.
-    fn finish(&mut self, step: &Step, pace: &Pace, piece: &mut Piece<impl Sight>) {
-        if self.taken.is_empty() {
-            return;
+    #[inline(always)]
+    fn finish<S: Simd>(
+        &mut self,
+        simd: S,
+        step: &Step,
+        pace: &Pace,
+        piece: &mut Piece<impl Sight>,
+    ) {
+        let groups = self.taken.len().div_ceil(LANES);
+        for lanes in &mut self.lanes[..groups] {
+            lanes.run(simd, &pace.stride);
         }
-        self.lanes.run(&pace.stride);
-        for (lane, taken) in self.taken.iter().enumerate() {
+        for (at, taken) in self.taken.iter().enumerate() {
+            let (lanes, lane) = (&self.lanes[at / LANES], at % LANES);
             let at = taken.at as usize;
             let way = &mut piece.ways[at];
             let row = &mut piece.rows[piece.lone[at].element as usize - piece.first];
-            let Some(reached) = self.lanes.way(lane) else {
+            let Some(reached) = lanes.way(lane) else {
                 let alone = Alone {
-                    points: self.lanes.points(lane),
+                    points: lanes.points(lane),
                     more: taken.moves.map(|moves| moves.then_some(0)),
                 };
                 if !alone.solve(step, row, way) {
@@ -222,7 +242,7 @@ impl Worker {
                 row.ledger.dissipated += reached.heat;
             }
             for end in 0..2 {
-                let push = self.lanes.push(lane, end);
+                let push = lanes.push(lane, end);
                 if taken.moves[end] {
                     way.given[end] = Given {
                         velocity: push.velocity,
@@ -235,6 +255,18 @@ impl Worker {
             }
         }
         self.taken.clear();
+    }
+}
+
+/// A worker about to go.
+struct Going<'a, 'b, V>(&'a mut Worker, &'a Step, Piece<'b, V>);
+
+impl<V: Sight> WithSimd for Going<'_, '_, V> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        self.0.go(simd, self.1, self.2);
     }
 }
 
