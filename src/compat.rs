@@ -1,7 +1,7 @@
 // What is called otherwise, or lies elsewhere, in another version of Bevy and Rapier. `src/compat.rs` is for Bevy 0.19,
 // `bevy-0.20/src/compat.rs` for 0.20; both have the same names.
 
-use bevy::ecs::lifecycle::Add;
+use bevy::ecs::lifecycle::{Add, Insert, Remove};
 use bevy::prelude::On;
 use bevy_rapier3d::parry::query;
 use bevy_rapier3d::parry::shape::Shape;
@@ -16,6 +16,12 @@ pub(crate) use bevy_math::curve::{Curve, Interval};
 
 /// What an observer gets of a component that was added.
 pub(crate) type Added<'w, 't, C> = On<'w, 't, Add, C>;
+
+/// What an observer gets of a component that was inserted, there before or not.
+pub(crate) type Inserted<'w, 't, C> = On<'w, 't, Insert, C>;
+
+/// What an observer gets of a component that is about to be removed.
+pub(crate) type Removed<'w, 't, C> = On<'w, 't, Remove, C>;
 
 /// The shader of round wires; how its name ends tells Bevy the language.
 #[cfg(feature = "visual")]

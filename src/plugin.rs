@@ -152,6 +152,7 @@ impl Plugin for CoiloverPlugin {
             set_rates(app, hertz);
         }
         notice_strays(app);
+        crate::backend::rapier::watch::watch(app);
 
         let schedule = self.settings.schedule;
         app.add_systems(

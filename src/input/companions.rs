@@ -65,17 +65,6 @@ type ChangedBeside = Or<(
 pub(crate) struct Companions<'w, 's> {
     pub(crate) all: Query<'w, 's, Beside, AnyBeside>,
     changed: Query<'w, 's, (Entity, Stamps), ChangedBeside>,
-    gone: (
-        RemovedComponents<'w, 's, SpringLaw>,
-        RemovedComponents<'w, 's, CustomSpringLaw>,
-        RemovedComponents<'w, 's, DampingLaw>,
-        RemovedComponents<'w, 's, CustomDampingLaw>,
-        RemovedComponents<'w, 's, SpringAction>,
-        RemovedComponents<'w, 's, SpringTravel>,
-        RemovedComponents<'w, 's, Preload>,
-        RemovedComponents<'w, 's, MaxForce>,
-        RemovedComponents<'w, 's, SpringAxis>,
-    ),
     /// Entities where something changed since the last tick.
     pub(crate) touched: Local<'s, EntityHashSet>,
     /// What changed up to then is no change.
@@ -91,24 +80,15 @@ pub(crate) struct Companion {
 }
 
 impl Companions<'_, '_> {
-    /// Looks for changes, or for those after a tick alone.
-    pub(crate) fn look(&mut self, since: Option<Tick>) {
+    /// Looks for changes, or for those after a tick alone; `lost` have lost something since.
+    pub(crate) fn look(&mut self, since: Option<Tick>, lost: impl Iterator<Item = Entity>) {
         *self.since = since;
         let now = self.ticks.this_run();
         let is_new = |stamps: &StampsItem| since.is_none_or(|since| stamps.is_after(since, now));
         let changed = self.changed.iter().filter(|(_, stamps)| is_new(stamps));
         self.touched.clear();
         self.touched.extend(changed.map(|(entity, _)| entity));
-        let gone = &mut self.gone;
-        self.touched.extend(gone.0.read());
-        self.touched.extend(gone.1.read());
-        self.touched.extend(gone.2.read());
-        self.touched.extend(gone.3.read());
-        self.touched.extend(gone.4.read());
-        self.touched.extend(gone.5.read());
-        self.touched.extend(gone.6.read());
-        self.touched.extend(gone.7.read());
-        self.touched.extend(gone.8.read());
+        self.touched.extend(lost);
     }
 
     /// Whether some part of an element changed since the last tick, or after the tick of the last [look](Self::look).

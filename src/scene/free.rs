@@ -95,7 +95,7 @@ impl Scene {
         let lone = &self.lone[lone].pairs;
         // Each is written anew.
         spare.ways.resize(lone.len(), Way::default());
-        let count = pieces(lone.len(), threads::count());
+        let count = pieces(lone.len());
         let each = lone.len().div_ceil(count).max(1);
         spare.workers.resize_with(count, Worker::default);
         let bodies = &self.bodies;
@@ -177,12 +177,15 @@ impl Scene {
 /// Integrates all assemblies, on several threads where that is worth it; each is on its own, so the
 /// result is the same.
 fn advance(assemblies: &mut [Assembly], step: &Step) {
+    if assemblies.is_empty() {
+        return;
+    }
     let load: usize = assemblies.iter().map(Assembly::load).sum();
     let accuracy = step.accuracy.shared(load);
     let ready = assemblies.iter().filter(|a| a.load() > 0).count();
-    let threads = threads::count();
-    let worth = threads > 1 && ready > 1 && load >= WORTH_SHARING;
-    let each = if worth {
+    let worth = ready > 1 && load >= WORTH_SHARING;
+    let threads = if worth { threads::count() } else { 1 };
+    let each = if threads > 1 {
         assemblies.len().div_ceil(4 * threads)
     } else {
         assemblies.len().max(1)

@@ -59,11 +59,12 @@ impl Scene {
 
 /// How many rows a piece of work has.
 fn share_of(rows: usize) -> usize {
-    let threads = threads::count();
-    if threads < 2 || rows < WORTH_SHARING {
-        rows.max(1)
-    } else {
-        rows.div_ceil(4 * threads)
+    if rows < WORTH_SHARING {
+        return rows.max(1);
+    }
+    match threads::count() {
+        0 | 1 => rows,
+        threads => rows.div_ceil(4 * threads),
     }
 }
 

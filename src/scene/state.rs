@@ -49,6 +49,10 @@ pub struct Scene {
     pub(crate) stepped: Vec<Entity>,
     /// Seconds that the engine will step in this tick; 0 if it will not.
     pub(crate) time: f64,
+    /// A body or an element that it knows has lost a component, or a body is another one: look at everything again.
+    pub(crate) disturbed: bool,
+    /// Elements that have lost a companion since the last tick.
+    pub(crate) left_behind: Vec<Entity>,
     /// Something was found amiss after the scene was prepared: look at everything again.
     pub(crate) stale: bool,
     /// A user's force on some body changed in this tick.

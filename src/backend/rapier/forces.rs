@@ -169,7 +169,7 @@ pub(crate) fn show(scene: &Scene, loads: &mut Loads) {
             load.raised_iterations |= row.has(BodyFlags::SECOND_SUBSTEP);
         }
     };
-    if threads::count() > 1 && bodies.len() >= WORTH_SHARING {
+    if bodies.len() >= WORTH_SHARING && threads::count() > 1 {
         loads.par_iter_mut().for_each(show);
     } else {
         loads.iter_mut().for_each(show);

@@ -28,7 +28,7 @@ pub(crate) fn prepare(
     let scene = &mut *scene;
     let mut same = !watch.saw_change(scene);
     same &= !std::mem::take(&mut scene.stale);
-    companions.look(scene.since.take());
+    companions.look(scene.since.take(), scene.left_behind.drain(..));
     // What comes and goes is seen by the watch; this is for whatever else may take elements away.
     same &= elements.iter().len() == scene.elements.len();
     let is_new = |entity: &Entity| {

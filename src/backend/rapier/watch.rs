@@ -1,10 +1,11 @@
 //! What can change a scene besides its elements' numbers: bodies that come, go, or become another kind of
 //! body, and components that are taken away.
+//!
+//! What comes and goes, observers see, so that a tick in which nothing does pays nothing.
 
 use crate::backend::rapier::forces::SpringLoad;
-use crate::element::{
-    Anchors, Damper, Spring, SpringDamper, TorsionDamper, TorsionSpring, TorsionSpringDamper,
-};
+use crate::compat::{Inserted, Removed};
+use crate::element::*;
 use crate::scene::state::Scene;
 use bevy::ecs::entity::EntityHashSet;
 use bevy::ecs::entity_disabling::Disabled;
@@ -14,37 +15,10 @@ use bevy::ecs::system::SystemParam;
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
 
-/// A body that changed its kind or its place in the engine, or was disabled.
-type BodyChange = (
-    Or<(
-        Changed<RapierRigidBodyHandle>,
-        Changed<RapierContextEntityLink>,
-        Changed<RigidBody>,
-        Added<RigidBodyDisabled>,
-        Added<Disabled>,
-    )>,
-    Allow<Disabled>,
-);
-
-/// Watches for such changes.
+/// Watches for bodies that become others.
 #[derive(SystemParam)]
 pub(crate) struct Watch<'w, 's> {
-    changed: Query<'w, 's, Entity, BodyChange>,
-    handles: RemovedComponents<'w, 's, RapierRigidBodyHandle>,
-    links: RemovedComponents<'w, 's, RapierContextEntityLink>,
-    disabled: RemovedComponents<'w, 's, RigidBodyDisabled>,
-    hidden: RemovedComponents<'w, 's, Disabled>,
-    loads: RemovedComponents<'w, 's, SpringLoad>,
-    forces: RemovedComponents<'w, 's, ExternalForce>,
-    springs: RemovedComponents<'w, 's, Spring>,
-    dampers: RemovedComponents<'w, 's, Damper>,
-    pairs: RemovedComponents<'w, 's, SpringDamper>,
-    torsion: (
-        RemovedComponents<'w, 's, TorsionSpring>,
-        RemovedComponents<'w, 's, TorsionDamper>,
-        RemovedComponents<'w, 's, TorsionSpringDamper>,
-    ),
-    anchors: RemovedComponents<'w, 's, Anchors>,
+    changed: Query<'w, 's, Entity, (Changed<RigidBody>, Allow<Disabled>)>,
     masses: MessageReader<'w, 's, MassModifiedEvent>,
     pub(crate) mass_modified: Local<'s, EntityHashSet>,
 }
@@ -52,33 +26,78 @@ pub(crate) struct Watch<'w, 's> {
 impl Watch<'_, '_> {
     /// Whether anything of the kind happened to the scene since the last tick. What elements have nothing to do
     /// with may come and go as it likes.
-    pub(crate) fn saw_change(&mut self, scene: &Scene) -> bool {
-        let is_known = |entity: Entity| scene.knows(entity);
-        let is_loaded = |entity: Entity| scene.index.contains_key(&entity);
+    pub(crate) fn saw_change(&mut self, scene: &mut Scene) -> bool {
         self.mass_modified.clear();
         self.mass_modified.extend(self.masses.read().map(|m| m.0));
-        let mut changed = self.changed.iter().any(is_known);
-        changed |= self.mass_modified.iter().any(|e| is_loaded(*e));
-        changed |= any_of(&mut self.handles, is_known);
-        changed |= any_of(&mut self.links, is_known);
-        changed |= any_of(&mut self.disabled, is_known);
-        changed |= any_of(&mut self.loads, is_loaded);
-        changed |= any_of(&mut self.forces, is_loaded);
-        // One that was not known comes into the count of elements, or is looked for in every tick.
-        changed |= any_of(&mut self.hidden, is_known);
-        changed |= any_of(&mut self.anchors, is_known);
-        changed |= any_of(&mut self.springs, is_known);
-        changed |= any_of(&mut self.dampers, is_known);
-        changed |= any_of(&mut self.pairs, is_known);
-        let torsion = &mut self.torsion;
-        changed |= any_of(&mut torsion.0, is_known);
-        changed |= any_of(&mut torsion.1, is_known);
-        changed |= any_of(&mut torsion.2, is_known);
-        changed
+        let is_loaded = |entity: &Entity| scene.index.contains_key(entity);
+        let mut changed = self.changed.iter().any(|entity| scene.knows(entity));
+        changed |= self.mass_modified.iter().any(is_loaded);
+        changed | std::mem::take(&mut scene.disturbed)
     }
 }
 
-/// Whether any of what lost a component is of a kind. Each has to be read to its end.
-fn any_of<C: Component>(lost: &mut RemovedComponents<C>, is_such: impl Fn(Entity) -> bool) -> bool {
-    lost.read().filter(|entity| is_such(*entity)).count() > 0
+/// Makes an app notice what comes and goes.
+pub(crate) fn watch(app: &mut App) {
+    // One that was not known comes into the count of elements, or is looked for in every tick.
+    lost::<Spring>(app);
+    lost::<Damper>(app);
+    lost::<SpringDamper>(app);
+    lost::<TorsionSpring>(app);
+    lost::<TorsionDamper>(app);
+    lost::<TorsionSpringDamper>(app);
+    lost::<Anchors>(app);
+    lost::<RapierRigidBodyHandle>(app);
+    lost::<RapierContextEntityLink>(app);
+    lost::<RigidBodyDisabled>(app);
+    lost::<Disabled>(app);
+    unloaded::<SpringLoad>(app);
+    unloaded::<ExternalForce>(app);
+    left::<SpringLaw>(app);
+    left::<CustomSpringLaw>(app);
+    left::<DampingLaw>(app);
+    left::<CustomDampingLaw>(app);
+    left::<SpringAction>(app);
+    left::<SpringTravel>(app);
+    left::<Preload>(app);
+    left::<MaxForce>(app);
+    left::<SpringAxis>(app);
+    came::<RapierRigidBodyHandle>(app);
+    came::<RapierContextEntityLink>(app);
+    came::<RigidBodyDisabled>(app);
+    came::<Disabled>(app);
+}
+
+/// Something happened to an entity; while a snapshot is put back, nobody asks.
+fn notice(entity: Entity, scene: Option<ResMut<Scene>>) {
+    if let Some(mut scene) = scene.filter(|scene| scene.knows(entity)) {
+        scene.disturbed = true;
+    }
+}
+
+/// A body or an element gets a component.
+fn came<C: Component>(app: &mut App) {
+    app.add_observer(|on: Inserted<C>, scene: Option<ResMut<Scene>>| notice(on.entity, scene));
+}
+
+/// An element or a body loses a component.
+fn lost<C: Component>(app: &mut App) {
+    app.add_observer(|on: Removed<C>, scene: Option<ResMut<Scene>>| notice(on.entity, scene));
+}
+
+/// A body that elements move loses a component.
+fn unloaded<C: Component>(app: &mut App) {
+    app.add_observer(|on: Removed<C>, scene: Option<ResMut<Scene>>| {
+        if let Some(mut scene) = scene.filter(|scene| scene.index.contains_key(&on.entity)) {
+            scene.disturbed = true;
+        }
+    });
+}
+
+/// An element loses a companion.
+fn left<C: Component>(app: &mut App) {
+    app.add_observer(|on: Removed<C>, scene: Option<ResMut<Scene>>| {
+        if let Some(mut scene) = scene.filter(|scene| scene.row_of.contains_key(&on.entity)) {
+            scene.left_behind.push(on.entity);
+        }
+    });
 }

@@ -12,6 +12,7 @@ mod tests;
 
 use super::rows::{BodyRow, ElementFlags, ElementRow};
 use crate::backend::BodyId;
+use crate::scene::threads;
 use bevy::math::Vec3;
 use bevy::prelude::Entity;
 pub(crate) use solve::{Piece, Worker};
@@ -114,11 +115,13 @@ const WORTH_SHARING: usize = 1024;
 const PIECES: usize = 4;
 
 /// Into how many pieces lone elements are cut.
-pub(crate) fn pieces(elements: usize, threads: usize) -> usize {
-    if elements < WORTH_SHARING || threads < 2 {
-        1
-    } else {
-        PIECES * threads
+pub(crate) fn pieces(elements: usize) -> usize {
+    if elements < WORTH_SHARING {
+        return 1;
+    }
+    match threads::count() {
+        0 | 1 => 1,
+        threads => PIECES * threads,
     }
 }
 
