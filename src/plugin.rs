@@ -181,7 +181,6 @@ impl Plugin for CoiloverPlugin {
             schedule,
             (
                 (
-                    crate::backend::rapier::setup::check_timestep,
                     crate::input::named_ends::find_named_ends
                         .run_if(any_with_component::<AwaitsEnds>),
                     crate::input::anchoring::anchor.run_if(any_with_component::<WorldAnchors>),
@@ -189,16 +188,11 @@ impl Plugin for CoiloverPlugin {
                 )
                     .chain_ignore_deferred()
                     .in_set(CoiloverSystems::Prepare),
+                crate::backend::rapier::solve::solve.in_set(CoiloverSystems::Solve),
                 (
-                    crate::backend::rapier::forces::read_users,
-                    crate::backend::rapier::solve::solve,
-                )
-                    .chain()
-                    .in_set(CoiloverSystems::Solve),
-                (
-                    crate::backend::rapier::solve::mark,
                     crate::backend::rapier::measure::measure,
-                    crate::scene::breaking::break_overloaded,
+                    crate::scene::breaking::break_overloaded
+                        .run_if(any_with_component::<Breakable>),
                 )
                     .chain()
                     .in_set(CoiloverSystems::Readout),

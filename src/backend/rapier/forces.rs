@@ -45,6 +45,14 @@ pub(crate) type Loads<'w, 's> = Query<
     Allow<Disabled>,
 >;
 
+/// Loads of bodies whose `ExternalForce` somebody has written since the last tick.
+pub(crate) type ChangedLoads<'w, 's> = Query<
+    'w,
+    's,
+    (Entity, &'static mut SpringLoad, &'static ExternalForce),
+    (Changed<ExternalForce>, Allow<Disabled>),
+>;
+
 /// One of them.
 type LoadsItem<'a> = (Entity, Mut<'a, SpringLoad>, Option<Mut<'a, ExternalForce>>);
 
@@ -135,15 +143,9 @@ impl SpringLoad {
 
 /// Takes in what users wrote since the last step. The engine wakes a body whose sum changes; ours must
 /// wake when the user's share does.
-pub(crate) fn read_users(
-    mut scene: ResMut<Scene>,
-    mut loads: Query<
-        (Entity, &mut SpringLoad, &ExternalForce),
-        (Changed<ExternalForce>, Allow<Disabled>),
-    >,
-) {
+pub(crate) fn read_users(scene: &mut Scene, mut changed: ChangedLoads) {
     scene.loaded = false;
-    for (entity, mut load, component) in &mut loads {
+    for (entity, mut load, component) in &mut changed {
         let load = load.bypass_change_detection();
         let new = load.read_user(component);
         scene.loaded |= new;

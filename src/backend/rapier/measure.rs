@@ -13,11 +13,14 @@ use bevy_rapier3d::rapier::dynamics::RigidBodySet;
 /// Finds where the step has taken elements, and writes what they show.
 pub(crate) fn measure(
     mut scene: ResMut<Scene>,
-    sets: Query<(Entity, &RapierRigidBodySet)>,
+    sets: Query<(Entity, Ref<RapierRigidBodySet>)>,
     mut readouts: Query<(Entity, &mut SpringReadout), Acts>,
     mut springs: Query<Springs, IsElement>,
     mut commands: Commands,
 ) {
+    // bevy_rapier's write-back has marked every set as changed.
+    let changed = |context| sets.get(context).ok().map(|(_, set)| set.last_changed());
+    scene.still.mark(changed);
     let all_asleep = !(scene.delivered || scene.immovable);
     if scene.time <= 0.0 || all_asleep {
         return;
@@ -36,10 +39,10 @@ struct Sets<'a> {
 }
 
 impl<'a> Sets<'a> {
-    fn new(sets: &'a Query<(Entity, &RapierRigidBodySet)>) -> Self {
+    fn new(sets: &'a Query<(Entity, Ref<RapierRigidBodySet>)>) -> Self {
         let mut all = sets.iter().map(|(context, set)| {
             let gravity = Vec3::ZERO;
-            let set = &set.bodies;
+            let set = &set.into_inner().bodies;
             (context, Bodies { set, gravity })
         });
         Self {

@@ -3,6 +3,7 @@
 use crate::backend::rapier::body::handle;
 use crate::backend::rapier::find::RapierFinder;
 use crate::backend::rapier::forces::{SpringLoad, wrench};
+use crate::backend::rapier::setup::Timesteps;
 use crate::backend::rapier::watch::Watch;
 use crate::input::companions::Companions;
 use crate::input::parts::{Acts, ChangedParts, Parts};
@@ -22,9 +23,11 @@ pub(crate) fn prepare(
         With<RapierRigidBodyHandle>,
     >,
     mut watch: Watch,
+    mut timesteps: Timesteps,
     mut companions: Companions,
     mut commands: Commands,
 ) {
+    timesteps.check();
     let scene = &mut *scene;
     let mut same = !watch.saw_change(scene);
     same &= !std::mem::take(&mut scene.stale);

@@ -2,6 +2,7 @@
 
 use crate::settings::CoiloverSettings;
 use bevy::ecs::schedule::{ScheduleLabel, Schedules};
+use bevy::ecs::system::SystemParam;
 use bevy::prelude::*;
 use bevy_rapier3d::plugin::systems;
 use bevy_rapier3d::prelude::*;
@@ -54,34 +55,44 @@ pub(crate) fn in_place(watched: Res<Watched>) -> bool {
     !watched.misplaced
 }
 
-/// Whether the engine's step fits the schedule's.
-pub(crate) fn check_timestep(
-    mode: Res<TimestepMode>,
-    settings: Res<CoiloverSettings>,
-    fixed: Option<Res<Time<Fixed>>>,
-    mut watched: ResMut<Watched>,
-) {
-    let Some(fixed) = fixed.filter(|_| settings.schedule == FixedUpdate.intern()) else {
-        return;
-    };
-    let tick = fixed.timestep().as_secs_f32();
-    match *mode {
-        TimestepMode::Variable { .. } if !watched.variable => {
-            watched.variable = true;
-            log::warn!(
-                "bevy_coilover: TimestepMode::Variable in FixedUpdate ties the physics to max_dt; \
+/// How the engine and the schedule step.
+#[derive(SystemParam)]
+pub(crate) struct Timesteps<'w> {
+    mode: Res<'w, TimestepMode>,
+    settings: Res<'w, CoiloverSettings>,
+    fixed: Option<Res<'w, Time<Fixed>>>,
+    watched: ResMut<'w, Watched>,
+}
+
+impl Timesteps<'_> {
+    /// Whether the engine's step fits the schedule's.
+    pub(crate) fn check(&mut self) {
+        let fixed = self.fixed.as_ref();
+        let Some(fixed) = fixed.filter(|_| self.settings.schedule == FixedUpdate.intern()) else {
+            return;
+        };
+        let tick = fixed.timestep().as_secs_f32();
+        let watched = &mut self.watched;
+        match *self.mode {
+            TimestepMode::Variable { .. } if !watched.variable => {
+                watched.variable = true;
+                log::warn!(
+                    "bevy_coilover: TimestepMode::Variable in FixedUpdate ties the physics to max_dt; \
                  insert TimestepMode::Fixed {{ dt: {tick}, substeps: 1 }} instead"
-            );
-        }
-        TimestepMode::Fixed { dt, .. } if !watched.mismatch && (dt - tick).abs() > 1e-3 * tick => {
-            watched.mismatch = true;
-            log::warn!(
-                "bevy_coilover: TimestepMode::Fixed steps {dt} s while FixedUpdate ticks every \
+                );
+            }
+            TimestepMode::Fixed { dt, .. }
+                if !watched.mismatch && (dt - tick).abs() > 1e-3 * tick =>
+            {
+                watched.mismatch = true;
+                log::warn!(
+                    "bevy_coilover: TimestepMode::Fixed steps {dt} s while FixedUpdate ticks every \
                  {tick} s, so physics runs {:.2} times as fast as time; set both alike, for \
                  example with Time::<Fixed>::from_seconds({dt})",
-                dt / tick
-            );
+                    dt / tick
+                );
+            }
+            _ => {}
         }
-        _ => {}
     }
 }

@@ -3,7 +3,7 @@
 use super::body::{Bodies, handle};
 use super::timestep;
 use crate::backend::StepPlan;
-use crate::backend::rapier::forces::{self, Handles, Loads};
+use crate::backend::rapier::forces::{self, ChangedLoads, Handles, Loads};
 use crate::backend::rapier::held::{EngineParts, Solver, View, give_back, remove};
 use crate::scene::free;
 use crate::scene::state::Scene;
@@ -39,13 +39,15 @@ pub(crate) fn solve(
     time: Res<Time>,
     mut contexts: Query<ContextParts>,
     mut sets: Query<&mut RapierRigidBodySet>,
-    mut loads: Loads,
+    mut loads: ParamSet<(ChangedLoads, Loads)>,
     handles: Handles,
     users: Query<&AdditionalSolverIterations>,
     mut spare: Local<Spare>,
     mut commands: Commands,
 ) {
     let scene = &mut *scene;
+    forces::read_users(scene, loads.p0());
+    let mut loads = loads.p1();
     if scene.renewed {
         forces::release(scene, &mut loads, &handles, &mut sets, &mut commands);
     }
@@ -171,11 +173,4 @@ impl Scene {
             !here
         });
     }
-}
-
-/// Notes when the engine's bodies were changed last, at the end of a tick, after bevy_rapier's write-back, which marks every
-/// set as changed.
-pub(crate) fn mark(mut scene: ResMut<Scene>, sets: Query<Ref<RapierRigidBodySet>>) {
-    let changed = |context| sets.get(context).ok().map(|set| set.last_changed());
-    scene.still.mark(changed);
 }
