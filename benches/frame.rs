@@ -40,10 +40,10 @@ impl<F: Fn() -> App> Lazy<F> {
 
 fn frames(c: &mut Criterion) {
     let mut group = c.benchmark_group("frame");
-    group.sample_size(20);
-    for count in [1_000, 10_000] {
+    group.sample_size(10);
+    for count in [1_000, 10_000, 100_000] {
         group.throughput(Throughput::Elements(u64::from(count)));
-        for link in [Link::Nothing, Link::Ours, Link::Joint] {
+        for link in [Link::Nothing, Link::Bare, Link::Ours, Link::Joint] {
             let mut lazy = Lazy::new(|| Scene::Isolated.app(count, link, 1));
             group.bench_function(BenchmarkId::new(format!("{link:?}"), count), |b| {
                 let app = lazy.app();
@@ -70,7 +70,7 @@ fn road(c: &mut Criterion) {
                 b.iter(|| app.update());
             });
         }
-        let mut lazy = Lazy::new(|| scene.app(count, Link::Ours, 1));
+        let mut lazy = Lazy::new(|| scene.clocked(count, Link::Ours, 1));
         group.bench_function(BenchmarkId::new("own", count), |b| {
             b.iter_custom(|frames| lazy.own(frames, |_| {}));
         });
@@ -82,7 +82,7 @@ fn isolated(c: &mut Criterion) {
     let mut group = c.benchmark_group("own/isolated");
     group.sample_size(10);
     let mut bench = |name: &str, scene: Scene, link: Link, count: u32, microsteps: u32| {
-        let mut lazy = Lazy::new(|| scene.app(count, link, microsteps));
+        let mut lazy = Lazy::new(|| scene.clocked(count, link, microsteps));
         group.throughput(Throughput::Elements(u64::from(count)));
         group.bench_function(BenchmarkId::new(name, count), |b| {
             b.iter_custom(|frames| lazy.own(frames, |_| {}));
@@ -94,7 +94,9 @@ fn isolated(c: &mut Criterion) {
     bench("asleep", Scene::Asleep, Link::Ours, 10_000, 1);
     let beside = "asleep, another body flies";
     bench(beside, Scene::AllButOne, Link::Ours, 10_000, 1);
-    bench("bare force", Scene::Isolated, Link::Bare, 10_000, 1);
+    for count in [10_000, 100_000] {
+        bench("bare force", Scene::Isolated, Link::Bare, count, 1);
+    }
     bench("with laws", Scene::Isolated, Link::Laws, 10_000, 1);
     bench("turning", Scene::Isolated, Link::Turning, 1_000, 1);
     bench("4 microsteps", Scene::Isolated, Link::Ours, 10_000, 4);
@@ -112,7 +114,7 @@ fn networks(c: &mut Criterion) {
         let mut group = c.benchmark_group(format!("own/{scene:?}"));
         group.sample_size(10);
         for count in sizes.iter().copied() {
-            let mut lazy = Lazy::new(|| scene.app(count, Link::Ours, 1));
+            let mut lazy = Lazy::new(|| scene.clocked(count, Link::Ours, 1));
             let springs = scene.springs(count);
             group.throughput(Throughput::Elements(u64::from(springs)));
             group.bench_function(BenchmarkId::from_parameter(springs), |b| {
@@ -134,7 +136,7 @@ fn churn(c: &mut Criterion) {
         ("a spring", benches::respring),
     ];
     for (name, change) in cases {
-        let mut lazy = Lazy::new(|| Scene::Isolated.app(count, Link::Ours, 1));
+        let mut lazy = Lazy::new(|| Scene::Isolated.clocked(count, Link::Ours, 1));
         group.throughput(Throughput::Elements(u64::from(count)));
         group.bench_function(BenchmarkId::new(name, count), |b| {
             b.iter_custom(|frames| lazy.own(frames, change));
