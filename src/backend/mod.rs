@@ -10,7 +10,7 @@ pub(crate) mod rapier;
 pub(crate) use ends::{Finder, Found, Movable, Place};
 
 use crate::dynamics::body::Body;
-use crate::dynamics::delivery::Schedule;
+use crate::dynamics::delivery::{Schedule, TurnRule};
 use bevy::math::{DQuat, DVec3, Quat, Vec3};
 
 /// What an engine calls one of its bodies.
@@ -47,7 +47,7 @@ pub(crate) struct Wrench {
 }
 
 /// How an engine is about to step.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct StepPlan {
     /// Seconds in all; 0 where nothing will be stepped.
     pub time: f64,
@@ -59,6 +59,8 @@ pub(crate) struct StepPlan {
     pub fastest: f64,
     /// Cap on turning in all, rad; a body that may turn fast has none.
     pub farthest_turn: f64,
+    /// How it turns a body.
+    pub turn: TurnRule,
     /// Length of an ordinary thing, m: what counts as rest is that many times as fast.
     pub length_unit: f32,
 }

@@ -9,11 +9,11 @@
 //!
 //! Two unknowns meet two conditions wherever n > 1. Rotation is the same with the engine's own
 //! quaternion update and gyroscopic term in between, so there the linear answer is refined by running
-//! the engine's rotation here and correcting what is missed.
+//! the engine's rotation, which its backend tells ([`TurnRule`]), and correcting what is missed.
 
 use super::body::{Body, shortest, unwound};
 use crate::functions::atan;
-use bevy::math::{DMat3, DQuat, DVec3, Quat, Vec3};
+use bevy::math::{DMat3, DQuat, DVec3};
 
 /// How the engine will step: all substeps of one call together.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,6 +38,18 @@ pub(crate) struct Delivery {
     pub jump: DVec3,
     pub rate: DVec3,
 }
+
+/// A body about to be turned over a step.
+pub(crate) struct Spinning<'a> {
+    pub schedule: &'a Schedule,
+    pub body: &'a Body,
+    /// The engine counts in that it spins about another axis than that of its momentum.
+    pub gyroscopic: bool,
+}
+
+/// What an engine makes of a body that spins so, with such a delivery: rotation and angular velocity after the step, to the
+/// engine's own rounding.
+pub(crate) type TurnRule = fn(&Spinning, DVec3, &Delivery) -> (DQuat, DVec3);
 
 impl Schedule {
     pub(crate) fn new(time: f64, substeps: u32) -> Self {
@@ -107,16 +119,27 @@ impl Schedule {
         Delivery { jump, rate }
     }
 
-    /// Angular part: from the start's rotation and angular velocity to where `end` now is.
-    pub(crate) fn angular(&self, start: &Body, gyroscopic: bool, end: &Body) -> Delivery {
+    /// Angular part: from the start's rotation and angular velocity to where `end` now is, in an engine that turns bodies by
+    /// `rule`.
+    pub(crate) fn angular(
+        &self,
+        start: &Body,
+        gyroscopic: bool,
+        end: &Body,
+        rule: TurnRule,
+    ) -> Delivery {
         let spin = start.angular_velocity();
         let wanted = end.angular_velocity();
-        let engine = Rounded::new(self, start, gyroscopic);
+        let spinning = Spinning {
+            schedule: self,
+            body: start,
+            gyroscopic,
+        };
         // With the weight that a velocity has which is missed.
         let refined =
             |mut delivery: Delivery, weight: f64, correct: &dyn Fn(DVec3, DVec3) -> Delivery| {
                 for _ in 0..ROUNDS {
-                    let (rotation, velocity) = engine.run(spin, &delivery);
+                    let (rotation, velocity) = rule(&spinning, spin, &delivery);
                     let angle = small_angle(end.rotation * rotation.inverse());
                     let change = weight * (wanted - velocity);
                     let correction = correct(angle, change);
@@ -151,18 +174,6 @@ impl Schedule {
         let halves = 2.0 * f64::from(self.substeps);
         halves * atan(cap / halves)
     }
-
-    /// What the engine makes of a delivery, to its rounding: rotation and angular velocity.
-    #[cfg(test)]
-    pub(super) fn rounded_rotation(
-        &self,
-        start: &Body,
-        spin: DVec3,
-        gyroscopic: bool,
-        delivery: &Delivery,
-    ) -> (DQuat, DVec3) {
-        Rounded::new(self, start, gyroscopic).run(spin, delivery)
-    }
 }
 
 /// Most rounds of correction, each of which leaves a thirtieth of what was missed.
@@ -178,67 +189,6 @@ const MISSED: f64 = 3e-7;
 fn small_angle(rotation: DQuat) -> DVec3 {
     let half = shortest(rotation).xyz();
     2.0 * half * (1.0 + half.length_squared() / 6.0)
-}
-
-/// The engine's rotation of a body over its substeps, with its own f32: its gyroscopic term is biased by that (also
-/// where moments are equal, so that there should be none), over ten seconds by 1e-4 of the momentum, and running it
-/// shows the bias of this very step.
-struct Rounded {
-    substeps: u32,
-    /// Of one substep.
-    time: f32,
-    rotation: Quat,
-    principal: Quat,
-    inertia: Vec3,
-    inverse_inertia: Vec3,
-    gyroscopic: bool,
-}
-
-impl Rounded {
-    fn new(schedule: &Schedule, start: &Body, gyroscopic: bool) -> Self {
-        let inertia = start.inertia.as_vec3();
-        Self {
-            substeps: schedule.substeps,
-            time: schedule.substep as f32,
-            rotation: start.rotation.as_quat(),
-            principal: start.principal.as_quat(),
-            inertia,
-            inverse_inertia: Vec3::select(inertia.cmpgt(Vec3::ZERO), inertia.recip(), Vec3::ZERO),
-            gyroscopic,
-        }
-    }
-
-    /// Rotation and angular velocity after the step.
-    fn run(&self, spin: DVec3, delivery: &Delivery) -> (DQuat, DVec3) {
-        let h = self.time;
-        let increment = (delivery.rate * f64::from(h)).as_vec3();
-        let mut rotation = self.rotation;
-        let mut velocity = (spin + delivery.jump).as_vec3();
-        for _ in 0..self.substeps {
-            velocity += increment;
-            if self.gyroscopic {
-                velocity = self.precessed(rotation, velocity);
-            }
-            let half = velocity * (h * 0.5);
-            rotation = (Quat::from_xyzw(half.x, half.y, half.z, 1.0) * rotation).normalize();
-        }
-        (rotation.as_dquat(), velocity.as_dvec3())
-    }
-
-    /// Rapier's explicit gyroscopic term, which keeps the size of the angular momentum
-    /// (`gyroscopic_corrected_angvel` in rapier3d's rigid_body.rs).
-    fn precessed(&self, rotation: Quat, velocity: Vec3) -> Vec3 {
-        let axes = rotation * self.principal;
-        let w = axes.inverse() * velocity;
-        let momentum = self.inertia * w;
-        let moved = momentum - w.cross(momentum) * self.time;
-        let square = moved.length_squared();
-        if square == 0.0 {
-            return velocity;
-        }
-        let kept = moved * (momentum.length_squared() / square).sqrt();
-        axes * (self.inverse_inertia * kept)
-    }
 }
 
 /// The force or torque with which an inverse mass or inertia gives an acceleration; nothing along

@@ -43,8 +43,6 @@ pub(crate) fn single(number: f64) -> f32 {
 }
 
 #[cfg(test)]
-mod own_engine;
-#[cfg(test)]
 mod tests;
 #[cfg(test)]
 mod undamped;

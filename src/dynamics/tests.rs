@@ -2,10 +2,12 @@
 
 use super::body::{Body, Spin};
 use super::delivery::Schedule;
+use super::delivery::Spinning;
 use super::element::{Element, End, Path};
 use super::guide::Guide;
 use super::step::Component;
 use super::tolerance::Accuracy;
+use crate::backend::rapier::rotation::turn;
 use bevy::math::{DQuat, DVec3};
 use bevy::prelude::default;
 
@@ -241,8 +243,13 @@ fn engine_substeps_reach_the_state_that_was_ordered() {
             }
             assert!((x - end.position).length() < 1e-13 && (v - end.velocity).length() < 1e-11);
             for gyroscopic in [true, false] {
-                let d = s.angular(start, gyroscopic, end);
-                let (r, w) = s.rounded_rotation(start, start.angular_velocity(), gyroscopic, &d);
+                let d = s.angular(start, gyroscopic, end, turn);
+                let spinning = Spinning {
+                    schedule: &s,
+                    body: start,
+                    gyroscopic,
+                };
+                let (r, w) = turn(&spinning, start.angular_velocity(), &d);
                 let apart = (r.inverse() * end.rotation).xyz().length();
                 assert!(apart < 1e-6, "n {n}: {apart:.1e}");
                 let missed = (w - end.angular_velocity()).length();

@@ -79,7 +79,10 @@ impl Step {
         if start.spin != Spin::Ignored {
             let inverse_inertia = start.inverse_inertia();
             let before = start.angular_velocity();
-            let Delivery { jump, rate } = terms.schedule.angular(start, seen.is_gyroscopic, end);
+            let Delivery { jump, rate } = {
+                let rule = self.plan.turn;
+                terms.schedule.angular(start, seen.is_gyroscopic, end, rule)
+            };
             spin = Some((before + jump).as_vec3());
             torque = torque_for(rate, inverse_inertia) - start.torque;
             for axis in 0..3 {

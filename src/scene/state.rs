@@ -92,6 +92,16 @@ impl Scene {
             || self.row_of.contains_key(&entity)
     }
 
+    /// Forgets what was so of the last step alone.
+    pub(crate) fn begin(&mut self) {
+        self.time = 0.0;
+        self.tick = self.tick.wrapping_add(1).max(1);
+        self.stepped.clear();
+        self.delivered = false;
+        self.noting = false;
+        self.engine_went_back = false;
+    }
+
     /// Finds the components of which contacts may hold some body, or joints, where there are any.
     pub(crate) fn find_tangible(&mut self, any_joints: bool) {
         let changed = std::mem::replace(&mut self.had_joints, any_joints) != any_joints;

@@ -6,6 +6,7 @@ use crate::backend::{BodyId, Seen, Sight, StepPlan};
 use crate::dynamics::delivery::Schedule;
 use crate::dynamics::guide::Guide;
 use crate::dynamics::tolerance::Accuracy;
+use crate::settings::CoiloverSettings;
 use bevy::math::{DQuat, DVec3};
 use std::sync::atomic::AtomicBool;
 
@@ -37,6 +38,19 @@ pub(crate) fn facing(held: &Held, time: f64, sight: &impl Sight) -> (DQuat, DVec
 }
 
 impl Step {
+    pub(crate) fn new(plan: StepPlan, settings: &CoiloverSettings, quiet: bool, tick: u32) -> Self {
+        Self {
+            plan,
+            schedule: plan.schedule(plan.substeps),
+            accuracy: settings.accuracy(),
+            most_substeps: settings.max_substeps.max(1),
+            alike: None,
+            quiet,
+            tick,
+            delivered: AtomicBool::new(false),
+        }
+    }
+
     /// A body as it may be moved; one that may not be any more makes the scene stale.
     #[inline(always)]
     pub(crate) fn movable(

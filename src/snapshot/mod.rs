@@ -1,10 +1,9 @@
 //! Going back to an earlier tick, or on from it in another world.
 
 mod error;
-mod rapier;
 
+pub use crate::backend::rapier::snapshot::RapierSnapshot;
 pub use error::SnapshotError;
-pub use rapier::RapierSnapshot;
 
 use crate::scene::kept::Kept;
 use bevy::ecs::entity::{EntityMapper, MapEntities};

@@ -133,6 +133,37 @@ fn no_more_than_three_files_import_each_other() {
 }
 
 #[test]
+fn one_folder_of_the_physics_names_rapier() {
+    for folder in [
+        "src/element",
+        "src/input",
+        "src/scene",
+        "src/dynamics",
+        "src/backend",
+    ] {
+        let paths = sources(folder);
+        let outside = paths.iter().filter(|path| {
+            let module = module(path);
+            !module.starts_with(&["backend".to_owned(), "rapier".to_owned()])
+        });
+        for path in outside {
+            let text = fs::read_to_string(path).expect("readable");
+            let code = text
+                .lines()
+                .filter(|line| !line.trim_start().starts_with("//"));
+            let named: Vec<_> = code.filter(|line| line.contains("rapier")).collect();
+            // Which engines there are, and what tests compare with.
+            let only = |line: &&str| {
+                line.contains("mod rapier")
+                    || line.contains("fn ")
+                    || line.contains("rotation::turn")
+            };
+            assert!(named.iter().all(only), "{path:?}: {named:?}");
+        }
+    }
+}
+
+#[test]
 fn no_file_is_longer_than_four_hundred_lines() {
     for folder in ["src", "tests", "examples", "benches", "compare"] {
         for path in sources(folder) {

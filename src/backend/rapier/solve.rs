@@ -2,7 +2,6 @@
 
 use super::body::{Bodies, handle};
 use super::timestep;
-use crate::backend::StepPlan;
 use crate::backend::rapier::forces::{self, ChangedLoads, Handles, Loads};
 use crate::backend::rapier::held::{EngineParts, Solver, View, give_back, remove};
 use crate::scene::free;
@@ -12,7 +11,6 @@ use crate::settings::CoiloverSettings;
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
 use bevy_rapier3d::rapier::dynamics::IntegrationParameters;
-use std::sync::atomic::AtomicBool;
 
 /// What of a Rapier context the step needs.
 type ContextParts<'a> = (
@@ -100,32 +98,7 @@ pub(crate) fn solve(
     forces::show(scene, &mut loads);
 }
 
-impl Step {
-    fn new(plan: StepPlan, settings: &CoiloverSettings, quiet: bool, tick: u32) -> Self {
-        Self {
-            plan,
-            schedule: plan.schedule(plan.substeps),
-            accuracy: settings.accuracy(),
-            most_substeps: settings.max_substeps.max(1),
-            alike: None,
-            quiet,
-            tick,
-            delivered: AtomicBool::new(false),
-        }
-    }
-}
-
 impl Scene {
-    /// Forgets what was so of the last step alone.
-    fn begin(&mut self) {
-        self.time = 0.0;
-        self.tick = self.tick.wrapping_add(1).max(1);
-        self.stepped.clear();
-        self.delivered = false;
-        self.noting = false;
-        self.engine_went_back = false;
-    }
-
     /// Tells a context how many sweeps over all joints and contacts a substep takes.
     fn raise_sweeps(
         &mut self,

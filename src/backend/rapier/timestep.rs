@@ -1,6 +1,7 @@
 //! How the engine is about to step.
 
 use super::body::FARTHEST_TURN;
+use super::rotation;
 use crate::backend::StepPlan;
 use bevy_rapier3d::prelude::TimestepMode;
 use bevy_rapier3d::rapier::dynamics::IntegrationParameters;
@@ -20,6 +21,7 @@ pub(crate) fn plan(
         substeps: parameters.num_solver_iterations,
         fastest: f64::from(parameters.max_linear_velocity()),
         farthest_turn: FARTHEST_TURN * f64::from(calls),
+        turn: rotation::turn,
         length_unit: parameters.length_unit,
     }
 }

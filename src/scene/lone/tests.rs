@@ -22,6 +22,7 @@ fn step(microsteps: u32) -> Step {
         substeps: 4,
         fastest: 400.0,
         farthest_turn: 0.8,
+        turn: |spinning, spin, _| (spinning.body.rotation, spin),
         length_unit: 1.0,
     };
     Step {
@@ -137,9 +138,9 @@ fn each_goes_as_it_would_alone_bit_for_bit() {
             assert!(solved, "lane {lane}");
             compared += 1;
             assert_eq!(row.direction(), Some(reached.direction), "lane {lane}");
-            for end in 0..2 {
+            for (end, moves) in moves.into_iter().enumerate() {
                 let push = lanes.push(lane, end);
-                if moves[end] {
+                if moves {
                     let given = Given {
                         velocity: push.velocity,
                         force: push.force,

@@ -1,8 +1,8 @@
 //! Rapier's side.
 
-use super::SnapshotError;
 use crate::backend::rapier::kept::note_engine;
 use crate::compat::{self, SoftBodies};
+use crate::snapshot::SnapshotError;
 use bevy::ecs::entity::{EntityHashSet, EntityMapper, MapEntities};
 use bevy::prelude::*;
 use bevy_rapier3d::plugin::systems::writeback_rigid_bodies;
