@@ -162,11 +162,6 @@ impl Pieces {
         [least, greatest]: [f64; 2],
     ) {
         let free = least.is_finite() == greatest.is_finite();
-        if free {
-            // Damping of its own, which neither side's range cuts off.
-            let tangent = Tangent::linear(0.0, damping, kink);
-            self.push(reach.piece(tangent, [least, greatest]));
-        }
         let sides = [false, true].map(|above| {
             let (beside, beyond) = if above {
                 (f64::max as fn(f64, f64) -> f64, 1.0)
@@ -186,6 +181,11 @@ impl Pieces {
         });
         let shares = sides.map(|tangent| reach.share(&tangent, [0.0, f64::INFINITY]));
         let share = shares[0].min(shares[1]);
+        if free {
+            // Damping of its own, which neither side's range cuts off.
+            let tangent = Tangent::linear(0.0, share * damping, kink);
+            self.push(reach.piece(tangent, [least, greatest]));
+        }
         let middle = (share * spring(kink).force).max(least).min(greatest);
         let [below, mut above] = sides.map(|tangent| tangent.times(share));
         above.force -= middle;

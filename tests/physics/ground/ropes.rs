@@ -165,15 +165,24 @@ fn a_rope_that_falls_on_the_ground_wins_nothing() {
 /// 5·10⁴, and dampers that all but weld.
 #[test]
 fn a_rope_that_is_all_but_rigid_falls_as_a_chain_does() {
-    for link in [Link::Rope, Link::Sided, Link::Buffer, Link::Loose] {
-        for (firmness, damping) in [
-            (1e8, None),
-            (1e10, None),
-            (1e2, Some(1e3)),
-            (1e2, Some(1e11)),
-        ] {
-            let way = CoiloverPlugin::default();
-            let mut chain = chain(way, link, 10, firmness);
+    let kinds = [
+        Link::Rope,
+        Link::Sided,
+        Link::Table,
+        Link::Both,
+        Link::Buffer,
+        Link::Loose,
+    ];
+    let firm = [
+        (1e8, None),
+        (1e10, None),
+        (1e2, Some(1e3)),
+        (1e2, Some(1e5)),
+        (1e2, Some(1e11)),
+    ];
+    for (link, links) in kinds.into_iter().flat_map(|link| [(link, 10), (link, 13)]) {
+        for (firmness, damping) in firm {
+            let mut chain = chain(CoiloverPlugin::default(), link, links, firmness);
             if let Some(damping) = damping {
                 chain.damp(damping);
             }
@@ -185,8 +194,13 @@ fn a_rope_that_is_all_but_rigid_falls_as_a_chain_does() {
             let faults = chain.elements.iter();
             let faults = faults.filter_map(|e| chain.scene.lab.app.world().get::<SpringFault>(*e));
             assert_eq!(faults.count(), 0);
-            println!("{link:?}, firmness {firmness}, {damping:?}: at most {fastest:.1} m/s");
-            assert!(fastest < 12.0, "{link:?}, {firmness}: {fastest} m/s");
+            println!(
+                "{links} of {link:?}, firmness {firmness}, {damping:?}: at most {fastest:.1} m/s"
+            );
+            assert!(
+                fastest < 12.0,
+                "{links} of {link:?}, {firmness}: {fastest} m/s"
+            );
         }
     }
 }

@@ -78,9 +78,9 @@ const FAR: f64 = 2.0;
 /// ends by a thousandth of a millimetre then. Pinned by `ground::ropes`: with 10⁴ it wins energy.
 const FIRMEST: f64 = 2.5e3;
 
-/// The same for its damping · dt over mass: its ends creep by 3 mm/s under their weight then. Pinned by `ground::ropes`: with
-/// 500 it wins energy.
-const DAMPEST: f64 = 50.0;
+/// The same for its damping · dt over mass: its ends creep by 8 mm/s under their weight then. Pinned by `ground::ropes`: with
+/// 50 a rope whose damper is firmer than that reaches 20 m/s in its fall.
+const DAMPEST: f64 = 20.0;
 
 impl Plan {
     /// Reads a component; says whether all its bodies can be moved.

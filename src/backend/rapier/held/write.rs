@@ -278,7 +278,10 @@ fn stagger(
     }
     for order in &plan.orders {
         let rate = order.line.motion(&order.element, &plan.bodies, 0.0).axial;
-        let tension = order.pieces.tension(order.line.distance(), rate);
+        let damping: f64 = order.pieces.iter().map(|p| p.tangent.damping).sum();
+        // What a firm damper stops in a substep, it has stopped then.
+        let lasting = (1.0 + 2.0 * by.abs() * damping * order.line.inverse_mass).powi(-2);
+        let tension = order.pieces.tension(order.line.distance(), lasting * rate);
         let impulse = -by * tension * order.line.direction;
         order.line.impulse(&mut moved, impulse);
     }
