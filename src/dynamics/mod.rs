@@ -1,7 +1,7 @@
 //! The mathematics of springs and dampers: no ECS, no engine, f64 throughout, SI units.
 //!
 //! Read in the order in which a step runs. [`tolerance`] decides how finely to step, [`step`] holds what has
-//! to be solved together. [`body`] drifts, [`element`] has the [`line`] between its ends (or
+//! to be solved together. [`body`] drifts, [`element`] has the [`mod@line`] between its ends (or
 //! what [`guide`] gives instead, and the [`linkage`] that holds their bodies), [`poles`] gives
 //! the exact coefficients; [`kick`] acts for a lone element, [`pair`] for one on bodies that do not turn, four of those at once in [`lanes`],
 //! [`nonlinear_pair`] for one of those with a force [`law`] of its own, [`network`] for elements that share bodies,

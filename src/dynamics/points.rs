@@ -2,7 +2,7 @@
 //!
 //! What it does is what [`super::network`] does, to rounding; but here an end is a point mass instead of a
 //! rigid body, so that thousands of them stay in the processor's cache. [`kick`] has the step,
-//! [`solve`] its linear system, [`warm_start`] what a network needs that goes from one step into the next,
+//! [`solve`] its linear system, [`free_points`] what a network needs that goes from one step into the next,
 //! [`survey`] its energy.
 
 mod free_points;

@@ -1,6 +1,7 @@
 //! Which elements have to be solved together.
 
 use crate::scene::assembly::Assembly;
+use crate::scene::order::Neighbours;
 use crate::scene::rows::{BodyFlags, BodyRow, ElementFlags, ElementRow, Members, mix};
 use bevy::platform::collections::HashMap;
 use bevy::prelude::Entity;
@@ -73,11 +74,14 @@ fn join(elements: &[ElementRow], bodies: usize) -> Vec<usize> {
     parent
 }
 
-/// An order of elements that does not depend on when they or their bodies were spawned.
-fn rank(row: &ElementRow, bodies: &[BodyRow]) -> impl Ord + use<> {
+/// An order of elements that does not depend on when they or their bodies were spawned; these are the places of bodies within
+/// their components.
+fn rank(row: &ElementRow, places: &[u32]) -> impl Ord + use<> {
     let p = row.parameters();
+    let on = [0, 1].map(|end| row.movable(end).map(|b| places[b]));
     (
-        [0, 1].map(|end| row.movable(end).map(|b| bodies[b].rare.rank)),
+        on.iter().flatten().min().copied(),
+        on,
         p.ties.anchors.map(|a| a.to_array().map(f32::to_bits)),
         [
             p.numbers.stiffness,
@@ -115,18 +119,23 @@ impl Groups {
             elements.iter().enumerate().filter_map(of_element),
             &mut self.elements,
         );
-        for group in element_starts
-            .windows(2)
-            .filter(|group| group[1] > group[0] + 1)
-        {
-            self.elements[group[0]..group[1]]
-                .sort_by_cached_key(|e| rank(&elements[*e as usize], bodies));
+        let mut neighbours = None;
+        let mut places = vec![0; bodies.len()];
+        for group in body_starts.windows(2).filter(|g| g[1] > g[0] + 1) {
+            let members = &mut self.bodies[group[0]..group[1]];
+            members.sort_by_key(|b| bodies[*b as usize].rare.rank);
+            if members.len() > 2 {
+                let sound = |row: &ElementRow| is_sound(&row);
+                let all = neighbours.get_or_insert_with(|| Neighbours::of(elements, bodies, sound));
+                all.arrange(members);
+            }
+            for (place, b) in members.iter().enumerate() {
+                places[*b as usize] = place as u32;
+            }
         }
-        for group in body_starts
-            .windows(2)
-            .filter(|group| group[1] > group[0] + 1)
-        {
-            self.bodies[group[0]..group[1]].sort_by_key(|b| bodies[*b as usize].rare.rank);
+        for group in element_starts.windows(2).filter(|g| g[1] > g[0] + 1) {
+            self.elements[group[0]..group[1]]
+                .sort_by_cached_key(|e| rank(&elements[*e as usize], &places));
         }
         self.list.clear();
         self.list.extend((0..count).map(|g| Group {

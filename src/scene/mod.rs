@@ -25,6 +25,7 @@ pub(crate) mod held;
 pub(crate) mod kept;
 pub(crate) mod lone;
 pub(crate) mod observe;
+pub(crate) mod order;
 #[cfg(test)]
 mod own_engine;
 pub(crate) mod push;

@@ -2,7 +2,7 @@
 //!
 //! A force that is worked out for a whole step, before the engine knows of contact and joint, is explicit to them, however
 //! exact it is in free flight. So each element of such a component is a soft constraint of the engine's own solver, in as
-//! many substeps as it needs. A [`step`] runs [`touch`] → [`plan`] → [`write`] → (Rapier steps) → [`arrive`]. [`order`] says what one
+//! many substeps as it needs. A [`step`] runs [`touch`] → [`plan`] → [`mod@write`] → (Rapier steps) → [`arrive`]. [`order`] says what one
 //! element is to do, [`linkage`] what mass it has then; [`crate::scene::held`] is what it has in the engine, [`joint`] and [`lend`]
 //! how Rapier is told.
 
