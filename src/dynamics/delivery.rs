@@ -154,7 +154,13 @@ impl Schedule {
         let cap = start.farthest_turn * self.per_time;
         let expected = 0.5 * self.time * (spin + wanted);
         let turned = unwound(end.rotation * start.rotation.inverse(), expected);
-        let direct = self.reach(turned - self.time * spin, wanted - spin);
+        let own = if gyroscopic {
+            self.gyroscopic([start, end])
+        } else {
+            [DVec3::ZERO; 2]
+        };
+        let summed = self.summed(turned, [spin, wanted]);
+        let direct = self.reach(summed - self.time * spin - own[0], wanted - spin - own[1]);
         let eased = self.capped(direct, spin, CAUTION * cap);
         if eased == direct {
             let delivery = refined(direct, 1.0, &|angle, change| self.reach(angle, change));
@@ -167,6 +173,25 @@ impl Schedule {
             jump: angle * self.per_time,
             rate: DVec3::ZERO,
         })
+    }
+
+    /// How far a body is turned, and by how much its angular velocity changes, by what an engine that counts in the gyroscopic
+    /// term adds of itself: that term goes evenly from what it is at the start to what it is at the end, and each substep takes
+    /// it as it stands before.
+    fn gyroscopic(&self, ways: [&Body; 2]) -> [DVec3; 2] {
+        let [first, last] = ways.map(|body| body.angular_acceleration(body.inverse_inertia()).1);
+        let (n, more) = (f64::from(self.substeps), last - first);
+        let change = first + (n - 1.0) / (2.0 * n) * more;
+        let way = self.reach * first + self.time * (n * n - 1.0) / (6.0 * n * n) * more;
+        [self.time * way, self.time * change]
+    }
+
+    /// What the substeps' turns must sum up to for them to come to this rotation, where the angular velocity changes evenly
+    /// from one to the other: turns do not commute (W. Magnus, 1954, to second order), and each goes along the tangent.
+    fn summed(&self, turned: DVec3, [from, to]: [DVec3; 2]) -> DVec3 {
+        let each = turned.length_squared() / f64::from(self.substeps).powi(2);
+        let order = self.time * self.time / 12.0 * (to - from).cross(from);
+        turned * (1.0 + each / 12.0) - order
     }
 
     /// How far the engine turns a body that its cap lets turn so far: it goes along tangents.

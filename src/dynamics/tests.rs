@@ -1,8 +1,7 @@
 //! The step against reference trajectories and conservation laws, without any engine.
 
 use super::body::{Body, Spin};
-use super::delivery::Schedule;
-use super::delivery::Spinning;
+use super::delivery::{Delivery, Schedule, Spinning};
 use super::element::{Element, End, Path};
 use super::guide::Guide;
 use super::step::Component;
@@ -10,6 +9,7 @@ use super::tolerance::Accuracy;
 use crate::backend::rapier::rotation::turn;
 use bevy::math::{DQuat, DVec3};
 use bevy::prelude::default;
+use std::cell::Cell;
 
 const DT: f64 = 1.0 / 60.0;
 
@@ -223,6 +223,17 @@ fn spinning_pair_converges_at_second_order_and_fourth_when_extrapolated() {
     );
 }
 
+thread_local! {
+    /// How often [`counted`] was asked.
+    static RUNS: Cell<u32> = const { Cell::new(0) };
+}
+
+/// The engine's rule, counted.
+fn counted(spinning: &Spinning, spin: DVec3, delivery: &Delivery) -> (DQuat, DVec3) {
+    RUNS.set(RUNS.get() + 1);
+    turn(spinning, spin, delivery)
+}
+
 #[test]
 fn engine_substeps_reach_the_state_that_was_ordered() {
     let mut pair = dumbbell(500.0);
@@ -243,7 +254,9 @@ fn engine_substeps_reach_the_state_that_was_ordered() {
             }
             assert!((x - end.position).length() < 1e-13 && (v - end.velocity).length() < 1e-11);
             for gyroscopic in [true, false] {
-                let d = s.angular(start, gyroscopic, end, turn);
+                RUNS.set(0);
+                let d = s.angular(start, gyroscopic, end, counted);
+                println!("n {n} gyro {gyroscopic}: {} runs of the rule", RUNS.get());
                 let spinning = Spinning {
                     schedule: &s,
                     body: start,

@@ -9,6 +9,7 @@ use crate::input::companions::Companions;
 use crate::input::parts::{Acts, ChangedParts, Parts};
 use crate::scene::refresh::{refresh, still_faulty};
 use crate::scene::state::Scene;
+use bevy::ecs::bundle::NoBundleEffect;
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
 
@@ -70,6 +71,7 @@ fn enter_loads(
     finder: &RapierFinder,
     commands: &mut Commands,
 ) {
+    let (mut new, mut new_loads) = (Vec::new(), Vec::new());
     for (slot, row) in scene.bodies.iter_mut().enumerate() {
         let Ok((load, force)) = loads.get_mut(row.entity) else {
             continue;
@@ -96,12 +98,27 @@ fn enter_loads(
         // A force written to the engine alone belongs to the user too.
         let present = force.copied().or(engine).unwrap_or_default();
         row.set_user(wrench(&known.unwrap_or(present)));
-        let mut entity = commands.entity(row.entity);
-        if force.is_none() {
-            entity.try_insert(present);
+        let load = SpringLoad::new(present, slot);
+        match (known, force) {
+            (None, None) => new.push((row.entity, (present, load))),
+            (None, Some(_)) => new_loads.push((row.entity, load)),
+            (Some(_), None) => {
+                commands.entity(row.entity).try_insert(present);
+            }
+            (Some(_), Some(_)) => {}
         }
-        if known.is_none() {
-            entity.try_insert(SpringLoad::new(present, slot));
-        }
+    }
+    insert_all(new, commands);
+    insert_all(new_loads, commands);
+}
+
+/// Gives many entities components at once: an entity that gets one after the other leaves room for itself in a table for each, and a
+/// command for each takes room for ever.
+fn insert_all<B: Bundle<Effect: NoBundleEffect>>(all: Vec<(Entity, B)>, commands: &mut Commands) {
+    if !all.is_empty() {
+        commands.queue(|world: &mut World| {
+            // What has gone meanwhile needs none.
+            _ = world.try_insert_batch(all);
+        });
     }
 }

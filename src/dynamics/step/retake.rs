@@ -43,8 +43,8 @@ impl Caution {
 }
 
 impl Component {
-    /// Takes a network's step again, finer; says whether that won nothing. Where as many micro-steps are taken as are
-    /// asked, it is left as it is.
+    /// Takes a network's step again, finer and finer; says whether that won nothing. Where as many micro-steps are taken as
+    /// are asked, it is left as it is.
     pub(super) fn retake(
         &mut self,
         time: f64,
@@ -58,19 +58,25 @@ impl Component {
             return false;
         }
         let most = accuracy.resolve.max(MOST);
-        let (count, _) = accuracy.cap(FINER.saturating_mul(outcome.microsteps.max(1)).min(most));
-        if count <= outcome.microsteps {
-            return false;
+        let mut taken = outcome.microsteps.max(1);
+        loop {
+            let (count, _) = accuracy.cap(FINER.saturating_mul(taken).min(most));
+            if count <= taken {
+                return false;
+            }
+            self.load(0);
+            self.run(time, count);
+            self.hold_back(time);
+            outcome.microsteps += count;
+            taken = count;
+            let wins_nothing = bound.hold(&self.elements, &mut self.bodies, time);
+            self.memory.caution = Caution {
+                left: STAYS,
+                microsteps: if wins_nothing { count } else { 0 },
+            };
+            if wins_nothing {
+                return true;
+            }
         }
-        self.load(0);
-        self.run(time, count);
-        self.hold_back(time);
-        outcome.microsteps += count;
-        let wins_nothing = bound.hold(&self.elements, &mut self.bodies, time);
-        self.memory.caution = Caution {
-            left: STAYS,
-            microsteps: if wins_nothing { count } else { 0 },
-        };
-        wins_nothing
     }
 }
