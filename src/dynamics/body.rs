@@ -160,6 +160,16 @@ impl Body {
         };
     }
 
+    /// Angular acceleration of free flight with such an angular velocity, of a body that can turn about all axes.
+    pub(crate) fn precession(&self, velocity: DVec3) -> DVec3 {
+        if !matches!(self.spin, Spin::Free { .. }) {
+            return DVec3::ZERO;
+        }
+        let frame = self.rotation * self.principal;
+        let spin = frame.inverse() * velocity;
+        frame * ((self.inertia * spin).cross(spin) / self.inertia)
+    }
+
     /// Angular acceleration by the user's torque, and the gyroscopic one of free flight.
     pub(crate) fn angular_acceleration(&self, inverse_inertia: DMat3) -> (DVec3, DVec3) {
         let pushed = inverse_inertia * self.torque;

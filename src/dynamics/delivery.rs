@@ -154,13 +154,16 @@ impl Schedule {
         let cap = start.farthest_turn * self.per_time;
         let expected = 0.5 * self.time * (spin + wanted);
         let turned = unwound(end.rotation * start.rotation.inverse(), expected);
-        let own = if gyroscopic {
-            self.gyroscopic([start, end])
-        } else {
-            [DVec3::ZERO; 2]
-        };
-        let summed = self.summed(turned, [spin, wanted]);
-        let direct = self.reach(summed - self.time * spin - own[0], wanted - spin - own[1]);
+        let mut direct = self.reach(turned - self.time * spin, wanted - spin);
+        for _ in 0..FORESEEN {
+            let summed = self.summed(turned, spin, &direct);
+            let own = if gyroscopic {
+                self.gyroscopic([start, end], [spin, wanted], &direct)
+            } else {
+                [DVec3::ZERO; 2]
+            };
+            direct = self.reach(summed - self.time * spin - own[0], wanted - spin - own[1]);
+        }
         let eased = self.capped(direct, spin, CAUTION * cap);
         if eased == direct {
             let delivery = refined(direct, 1.0, &|angle, change| self.reach(angle, change));
@@ -176,22 +179,28 @@ impl Schedule {
     }
 
     /// How far a body is turned, and by how much its angular velocity changes, by what an engine that counts in the gyroscopic
-    /// term adds of itself: that term goes evenly from what it is at the start to what it is at the end, and each substep takes
-    /// it as it stands before.
-    fn gyroscopic(&self, ways: [&Body; 2]) -> [DVec3; 2] {
-        let [first, last] = ways.map(|body| body.angular_acceleration(body.inverse_inertia()).1);
-        let (n, more) = (f64::from(self.substeps), last - first);
-        let change = first + (n - 1.0) / (2.0 * n) * more;
-        let way = self.reach * first + self.time * (n * n - 1.0) / (6.0 * n * n) * more;
-        [self.time * way, self.time * change]
+    /// term adds of itself: that goes evenly from what it is in the first substep to what it is in the last.
+    fn gyroscopic(
+        &self,
+        [start, end]: [&Body; 2],
+        [spin, wanted]: [DVec3; 2],
+        delivery: &Delivery,
+    ) -> [DVec3; 2] {
+        let first = spin + delivery.jump + self.substep * delivery.rate;
+        let (first, last) = (start.precession(first), end.precession(wanted));
+        let share = (1.0 + f64::from(self.substeps).recip()) / 6.0;
+        let way = self.reach * first + share * self.time * (last - first);
+        [self.time * way, 0.5 * self.time * (first + last)]
     }
 
-    /// What the substeps' turns must sum up to for them to come to this rotation, where the angular velocity changes evenly
-    /// from one to the other: turns do not commute (W. Magnus, 1954, to second order), and each goes along the tangent.
-    fn summed(&self, turned: DVec3, [from, to]: [DVec3; 2]) -> DVec3 {
-        let each = turned.length_squared() / f64::from(self.substeps).powi(2);
-        let order = self.time * self.time / 12.0 * (to - from).cross(from);
-        turned * (1.0 + each / 12.0) - order
+    /// What the substeps' turns must sum up to for them to come to this rotation: turns do not commute (W. Magnus, 1954, to
+    /// second order), and each goes along the tangent.
+    fn summed(&self, turned: DVec3, spin: DVec3, delivery: &Delivery) -> DVec3 {
+        let square = f64::from(self.substeps).powi(-2);
+        let tangent = turned.length_squared() * square / 12.0;
+        let order = self.time.powi(3) * (1.0 - square) / 12.0;
+        let order = order * delivery.rate.cross(spin + delivery.jump);
+        turned * (1.0 + tangent) - order
     }
 
     /// How far the engine turns a body that its cap lets turn so far: it goes along tangents.
@@ -200,6 +209,9 @@ impl Schedule {
         halves * atan(cap / halves)
     }
 }
+
+/// How often the first guess is made better by what an engine's rule comes to in closed form, which costs far less than to run it.
+const FORESEEN: usize = 2;
 
 /// Most rounds of correction, each of which leaves a thirtieth of what was missed.
 const ROUNDS: usize = 6;

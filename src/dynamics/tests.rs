@@ -256,7 +256,10 @@ fn engine_substeps_reach_the_state_that_was_ordered() {
             for gyroscopic in [true, false] {
                 RUNS.set(0);
                 let d = s.angular(start, gyroscopic, end, counted);
-                println!("n {n} gyro {gyroscopic}: {} runs of the rule", RUNS.get());
+                // What is foreseen is near enough for what turns as most bodies do.
+                let turned = (end.rotation * start.rotation.inverse()).to_scaled_axis();
+                let most = if turned.length() < 0.05 { 2 } else { 5 };
+                assert!(RUNS.get() <= most, "n {n}: {} runs", RUNS.get());
                 let spinning = Spinning {
                     schedule: &s,
                     body: start,

@@ -135,6 +135,7 @@ impl Assembly {
         self.start.clear();
         self.seen.clear();
         self.warm.centers.clear();
+        self.warm.line_up(members);
         component.perturbed = self.warm.perturbed;
         for b in members.bodies {
             let row = &mut bodies[*b as usize];

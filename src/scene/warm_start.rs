@@ -17,12 +17,25 @@ pub(crate) struct WarmStart {
     pub omega: f32,
     /// Where each body's centre of mass is in its own frame.
     pub centers: Vec<Vec3>,
-    /// Its bodies before the step.
+    /// Places of its bodies within the component in the order of their rows, which is that of the engine's memory: large networks
+    /// are read and written in that.
+    pub in_memory: Vec<u32>,
+    /// Its bodies before the step, in that order.
     seen: Vec<Seen>,
     /// Some body has not rested for long.
     restless: bool,
     /// Something else than elements can have changed what it has.
     pub perturbed: bool,
+}
+
+impl WarmStart {
+    /// Takes in which bodies there are.
+    pub(crate) fn line_up(&mut self, members: &Members) {
+        self.in_memory.clear();
+        self.in_memory.extend(0..members.bodies.len() as u32);
+        self.in_memory
+            .sort_unstable_by_key(|slot| members.bodies[*slot as usize]);
+    }
 }
 
 impl Assembly {
@@ -74,8 +87,8 @@ impl Assembly {
         let points = self.component.points_to_continue(time)?;
         warm.restless = false;
         warm.seen.clear();
-        for (slot, b) in members.bodies.iter().enumerate() {
-            let row = &mut bodies[*b as usize];
+        for slot in warm.in_memory.iter().map(|slot| *slot as usize) {
+            let row = &mut bodies[members.bodies[slot] as usize];
             let body = sight.see(row.id)?;
             let same = warm.centers[slot] == body.local_center;
             if !body.is_movable || body.is_asleep || body.is_locked || !same {
@@ -121,10 +134,11 @@ impl Assembly {
         engine: &mut impl Engine,
     ) {
         let points = self.component.warm_points();
-        for (slot, b) in members.bodies.iter().enumerate() {
+        for (slot, seen) in self.warm.in_memory.iter().zip(&self.warm.seen) {
+            let slot = *slot as usize;
             let (origin, flight) = (points.origin(slot), points.flight(slot));
-            let row = &mut bodies[*b as usize];
-            let more = self.warm.seen[slot].more_substeps;
+            let row = &mut bodies[members.bodies[slot] as usize];
+            let more = seen.more_substeps;
             let push = Push {
                 keep_awake: self.warm.restless,
                 ..step.push_point(more, &origin, &flight)
