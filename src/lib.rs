@@ -22,6 +22,7 @@ mod recommend;
 mod scene;
 mod settings;
 mod snapshot;
+mod threads;
 #[cfg(feature = "visual")]
 mod visual;
 #[cfg(feature = "workbench")]

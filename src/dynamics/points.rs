@@ -2,11 +2,12 @@
 //!
 //! What it does is what [`super::network`] does, to rounding; but here an end is a point mass instead of a
 //! rigid body, so that thousands of them stay in the processor's cache. [`kick`] has the step,
-//! [`solve`] its linear system, [`free_points`] what a network needs that goes from one step into the next,
+//! [`solve`] its linear system, [`parts`] how threads share it, [`free_points`] what a network needs that goes from one step into the next,
 //! [`survey`] its energy.
 
 mod free_points;
 mod kick;
+mod parts;
 mod solve;
 mod survey;
 
@@ -16,10 +17,13 @@ use super::excited::spread;
 use super::guide::Guide;
 use super::resolution::{EXTRAPOLATION_LIMIT, network_steps};
 use super::tolerance::{Motion, velocity_counts};
+use crate::threads::share;
 use bevy::math::DVec3;
 pub(crate) use free_points::{Flight, FreePoint};
 use kick::Bar;
+use parts::{PIECE, Parts};
 use solve::Solver;
+use survey::Survey;
 
 /// A body's centre of mass, or a point that moves as something else decides.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -64,12 +68,15 @@ pub(crate) struct Points {
     damping: Vec<f64>,
     /// (ω h)² of the stiffest mode.
     pub(super) stiffest: f64,
+    parts: Parts,
     bars: Vec<Bar>,
     impulses: Vec<DVec3>,
     solver: Solver,
     budget: u32,
     converged: bool,
     saved: [(Vec<Point>, Vec<Wire>); 3],
+    /// Of each piece of points and elements.
+    surveys: Vec<Survey>,
 }
 
 /// Direction and length of a line; see [`Element::line`].
@@ -120,6 +127,19 @@ impl Wire {
         }
     }
 
+    /// See [`Element::aim`].
+    #[inline(always)]
+    fn aim(&mut self, ends: [&Point; 2], step: f64) {
+        self.side = self.aimed(ends);
+        self.stiff_damper = false;
+        if self.damping > 0.0 && self.rest_length == 0.0 {
+            let inverse_mass = ends[0].inverse_mass + ends[1].inverse_mass;
+            let resolved = self.stiffness * inverse_mass * step * step < 4.0;
+            self.stiff_damper = resolved && self.damping * inverse_mass * step > 0.5;
+        }
+    }
+
+    #[inline(always)]
     fn line(&self, [a, b]: [&Point; 2]) -> Option<Line> {
         let d = b.position - a.position;
         let square = d.length_squared();
@@ -189,6 +209,7 @@ impl Points {
                 work: element.work,
             });
         }
+        self.parts.find(&self.wires, self.bodies);
         self.add_up();
         self.begin(budget);
     }
@@ -246,16 +267,12 @@ impl Points {
 
     /// See [`Element::aim`].
     fn aim(&mut self, step: f64) {
-        for wire in &mut self.wires {
-            let [a, b] = wire.of(&self.points);
-            wire.side = wire.aimed([a, b]);
-            wire.stiff_damper = false;
-            if wire.damping > 0.0 && wire.rest_length == 0.0 {
-                let inverse_mass = a.inverse_mass + b.inverse_mass;
-                let resolved = wire.stiffness * inverse_mass * step * step < 4.0;
-                wire.stiff_damper = resolved && wire.damping * inverse_mass * step > 0.5;
+        let points = &self.points;
+        share(self.wires.chunks_mut(PIECE), |wires| {
+            for wire in wires {
+                wire.aim(wire.of(points), step);
             }
-        }
+        });
     }
 
     /// Time over which velocities that are off those count.
@@ -274,9 +291,11 @@ impl Points {
     }
 
     fn drift(&mut self, time: f64) {
-        for point in &mut self.points {
-            point.position += time * point.velocity;
-        }
+        share(self.points.chunks_mut(PIECE), |points| {
+            for point in points {
+                point.position += time * point.velocity;
+            }
+        });
     }
 }
 

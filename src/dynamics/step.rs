@@ -257,11 +257,19 @@ impl Component {
     }
 }
 
+/// Makes one what the other is, with room for no more: a vector that grows begins with room for four, and most components have
+/// one element and two bodies.
+pub(crate) fn copy<T: Clone>(to: &mut Vec<T>, from: &[T]) {
+    to.clear();
+    to.reserve_exact(from.len());
+    to.extend_from_slice(from);
+}
+
 impl Motion for Component {
     fn save(&mut self, slot: usize) {
         let saved = &mut self.memory.saved[slot];
-        saved.bodies.clone_from(&self.bodies);
-        saved.elements.clone_from(&self.elements);
+        copy(&mut saved.bodies, &self.bodies);
+        copy(&mut saved.elements, &self.elements);
     }
 
     fn load(&mut self, slot: usize) {

@@ -2,7 +2,7 @@
 
 use crate::backend::{Engine, Push, Seen, Sight};
 use crate::dynamics::body::Body;
-use crate::dynamics::step::Component;
+use crate::dynamics::step::{Component, copy};
 use crate::dynamics::tolerance::{Accuracy, Outcome};
 use crate::scene::element::element;
 use crate::scene::rows::{
@@ -112,7 +112,7 @@ impl Assembly {
             self.asleep = true;
             return;
         }
-        self.component.bodies.clone_from(&self.start);
+        copy(&mut self.component.bodies, &self.start);
         self.state = if sound && !self.component.elements.is_empty() {
             State::Ready
         } else {
@@ -134,9 +134,12 @@ impl Assembly {
         component.elements.clear();
         self.start.clear();
         self.seen.clear();
-        self.warm.centers.clear();
-        self.warm.line_up(members);
+        self.warm.begin();
         component.perturbed = self.warm.perturbed;
+        self.start.reserve_exact(members.bodies.len());
+        self.seen.reserve_exact(members.bodies.len());
+        self.orders.reserve_exact(members.bodies.len());
+        component.elements.reserve_exact(members.elements.len());
         for b in members.bodies {
             let row = &mut bodies[*b as usize];
             let Some(seen) = step.movable(sight, row.id, stale) else {

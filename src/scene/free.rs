@@ -5,7 +5,7 @@ use crate::scene::assembly::Assembly;
 use crate::scene::lone::{Lone, Piece, Route, Way, Worker, pieces};
 use crate::scene::state::Scene;
 use crate::scene::step::Step;
-use crate::scene::threads;
+use crate::threads;
 use bevy::prelude::Entity;
 use std::mem::take;
 

@@ -38,6 +38,5 @@ pub(crate) mod sleep;
 pub(crate) mod state;
 pub(crate) mod step;
 pub(crate) mod still;
-pub(crate) mod threads;
 pub(crate) mod wanted;
 pub(crate) mod warm_start;

@@ -5,7 +5,7 @@ use crate::dynamics::element::{End, Path};
 use crate::dynamics::guide::Guide;
 use crate::scene::rows::{BodyFlags, BodyRow, ElementFlags, ElementRow, Held, turning_mark};
 use crate::scene::state::Scene;
-use crate::scene::threads;
+use crate::threads;
 use bevy::math::{DQuat, DVec3};
 use bevy::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};

@@ -17,6 +17,42 @@ pub(crate) struct Terms {
     pub second_substep: bool,
 }
 
+/// What a body is given that is moved and not turned.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Given {
+    /// At the start of the step, m/s.
+    pub velocity: Vec3,
+    /// Over it, N.
+    pub force: Vec3,
+}
+
+impl Given {
+    /// What the engine is told; `restless`: the body has to be kept awake.
+    #[inline(always)]
+    pub(crate) fn push(&self, restless: bool, second_substep: bool) -> Push {
+        Push {
+            velocity: Some(self.velocity),
+            spin: None,
+            share: Wrench {
+                force: self.force,
+                torque: Vec3::ZERO,
+            },
+            second_substep,
+            keep_awake: restless,
+        }
+    }
+}
+
+impl From<Push> for Given {
+    #[inline(always)]
+    fn from(push: Push) -> Self {
+        Self {
+            velocity: push.velocity.unwrap_or_default(),
+            force: push.share.force,
+        }
+    }
+}
+
 /// In single precision, and finite whatever it was.
 fn finite(v: DVec3) -> Vec3 {
     Vec3::from(v.to_array().map(single))

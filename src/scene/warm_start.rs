@@ -1,12 +1,18 @@
 //! A network of points that only the engine has moved since its last step goes on as it is: no more is read
 //! than where its bodies are, and no more written than what they are given.
 
-use crate::backend::{Engine, Push, Seen, Sight};
+use crate::backend::{Engine, Sight};
+use crate::dynamics::points::{FreePoint, Points};
 use crate::scene::assembly::{Assembly, State};
+use crate::scene::push::Given;
 use crate::scene::rows::{BodyFlags, BodyRow, ElementRow, Members, pull_mark, take};
 use crate::scene::step::Step;
-use bevy::math::Vec3;
+use crate::threads;
+use bevy::math::{DVec3, Vec3};
 use std::sync::atomic::Ordering;
+
+/// Bodies that are one piece of work. Pinned by the benchmark `own/Lattice`.
+const PIECE: usize = 4096;
 
 /// What is known of such a network.
 #[derive(Default)]
@@ -19,22 +25,149 @@ pub(crate) struct WarmStart {
     pub centers: Vec<Vec3>,
     /// Places of its bodies within the component in the order of their rows, which is that of the engine's memory: large networks
     /// are read and written in that.
-    pub in_memory: Vec<u32>,
-    /// Its bodies before the step, in that order.
-    seen: Vec<Seen>,
+    in_memory: Vec<u32>,
+    /// Acceleration of each by everything but elements in the last step, in that order,
+    pulls: Vec<DVec3>,
+    /// and how many substeps it asked for beyond those of all, in the component's.
+    more: Vec<u32>,
+    /// What each is given, in the component's order.
+    given: Vec<Given>,
+    /// How each is now, in the order of memory,
+    met: Vec<Met>,
+    /// and what was noted of each piece of them.
+    noted: Vec<Noted>,
     /// Some body has not rested for long.
     restless: bool,
     /// Something else than elements can have changed what it has.
     pub perturbed: bool,
 }
 
+/// A body of it before a step.
+#[derive(Clone, Copy, Debug, Default)]
+struct Met {
+    point: FreePoint,
+    /// Substeps beyond those of all.
+    more: u32,
+}
+
+/// What was noted of bodies of it before a step.
+#[derive(Clone, Copy, Debug, Default)]
+struct Noted {
+    /// Some of them needs the general solver.
+    stops: bool,
+    /// See [`WarmStart`].
+    restless: bool,
+    perturbed: bool,
+    /// Something was done to some of them.
+    disturbed: bool,
+    touch_changed: bool,
+}
+
+impl Noted {
+    fn add(&mut self, other: &Self) {
+        self.stops |= other.stops;
+        self.restless |= other.restless;
+        self.perturbed |= other.perturbed;
+        self.disturbed |= other.disturbed;
+        self.touch_changed |= other.touch_changed;
+    }
+
+    /// Takes a note of a body whose centre of mass was there in its own frame and that was pulled so. None if it needs the
+    /// general solver.
+    #[inline(always)]
+    fn meet(
+        &mut self,
+        step: &Step,
+        row: &mut BodyRow,
+        center: Vec3,
+        pull: &mut DVec3,
+        omega: f32,
+        sight: &impl Sight,
+    ) -> Option<Met> {
+        let body = sight.see(row.id)?;
+        let same = center == body.local_center;
+        if !body.is_movable || body.is_asleep || body.is_locked || !same {
+            return None;
+        }
+        self.touch_changed |= row.notice_colliders(body.can_touch);
+        let point = row.point(&body);
+        self.perturbed |= row.was_perturbed(&body, point.position);
+        if std::mem::replace(pull, point.acceleration) != point.acceleration {
+            // Written only then: it lies apart from what every step needs.
+            row.rare.pulled = pull_mark(point.acceleration);
+            self.perturbed = true;
+        }
+        self.disturbed |= take!(row.flags, BodyFlags::DISTURBED);
+        self.restless |= step.is_restless(row, &body, omega, sight);
+        Some(Met {
+            point,
+            more: body.more_substeps as u32,
+        })
+    }
+}
+
 impl WarmStart {
-    /// Takes in which bodies there are.
-    pub(crate) fn line_up(&mut self, members: &Members) {
+    /// Reads all bodies; how many threads there are changes nothing of what comes out.
+    fn meet(
+        &mut self,
+        step: &Step,
+        members: &Members,
+        bodies: &mut [BodyRow],
+        sight: &impl Sight,
+    ) -> Noted {
+        let count = self.in_memory.len();
+        self.met.resize(count, Met::default());
+        self.noted.clear();
+        self.noted.resize(count.div_ceil(PIECE), Noted::default());
+        let (centers, omega) = (&self.centers, self.omega);
+        let row_of = |slot: u32| members.bodies[slot as usize] as usize;
+        // The rows of each piece, cut off those of the next.
+        let (mut rest, mut first) = (bodies, 0);
+        let slots = self.in_memory.chunks(PIECE);
+        let pieces = slots.zip(self.pulls.chunks_mut(PIECE));
+        let pieces = pieces.zip(self.met.chunks_mut(PIECE)).zip(&mut self.noted);
+        let pieces = pieces.map(|(((slots, pulls), met), noted)| {
+            let end = slots.last().map_or(first, |last| row_of(*last) + 1);
+            let (rows, others) = std::mem::take(&mut rest).split_at_mut(end - first);
+            rest = others;
+            let first = std::mem::replace(&mut first, end);
+            (slots, pulls, met, noted, rows, first)
+        });
+        threads::share(pieces, |(slots, pulls, met, noted, rows, first)| {
+            for ((slot, pull), met) in slots.iter().zip(pulls).zip(met) {
+                let (row, center) = (&mut rows[row_of(*slot) - first], centers[*slot as usize]);
+                let Some(now) = noted.meet(step, row, center, pull, omega, sight) else {
+                    noted.stops = true;
+                    return;
+                };
+                *met = now;
+            }
+        });
+        let mut all = Noted::default();
+        self.noted.iter().for_each(|noted| all.add(noted));
+        all
+    }
+
+    /// Forgets what was known of its bodies: they are read anew.
+    pub(crate) fn begin(&mut self) {
+        self.centers.clear();
         self.in_memory.clear();
-        self.in_memory.extend(0..members.bodies.len() as u32);
+    }
+
+    /// Takes in which bodies there are, and how they were at the start of the last step.
+    fn line_up(&mut self, members: &Members, points: &Points) {
+        let count = members.bodies.len();
+        self.in_memory.extend(0..count as u32);
         self.in_memory
             .sort_unstable_by_key(|slot| members.bodies[*slot as usize]);
+        self.pulls.clear();
+        self.pulls.extend(
+            self.in_memory
+                .iter()
+                .map(|slot| points.origin(*slot as usize).acceleration),
+        );
+        self.more.clear();
+        self.more.resize(count, 0);
     }
 }
 
@@ -85,29 +218,23 @@ impl Assembly {
         let warm = &mut self.warm;
         let time = step.plan.time;
         let points = self.component.points_to_continue(time)?;
-        warm.restless = false;
-        warm.seen.clear();
-        for slot in warm.in_memory.iter().map(|slot| *slot as usize) {
-            let row = &mut bodies[members.bodies[slot] as usize];
-            let body = sight.see(row.id)?;
-            let same = warm.centers[slot] == body.local_center;
-            if !body.is_movable || body.is_asleep || body.is_locked || !same {
+        if warm.in_memory.is_empty() {
+            warm.line_up(members, points);
+        }
+        let noted = warm.meet(step, members, bodies, sight);
+        self.touch_changed |= noted.touch_changed;
+        warm.perturbed |= noted.perturbed;
+        warm.restless = noted.restless;
+        *disturbed |= noted.disturbed;
+        if noted.stops {
+            return None;
+        }
+        for (slot, met) in warm.in_memory.iter().zip(&warm.met) {
+            let slot = *slot as usize;
+            warm.more[slot] = met.more;
+            if !points.place(slot, &met.point) {
                 return None;
             }
-            self.touch_changed |= row.notice_colliders(body.can_touch);
-            let point = row.point(&body);
-            warm.perturbed |= row.was_perturbed(&body, point.position);
-            if points.origin(slot).acceleration != point.acceleration {
-                // Written only then: it lies apart from what every step needs.
-                row.rare.pulled = pull_mark(point.acceleration);
-                warm.perturbed = true;
-            }
-            *disturbed |= take!(row.flags, BodyFlags::DISTURBED);
-            warm.restless |= step.is_restless(row, &body, warm.omega, sight);
-            if !points.place(slot, &point) {
-                return None;
-            }
-            warm.seen.push(body);
         }
         for (index, (element, end)) in warm.ends.iter().enumerate() {
             let row = &elements[members.elements[*element] as usize];
@@ -134,15 +261,25 @@ impl Assembly {
         engine: &mut impl Engine,
     ) {
         let points = self.component.warm_points();
-        for (slot, seen) in self.warm.in_memory.iter().zip(&self.warm.seen) {
-            let slot = *slot as usize;
-            let (origin, flight) = (points.origin(slot), points.flight(slot));
+        let WarmStart {
+            in_memory,
+            more,
+            given,
+            restless,
+            ..
+        } = &mut self.warm;
+        given.resize(more.len(), Given::default());
+        let pieces = given.chunks_mut(PIECE).zip(more.chunks(PIECE)).enumerate();
+        threads::share(pieces, |(piece, (given, more))| {
+            for (at, (given, more)) in given.iter_mut().zip(more).enumerate() {
+                let slot = piece * PIECE + at;
+                let (origin, flight) = (points.origin(slot), points.flight(slot));
+                *given = step.push_point(*more as usize, &origin, &flight).into();
+            }
+        });
+        for slot in in_memory.iter().map(|slot| *slot as usize) {
             let row = &mut bodies[members.bodies[slot] as usize];
-            let more = seen.more_substeps;
-            let push = Push {
-                keep_awake: self.warm.restless,
-                ..step.push_point(more, &origin, &flight)
-            };
+            let push = given[slot].push(*restless, step.terms(more[slot] as usize).second_substep);
             row.give(&push, step.tick, engine);
         }
         step.delivered.store(true, Ordering::Relaxed);

@@ -4,7 +4,7 @@ use super::body;
 use crate::backend::{Push, Wrench};
 use crate::scene::rows::BodyFlags;
 use crate::scene::state::Scene;
-use crate::scene::threads;
+use crate::threads;
 use bevy::ecs::entity_disabling::Disabled;
 use bevy::ecs::query::Allow;
 use bevy::prelude::*;

@@ -1,15 +1,16 @@
 //! The kick at the half drift; see [`crate::dynamics::network`], whose formulas these are.
 
-use super::{Line, Point, Points};
+use super::parts::{PIECE, Window};
+use super::{Line, Point, Points, Wire};
 use crate::dynamics::line;
 use crate::dynamics::network::{damper_placement, placement, settling};
+use crate::threads::share;
 use bevy::math::DVec3;
 
 /// One element within a kick.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Bar {
     pub ends: [u32; 2],
-    wire: u32,
     isotropic: bool,
     pub direction: DVec3,
     length: f64,
@@ -59,9 +60,70 @@ impl Bar {
     }
 
     /// Adds a force on end B and its opposite on end A.
-    pub(super) fn add(&self, to: &mut [DVec3], force: DVec3) {
-        to[self.ends[0] as usize] -= force;
-        to[self.ends[1] as usize] += force;
+    pub(super) fn add(&self, to: &mut Window<DVec3>, force: DVec3) {
+        if let Some(a) = to.of(self.ends[0]) {
+            *a -= force;
+        }
+        if let Some(b) = to.of(self.ends[1]) {
+            *b += force;
+        }
+    }
+}
+
+impl Bar {
+    /// Of an element between these points, of which the one on the stiffest springs has so much stiffness over its mass. One without a
+    /// direction adds nothing.
+    #[inline(always)]
+    fn measure(wire: &Wire, ends: [&Point; 2], stiffest: f64, step: f64, theta: f64) -> Self {
+        let h2 = step * step;
+        let Some(Line { direction, length }) = wire.line(ends) else {
+            return Self {
+                ends: wire.ends,
+                ..Self::default()
+            };
+        };
+        let ([a, b], u, k) = (ends, direction, wire.stiffness);
+        let velocity = b.velocity - a.velocity;
+        let axial = velocity.dot(u);
+        let lateral = velocity - axial * u;
+        let lateral_square = lateral.length_squared();
+        let mut bar = Self {
+            ends: wire.ends,
+            isotropic: wire.rest_length == 0.0 && !wire.stiff_damper,
+            direction: u,
+            length,
+            axial,
+            ..Self::default()
+        };
+        bar.turns = bar.turning_at(lateral_square, step);
+        let settle = settling(h2 * stiffest) * step;
+        let c = wire.damping + settle * k;
+        let rate = if c == 0.0 {
+            0.0
+        } else if bar.isotropic {
+            axial
+        } else {
+            line::backward_rate(length, axial, lateral_square, step)
+        };
+        let elastic = k * (length - wire.rest_length);
+        let tension = elastic + c * rate;
+        let inverse_mass = a.inverse_mass + b.inverse_mass;
+        bar.damping = damper_placement(c * step * inverse_mass) * step * c;
+        let across = if bar.isotropic {
+            k
+        } else if tension > 0.0 && length > 0.0 {
+            tension / length
+        } else {
+            0.0
+        };
+        let settle_across = settling(2.0 * h2 * across * inverse_mass) * step;
+        // The half drift counted h²/8 of the turning as stretch already.
+        bar.turning = (theta - 0.125) * h2 * k + bar.damping;
+        bar.drag = tension - elastic;
+        bar.load = tension * u + settle_across * across * lateral;
+        bar.across = (theta * h2 + 0.5 * settle_across * step) * across;
+        bar.along = theta * h2 * k + bar.damping;
+        bar
     }
 }
 
@@ -70,88 +132,51 @@ impl Points {
     pub(super) fn kick(&mut self, step: f64) {
         let (z_max, _) = self.bounds(step);
         self.measure(step, placement(z_max));
-        self.solver.begin(&self.points[..self.bodies], &self.bars);
+        self.solver
+            .begin(&self.points[..self.bodies], &self.bars, &self.parts);
         self.solve();
         self.push(step);
-        for bar in &mut self.bars {
-            // The mean of before and after the kick keeps the step its own mirror image in time.
-            let after = |end: u32| {
-                let (point, impulse) = (&self.points[end as usize], self.impulses[end as usize]);
-                point.velocity + point.inverse_mass * impulse + step * point.acceleration
-            };
-            let velocity = after(bar.ends[1]) - after(bar.ends[0]);
-            let lateral = velocity - velocity.dot(bar.direction) * bar.direction;
-            let turns = bar.turning_at(lateral.length_squared(), step);
-            bar.turns = 0.5 * (bar.turns + turns);
-        }
+        let (points, impulses) = (&self.points, &self.impulses);
+        share(self.bars.chunks_mut(PIECE), |bars| {
+            for bar in bars {
+                // The mean of before and after the kick keeps the step its own mirror image in time.
+                let after = |end: u32| {
+                    let (point, impulse) = (&points[end as usize], impulses[end as usize]);
+                    point.velocity + point.inverse_mass * impulse + step * point.acceleration
+                };
+                let velocity = after(bar.ends[1]) - after(bar.ends[0]);
+                let lateral = velocity - velocity.dot(bar.direction) * bar.direction;
+                let turns = bar.turning_at(lateral.length_squared(), step);
+                bar.turns = 0.5 * (bar.turns + turns);
+            }
+        });
         self.solve();
         self.push(step);
-        for (point, impulse) in self.points[..self.bodies].iter_mut().zip(&self.impulses) {
-            point.given += *impulse;
-            point.velocity += point.inverse_mass * *impulse + step * point.acceleration;
-        }
+        let points = self.points[..self.bodies].chunks_mut(PIECE);
+        share(
+            points.zip(self.impulses.chunks(PIECE)),
+            |(points, impulses)| {
+                for (point, impulse) in points.iter_mut().zip(impulses) {
+                    point.given += *impulse;
+                    point.velocity += point.inverse_mass * *impulse + step * point.acceleration;
+                }
+            },
+        );
         self.account(step);
     }
 
     /// Where the lines are, what they do, and what each adds to the system.
-    fn measure(&mut self, step: f64, theta: f64) {
-        let h2 = step * step;
-        self.bars.clear();
-        for (index, wire) in self.wires.iter().enumerate() {
-            let ends = wire.of(&self.points);
-            let Some(Line { direction, length }) = wire.line(ends) else {
-                continue;
-            };
-            let ([a, b], u, k) = (ends, direction, wire.stiffness);
-            let velocity = b.velocity - a.velocity;
-            let axial = velocity.dot(u);
-            let lateral = velocity - axial * u;
-            let lateral_square = lateral.length_squared();
-            let mut bar = Bar {
-                ends: wire.ends,
-                wire: index as u32,
-                isotropic: wire.rest_length == 0.0 && !wire.stiff_damper,
-                direction: u,
-                length,
-                axial,
-                ..Bar::default()
-            };
-            bar.turns = bar.turning_at(lateral_square, step);
-            let stiffest = wire
-                .ends
-                .iter()
-                .map(|end| self.stiffness[*end as usize])
-                .fold(0.0, f64::max);
-            let settle = settling(h2 * stiffest) * step;
-            let c = wire.damping + settle * k;
-            let rate = if c == 0.0 {
-                0.0
-            } else if bar.isotropic {
-                axial
-            } else {
-                line::backward_rate(length, axial, lateral_square, step)
-            };
-            let elastic = k * (length - wire.rest_length);
-            let tension = elastic + c * rate;
-            let inverse_mass = a.inverse_mass + b.inverse_mass;
-            bar.damping = damper_placement(c * step * inverse_mass) * step * c;
-            let across = if bar.isotropic {
-                k
-            } else if tension > 0.0 && length > 0.0 {
-                tension / length
-            } else {
-                0.0
-            };
-            let freest = a.inverse_mass + b.inverse_mass;
-            let settle_across = settling(2.0 * h2 * across * freest) * step;
-            // The half drift counted h²/8 of the turning as stretch already.
-            bar.turning = (theta - 0.125) * h2 * k + bar.damping;
-            bar.drag = tension - elastic;
-            bar.load = tension * u + settle_across * across * lateral;
-            bar.across = (theta * h2 + 0.5 * settle_across * step) * across;
-            bar.along = theta * h2 * k + bar.damping;
-            self.bars.push(bar);
-        }
+    pub(super) fn measure(&mut self, step: f64, theta: f64) {
+        self.bars.resize(self.wires.len(), Bar::default());
+        let (points, stiffness) = (&self.points, &self.stiffness);
+        let pieces = self.bars.chunks_mut(PIECE).zip(self.wires.chunks(PIECE));
+        share(pieces, |(bars, wires)| {
+            for (bar, wire) in bars.iter_mut().zip(wires) {
+                let stiffest = wire.ends.map(|end| stiffness[end as usize]);
+                let stiffest = stiffest[0].max(stiffest[1]);
+                *bar = Bar::measure(wire, wire.of(points), stiffest, step, theta);
+            }
+        });
     }
 
     /// Accelerations for the lines' present turning.
@@ -159,10 +184,11 @@ impl Points {
         let right = &mut self.impulses;
         right.clear();
         right.extend(self.points.iter().map(weight));
-        for bar in &self.bars {
-            bar.add(right, -bar.force());
-        }
-        self.converged &= self.solver.solve(right, &self.bars, self.budget);
+        self.parts
+            .scatter(&self.bars, right, |bar, right| bar.add(right, -bar.force()));
+        self.converged &= self
+            .solver
+            .solve(right, &self.bars, &self.parts, self.budget);
     }
 
     /// Impulses of the solution. They come in pairs along the lines, so both momenta are kept however
@@ -170,30 +196,41 @@ impl Points {
     fn push(&mut self, step: f64) {
         self.impulses.clear();
         self.impulses.resize(self.points.len(), DVec3::ZERO);
-        for bar in &self.bars {
-            let force = bar.force() + bar.answer(bar.relative(&self.solver.solution));
-            bar.add(&mut self.impulses, -step * force);
-        }
+        let solution = &self.solver.solution;
+        self.parts
+            .scatter(&self.bars, &mut self.impulses, |bar, impulses| {
+                let force = bar.force() + bar.answer(bar.relative(solution));
+                bar.add(impulses, -step * force);
+            });
     }
 
     /// Notes what dampers took and moving ends gave.
     fn account(&mut self, step: f64) {
-        for bar in &self.bars {
-            let wire = &mut self.wires[bar.wire as usize];
-            let [a, b] = bar.of(&self.points);
-            let moved = [a, b].map(|end| end.inverse_mass == 0.0 && end.velocity != DVec3::ZERO);
-            if bar.damping == 0.0 && moved == [false; 2] {
-                continue;
+        let (points, solution) = (&self.points, &self.solver.solution);
+        let pieces = self.wires.chunks_mut(PIECE).zip(self.bars.chunks(PIECE));
+        share(pieces, |(wires, bars)| {
+            for (wire, bar) in wires.iter_mut().zip(bars) {
+                bar.account(wire, bar.of(points), bar.relative(solution), step);
             }
-            let relative = bar.relative(&self.solver.solution);
-            let gained = relative.dot(bar.direction);
-            let rate = bar.axial + 0.5 * step * gained;
-            wire.heat += ((bar.drag + bar.damping * gained) * rate * step).max(0.0);
-            let force = bar.force() + bar.answer(relative);
-            for (end, sign) in [(a, -1.0), (b, 1.0)] {
-                if end.inverse_mass == 0.0 {
-                    wire.work += sign * step * force.dot(end.velocity);
-                }
+        });
+    }
+}
+
+impl Bar {
+    /// Notes what its damper took and moving ends gave, where its ends have been accelerated so against each other.
+    #[inline(always)]
+    fn account(&self, wire: &mut Wire, [a, b]: [&Point; 2], relative: DVec3, step: f64) {
+        let moved = [a, b].map(|end| end.inverse_mass == 0.0 && end.velocity != DVec3::ZERO);
+        if self.damping == 0.0 && moved == [false; 2] {
+            return;
+        }
+        let gained = relative.dot(self.direction);
+        let rate = self.axial + 0.5 * step * gained;
+        wire.heat += ((self.drag + self.damping * gained) * rate * step).max(0.0);
+        let force = self.force() + self.answer(relative);
+        for (end, sign) in [(a, -1.0), (b, 1.0)] {
+            if end.inverse_mass == 0.0 {
+                wire.work += sign * step * force.dot(end.velocity);
             }
         }
     }

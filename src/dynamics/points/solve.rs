@@ -3,6 +3,8 @@
 
 use super::Point;
 use super::kick::Bar;
+use super::parts::{PIECE, Parts};
+use crate::threads::share;
 use bevy::math::{DMat3, DVec3};
 
 /// Residual, relative to the right side, at which iterations end: well below the engine's f32.
@@ -19,6 +21,8 @@ pub(super) struct Solver {
     preconditioned: Vec<DVec3>,
     search: Vec<DVec3>,
     image: Vec<DVec3>,
+    /// Of each piece of them.
+    sums: Vec<f64>,
 }
 
 fn outer(u: DVec3) -> DMat3 {
@@ -27,29 +31,38 @@ fn outer(u: DVec3) -> DMat3 {
 
 impl Solver {
     /// Takes in the movable points and the bars as they are now.
-    pub(super) fn begin(&mut self, points: &[Point], bars: &[Bar]) {
+    pub(super) fn begin(&mut self, points: &[Point], bars: &[Bar], parts: &Parts) {
         self.masses.clear();
         self.masses
             .extend(points.iter().map(|point| point.inverse_mass.recip()));
         self.blocks.clear();
         self.blocks
             .extend(self.masses.iter().map(|m| DMat3::IDENTITY * *m));
-        for bar in bars {
+        parts.scatter(bars, &mut self.blocks, |bar, blocks| {
             let across = DMat3::from_diagonal(DVec3::splat(bar.across));
             let own = across + outer(bar.direction) * (bar.along - bar.across);
             for end in bar.ends {
-                if let Some(block) = self.blocks.get_mut(end as usize) {
+                if let Some(block) = blocks.of(end) {
                     *block += own;
                 }
             }
-        }
-        for block in &mut self.blocks {
-            *block = block.inverse();
-        }
+        });
+        share(self.blocks.chunks_mut(PIECE), |blocks| {
+            for block in blocks {
+                *block = block.inverse();
+            }
+        });
+        self.sums.resize(points.len().div_ceil(PIECE), 0.0);
     }
 
     /// Solves for `right`, whose length is the number of all points; says whether it came to an end.
-    pub(super) fn solve(&mut self, right: &mut [DVec3], bars: &[Bar], budget: u32) -> bool {
+    pub(super) fn solve(
+        &mut self,
+        right: &mut [DVec3],
+        bars: &[Bar],
+        parts: &Parts,
+        budget: u32,
+    ) -> bool {
         let (all, movable) = (right.len(), self.masses.len());
         right[movable..].fill(DVec3::ZERO);
         for vector in [
@@ -63,19 +76,20 @@ impl Solver {
             vector[movable..].fill(DVec3::ZERO);
         }
         let target = TOLERANCE * TOLERANCE * self.weigh(right);
-        apply(&self.masses, bars, &self.solution, &mut self.residual);
-        let mut rz = 0.0;
-        let vectors = self.residual.iter_mut().zip(&mut self.preconditioned);
-        for (((r, z), block), right) in vectors.zip(&self.blocks).zip(&*right) {
-            *r = *right - *r;
-            *z = *block * *r;
-            rz += r.dot(*z);
+        let (masses, sums) = (&self.masses, &mut self.sums);
+        apply(masses, bars, parts, &self.solution, &mut self.image, sums);
+        for (r, (right, image)) in self.residual.iter_mut().zip(right.iter().zip(&self.image)) {
+            *r = *right - *image;
         }
+        let mut rz = self.advance(0.0);
         self.search.copy_from_slice(&self.preconditioned);
         let mut iterations = 0;
         while rz > target && iterations < budget {
-            let kinked = apply(&self.masses, bars, &self.search, &mut self.image);
-            rz = self.advance(rz / kinked, rz);
+            let (masses, sums) = (&self.masses, &mut self.sums);
+            let kinked = apply(masses, bars, parts, &self.search, &mut self.image, sums);
+            let next = self.advance(rz / kinked);
+            self.turn(next / rz);
+            rz = next;
             iterations += 1;
         }
         // Short of the target by so little is rounding.
@@ -83,45 +97,73 @@ impl Solver {
     }
 
     /// rᵀ P r of a vector.
-    fn weigh(&self, r: &[DVec3]) -> f64 {
-        let weighed = self
-            .blocks
-            .iter()
-            .zip(r)
-            .map(|(block, r)| r.dot(*block * *r));
-        weighed.sum()
+    fn weigh(&mut self, r: &[DVec3]) -> f64 {
+        let pieces = self.sums.iter_mut().zip(self.blocks.chunks(PIECE));
+        share(pieces.zip(r.chunks(PIECE)), |((sum, blocks), r)| {
+            let weighed = blocks.iter().zip(r).map(|(block, r)| r.dot(*block * *r));
+            *sum = weighed.sum();
+        });
+        self.sums.iter().sum()
     }
 
-    /// Goes so far along the search direction and chooses the next; returns the new rᵀ P r.
-    fn advance(&mut self, by: f64, rz: f64) -> f64 {
-        let mut next = 0.0;
-        for (i, block) in self.blocks.iter().enumerate() {
-            self.solution[i] += by * self.search[i];
-            let r = self.residual[i] - by * self.image[i];
-            let z = *block * r;
-            next += r.dot(z);
-            self.residual[i] = r;
-            self.preconditioned[i] = z;
-        }
-        let keep = next / rz;
-        for (p, z) in self.search.iter_mut().zip(&self.preconditioned) {
-            *p = keep * *p + *z;
-        }
-        next
+    /// Goes so far along the search direction; returns the new rᵀ P r.
+    fn advance(&mut self, by: f64) -> f64 {
+        let state = self.solution.chunks_mut(PIECE);
+        let state = state.zip(self.residual.chunks_mut(PIECE));
+        let state = state.zip(self.preconditioned.chunks_mut(PIECE));
+        let way = self.search.chunks(PIECE).zip(self.image.chunks(PIECE));
+        let pieces = self.sums.iter_mut().zip(self.blocks.chunks(PIECE));
+        let pieces = pieces.zip(state.zip(way));
+        share(
+            pieces,
+            |((sum, blocks), (((solution, residual), preconditioned), (search, image)))| {
+                *sum = 0.0;
+                for (i, block) in blocks.iter().enumerate() {
+                    solution[i] += by * search[i];
+                    let r = residual[i] - by * image[i];
+                    let z = *block * r;
+                    *sum += r.dot(z);
+                    residual[i] = r;
+                    preconditioned[i] = z;
+                }
+            },
+        );
+        self.sums.iter().sum()
+    }
+
+    /// Chooses the next search direction, which keeps so much of the last one.
+    fn turn(&mut self, keep: f64) {
+        let search = self.search.chunks_mut(PIECE);
+        share(
+            search.zip(self.preconditioned.chunks(PIECE)),
+            |(search, preconditioned)| {
+                for (p, z) in search.iter_mut().zip(preconditioned) {
+                    *p = keep * *p + *z;
+                }
+            },
+        );
     }
 }
 
-/// y = A x for movable points, 0 for others; returns xᵀ A x.
-fn apply(masses: &[f64], bars: &[Bar], x: &[DVec3], y: &mut [DVec3]) -> f64 {
-    y.fill(DVec3::ZERO);
-    for bar in bars {
-        bar.add(y, bar.answer(bar.relative(x)));
-    }
-    let mut sum = 0.0;
-    for ((y, x), mass) in y.iter_mut().zip(x).zip(masses) {
-        *y += *mass * *x;
-        sum += x.dot(*y);
-    }
-    y[masses.len()..].fill(DVec3::ZERO);
-    sum
+/// y = A x for movable points, 0 for others; returns xᵀ A x, for which there is room in `sums`.
+fn apply(
+    masses: &[f64],
+    bars: &[Bar],
+    parts: &Parts,
+    x: &[DVec3],
+    y: &mut [DVec3],
+    sums: &mut [f64],
+) -> f64 {
+    let pieces = y.chunks_mut(PIECE).zip(x.chunks(PIECE));
+    share(pieces.zip(masses.chunks(PIECE)), |((y, x), masses)| {
+        for ((y, x), mass) in y.iter_mut().zip(x).zip(masses) {
+            *y = *mass * *x;
+        }
+    });
+    parts.scatter(bars, y, |bar, y| bar.add(y, bar.answer(bar.relative(x))));
+    let pieces = sums.iter_mut().zip(y.chunks(PIECE).zip(x.chunks(PIECE)));
+    share(pieces, |(sum, (y, x))| {
+        *sum = x.iter().zip(y).map(|(x, y)| x.dot(*y)).sum();
+    });
+    sums.iter().sum()
 }

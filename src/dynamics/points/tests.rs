@@ -5,6 +5,8 @@ use crate::dynamics::element::Path;
 use crate::dynamics::energy::Energy;
 use crate::dynamics::step::Component;
 use crate::dynamics::tests;
+use crate::threads;
+use bevy::tasks::{ComputeTaskPool, TaskPoolBuilder};
 
 /// Small numbers that follow no pattern.
 struct Dice(u64);
@@ -119,4 +121,74 @@ fn ends_in_one_place_push_nowhere_until_they_part() {
     points.run(1.0 / 60.0, 1);
     points.store_into(&mut net.elements, &mut net.bodies);
     assert!(net.bodies.iter().all(Body::is_finite));
+}
+
+/// A net of so many by so many points, its elements in the order of the lesser of their ends.
+fn net(side: usize) -> Component {
+    let mut dice = Dice(3);
+    let mut net = Component::default();
+    let own = |index: usize| End::Body {
+        index,
+        arm: DVec3::ZERO,
+    };
+    for i in 0..side * side {
+        let at = DVec3::new((i % side) as f64, 0.0, (i / side) as f64) + 0.1 * dice.vector();
+        let body = Body {
+            velocity: dice.vector(),
+            ..tests::point(1.0, at, DVec3::ZERO)
+        };
+        net.bodies.push(body);
+        let aside = ((i + 1) % side != 0).then_some(i + 1);
+        let ahead = (i + side < side * side).then_some(i + side);
+        for other in [aside, ahead].into_iter().flatten() {
+            let new = tests::element(own(i), own(other), 50.0, 0.1, 0.9);
+            net.elements.push(new);
+        }
+    }
+    net
+}
+
+#[test]
+fn how_many_threads_share_a_network_changes_no_bit_of_it() {
+    ComputeTaskPool::get_or_init(|| TaskPoolBuilder::new().num_threads(3).build());
+    let net = net(100);
+    assert!(net.elements.len() > 4 * PIECE);
+    let run = || {
+        let mut points = Points::default();
+        points.load_from(&net.elements, &net.bodies, 200);
+        let survey = points.survey();
+        points.run(1.0 / 60.0, 3);
+        (points.points, survey.energy)
+    };
+    let shared = run();
+    assert!(shared == threads::alone(run));
+}
+
+#[test]
+fn parts_that_go_at_one_time_share_no_body() {
+    let net = net(100);
+    let mut points = Points::default();
+    points.load_from(&net.elements, &net.bodies, 200);
+    points.measure(1.0 / 60.0, 0.25);
+    // Each adds one to both of its ends, and everyone sees how many that are.
+    let count = |parts: &Parts| {
+        let mut count = vec![0_u32; net.bodies.len()];
+        parts.scatter(&points.bars, &mut count, |bar, count| {
+            for end in bar.ends {
+                *count.of(end).expect("the end is in its part's window") += 1;
+            }
+        });
+        count
+    };
+    let mut whole = Parts::default();
+    let mut wires = points.wires.clone();
+    whole.find(&wires, net.bodies.len());
+    assert!(whole.count() > 3);
+    let in_parts = count(&whole);
+    // An order that knows nothing of memory has to go in one piece.
+    let last = wires.len() - 1;
+    wires.swap(0, last);
+    whole.find(&wires, net.bodies.len());
+    assert_eq!(whole.count(), 1);
+    assert_eq!(in_parts, count(&whole));
 }

@@ -1,7 +1,7 @@
 //! What no lane is for: force laws, stiff springs and strong dampers, accuracy by tolerance, rest lengths yet to be found, ends that
 //! meet.
 
-use super::{Given, Way};
+use super::Way;
 use crate::dynamics::body::is_within;
 use crate::dynamics::element::rounding;
 use crate::dynamics::moving::Moving;
@@ -79,10 +79,7 @@ impl Alone {
                 return false;
             }
             let push = step.push_point(more, point, &flight);
-            way.given[end] = Given {
-                velocity: push.velocity.unwrap_or_default(),
-                force: push.share.force,
-            };
+            way.given[end] = push.into();
             way.second_substep |= push.second_substep;
         }
         row.ledger.work += work;

@@ -1,7 +1,8 @@
 //! Gives the bodies of lone elements what takes them where these do.
 
-use super::{Given, Lone, Route, Way};
-use crate::backend::{Engine, Push, Wrench};
+use super::{Lone, Route, Way};
+use crate::backend::Engine;
+use crate::scene::push::Given;
 use crate::scene::rows::{BodyFlags, BodyRow, ElementRow};
 use crate::scene::sleep::omega_of;
 use crate::scene::step::Step;
@@ -73,16 +74,8 @@ impl BodyRow {
         } else {
             Vec3::ZERO
         };
-        let push = Push {
-            velocity: Some(given.velocity),
-            spin: None,
-            share: Wrench {
-                force,
-                torque: Vec3::ZERO,
-            },
-            second_substep,
-            keep_awake: restless,
-        };
+        let given = Given { force, ..*given };
+        let push = given.push(restless, second_substep);
         engine.give(self.id, &push, &self.user());
         self.share_force = force;
         self.given = tick;

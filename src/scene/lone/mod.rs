@@ -12,8 +12,8 @@ mod tests;
 
 use super::rows::{BodyRow, ElementFlags, ElementRow};
 use crate::backend::BodyId;
-use crate::scene::threads;
-use bevy::math::Vec3;
+use crate::scene::push::Given;
+use crate::threads;
 use bevy::prelude::Entity;
 pub(crate) use solve::{Piece, Worker};
 
@@ -83,13 +83,6 @@ pub(crate) enum Route {
     GeneralOnce,
     /// By the general solver for as long as can be seen.
     General,
-}
-
-/// What a body is given, m/s and N.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Given {
-    pub velocity: Vec3,
-    pub force: Vec3,
 }
 
 /// What has become of a lone element in the step.

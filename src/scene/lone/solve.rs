@@ -1,7 +1,7 @@
 //! Reads lone elements and solves them. Nothing is written but their own rows and what has become of them.
 
 use super::alone::Alone;
-use super::{Given, Pair, Route, Way};
+use super::{Pair, Route, Way};
 use crate::backend::Sight;
 use crate::dynamics::lanes::{LANES, Lanes, Stride, widest};
 use crate::dynamics::pair::plain_poles;
@@ -9,6 +9,7 @@ use crate::dynamics::points::FreePoint;
 use crate::dynamics::poles::Poles;
 use crate::dynamics::tolerance::{Method, Outcome};
 use crate::input::check::Numbers;
+use crate::scene::push::Given;
 use crate::scene::rows::{BodyFlags, BodyRow, ElementFlags, ElementRow, Solved};
 use crate::scene::step::Step;
 use pulp::{Simd, WithSimd};

@@ -1,13 +1,14 @@
 //! In a lane beside others, an element goes as it would alone.
 
+use super::Way;
 use super::alone::Alone;
 use super::solve::{Pace, plain};
-use super::{Given, Way};
 use crate::backend::StepPlan;
 use crate::dynamics::lanes::{LANES, Lanes, widest};
 use crate::dynamics::points::FreePoint;
 use crate::dynamics::tolerance::Accuracy;
 use crate::input::check::Numbers;
+use crate::scene::push::Given;
 use crate::scene::rows::ElementRow;
 use crate::scene::step::Step;
 use bevy::math::{DVec3, Vec3};

@@ -11,6 +11,10 @@ static CORES: LazyLock<usize> =
 
 /// How many threads there are.
 pub(crate) fn count() -> usize {
+    #[cfg(test)]
+    if ALONE.get() {
+        return 1;
+    }
     // The one that waits for the pool works too: on two cores the pool has just one.
     let pool = ComputeTaskPool::try_get().map_or(0, |pool| pool.thread_num());
     (*CORES).min(pool + 1)
@@ -22,7 +26,7 @@ pub(crate) fn share<T: Send>(
     mut pieces: impl ExactSizeIterator<Item = T>,
     work: impl Fn(T) + Sync,
 ) {
-    if pieces.len() == 1 {
+    if pieces.len() == 1 || count() == 1 {
         pieces.by_ref().for_each(work);
         return;
     }
@@ -32,4 +36,18 @@ pub(crate) fn share<T: Send>(
             scope.spawn(async move { work(piece) });
         }
     });
+}
+
+#[cfg(test)]
+thread_local! {
+    static ALONE: std::cell::Cell<bool> = const { std::cell::Cell::new(false) };
+}
+
+/// Does it all on this thread.
+#[cfg(test)]
+pub(crate) fn alone<T>(work: impl FnOnce() -> T) -> T {
+    ALONE.set(true);
+    let done = work();
+    ALONE.set(false);
+    done
 }
