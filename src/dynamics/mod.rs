@@ -5,12 +5,14 @@
 //! what [`guide`] gives instead, and the [`linkage`] that holds their bodies), [`poles`] gives
 //! the exact coefficients; [`kick`] acts for a lone element, [`pair`] for one on bodies that do not turn, four of those at once in [`lanes`],
 //! [`nonlinear_pair`] for one of those with a force [`law`] of its own, [`network`] for elements that share bodies,
-//! with the linear algebra in [`system`] and [`strut`], and [`points`] for those that turn none. [`guard`] keeps strong
+//! with the linear algebra in [`system`] and [`strut`], and [`points`] for those that turn none; both iterate by
+//! [`conjugate`] gradients. [`guard`] keeps strong
 //! damping honest, and [`bound`] a network, by their [`energy`]. [`delivery`] says which impulse and force
 //! make the engine arrive there. What an engine's own solver is to solve is [`soft`], in [`pieces`].
 
 pub(crate) mod body;
 mod bound;
+mod conjugate;
 pub(crate) mod delivery;
 pub(crate) mod element;
 pub(crate) mod energy;

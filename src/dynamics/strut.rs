@@ -117,9 +117,4 @@ impl Twists {
             *a *= *b;
         }
     }
-
-    pub(super) fn copy(&mut self, other: &Self) {
-        self.linear.clone_from(&other.linear);
-        self.angular.clone_from(&other.angular);
-    }
 }

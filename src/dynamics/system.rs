@@ -4,15 +4,13 @@
 //! without a matrix, preconditioned by the inverse of each body's own block, from the last solution.
 
 use super::body::{Body, Spin};
+use super::conjugate::{self, Iterated};
 use super::strut::{NOBODY, Strut, Twists, cross};
 use bevy::math::{DMat3, DVec3};
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn, Matrix6, Vector6};
 
 /// Unknowns up to which a factorisation is the cheaper way.
 pub(super) const DENSE: usize = 96;
-
-/// Residual, relative to the right side, at which iterations end.
-const TOLERANCE: f64 = 1e-10;
 
 /// How a solution went.
 #[derive(Clone, Copy, Debug, Default)]
@@ -36,10 +34,53 @@ pub(super) struct System {
     matrix: DMatrix<f64>,
     factor: Option<Cholesky<f64, Dyn>>,
     vector: DVector<f64>,
+    vectors: Vectors,
+}
+
+/// See [`Iterated`].
+#[derive(Clone, Default)]
+struct Vectors {
     residual: Twists,
     preconditioned: Twists,
     search: Twists,
     image: Twists,
+}
+
+/// A system on its way to a solution.
+struct Running<'a> {
+    system: &'a System,
+    vectors: Vectors,
+    x: &'a mut Twists,
+}
+
+impl Iterated for Running<'_> {
+    fn apply(&mut self) -> f64 {
+        let Vectors { search, image, .. } = &mut self.vectors;
+        self.system.apply(search, image);
+        search.dot(image)
+    }
+
+    fn advance(&mut self, by: f64) -> f64 {
+        let Vectors {
+            residual,
+            preconditioned,
+            search,
+            image,
+        } = &mut self.vectors;
+        self.x.combine(1.0, search, by);
+        residual.combine(1.0, image, -by);
+        self.system.precondition(residual, preconditioned);
+        residual.dot(preconditioned)
+    }
+
+    fn turn(&mut self, keep: f64) {
+        let Vectors {
+            preconditioned,
+            search,
+            ..
+        } = &mut self.vectors;
+        search.combine(keep, preconditioned, 1.0);
+    }
 }
 
 impl System {
@@ -128,37 +169,24 @@ impl System {
     }
 
     fn iterate(&mut self, right: &Twists, x: &mut Twists, budget: u32) -> Effort {
-        let (mut r, mut z, mut p, mut q) = (
-            std::mem::take(&mut self.residual),
-            std::mem::take(&mut self.preconditioned),
-            std::mem::take(&mut self.search),
-            std::mem::take(&mut self.image),
-        );
         x.mask(&self.free);
-        self.precondition(right, &mut z);
-        let target = TOLERANCE * TOLERANCE * right.dot(&z);
-        self.apply(x, &mut r);
-        r.combine(-1.0, right, 1.0);
-        self.precondition(&r, &mut z);
-        let mut rz = r.dot(&z);
-        p.copy(&z);
-        let mut iterations = 0;
-        while rz > target && iterations < budget {
-            self.apply(&p, &mut q);
-            let step = rz / p.dot(&q);
-            x.combine(1.0, &p, step);
-            r.combine(1.0, &q, -step);
-            self.precondition(&r, &mut z);
-            let next = r.dot(&z);
-            p.combine(next / rz, &z, 1.0);
-            rz = next;
-            iterations += 1;
+        let mut vectors = std::mem::take(&mut self.vectors);
+        self.precondition(right, &mut vectors.preconditioned);
+        let weight = right.dot(&vectors.preconditioned);
+        self.apply(x, &mut vectors.residual);
+        vectors.residual.combine(-1.0, right, 1.0);
+        for vector in [&mut vectors.search, &mut vectors.image] {
+            vector.clear(self.mass.len(), self.turns);
         }
-        (self.residual, self.preconditioned, self.search, self.image) = (r, z, p, q);
-        Effort {
-            // Short of the target by so little is rounding.
-            converged: rz <= target * 1e4,
-        }
+        let mut running = Running {
+            system: self,
+            vectors,
+            x,
+        };
+        let residual = running.advance(0.0);
+        let converged = conjugate::solve(&mut running, weight, residual, budget);
+        self.vectors = running.vectors;
+        Effort { converged }
     }
 
     fn precondition(&self, r: &Twists, z: &mut Twists) {

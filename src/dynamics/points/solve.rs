@@ -4,11 +4,9 @@
 use super::Point;
 use super::kick::Bar;
 use super::parts::{PIECE, Parts};
+use crate::dynamics::conjugate::{self, Iterated};
 use crate::threads::share;
 use bevy::math::{DMat3, DVec3};
-
-/// Residual, relative to the right side, at which iterations end: well below the engine's f32.
-const TOLERANCE: f64 = 1e-10;
 
 #[derive(Clone, Default)]
 pub(super) struct Solver {
@@ -75,25 +73,21 @@ impl Solver {
             vector.resize(all, DVec3::ZERO);
             vector[movable..].fill(DVec3::ZERO);
         }
-        let target = TOLERANCE * TOLERANCE * self.weigh(right);
+        let weight = self.weigh(right);
         let (masses, sums) = (&self.masses, &mut self.sums);
         apply(masses, bars, parts, &self.solution, &mut self.image, sums);
         for (r, (right, image)) in self.residual.iter_mut().zip(right.iter().zip(&self.image)) {
             *r = *right - *image;
         }
-        let mut rz = self.advance(0.0);
-        self.search.copy_from_slice(&self.preconditioned);
-        let mut iterations = 0;
-        while rz > target && iterations < budget {
-            let (masses, sums) = (&self.masses, &mut self.sums);
-            let kinked = apply(masses, bars, parts, &self.search, &mut self.image, sums);
-            let next = self.advance(rz / kinked);
-            self.turn(next / rz);
-            rz = next;
-            iterations += 1;
-        }
-        // Short of the target by so little is rounding.
-        rz <= target * 1e4
+        // Whatever the last search came to, nothing of it is kept.
+        self.search.fill(DVec3::ZERO);
+        let mut running = Running {
+            solver: self,
+            bars,
+            parts,
+        };
+        let residual = running.advance(0.0);
+        conjugate::solve(&mut running, weight, residual, budget)
     }
 
     /// rᵀ P r of a vector.
@@ -105,14 +99,41 @@ impl Solver {
         });
         self.sums.iter().sum()
     }
+}
 
-    /// Goes so far along the search direction; returns the new rᵀ P r.
+/// A solver with its matrix.
+struct Running<'a> {
+    solver: &'a mut Solver,
+    bars: &'a [Bar],
+    parts: &'a Parts,
+}
+
+impl Iterated for Running<'_> {
+    fn apply(&mut self) -> f64 {
+        let Solver {
+            masses,
+            search,
+            image,
+            sums,
+            ..
+        } = &mut *self.solver;
+        apply(masses, self.bars, self.parts, search, image, sums)
+    }
+
     fn advance(&mut self, by: f64) -> f64 {
-        let state = self.solution.chunks_mut(PIECE);
-        let state = state.zip(self.residual.chunks_mut(PIECE));
-        let state = state.zip(self.preconditioned.chunks_mut(PIECE));
-        let way = self.search.chunks(PIECE).zip(self.image.chunks(PIECE));
-        let pieces = self.sums.iter_mut().zip(self.blocks.chunks(PIECE));
+        let state = self.solver.solution.chunks_mut(PIECE);
+        let state = state.zip(self.solver.residual.chunks_mut(PIECE));
+        let state = state.zip(self.solver.preconditioned.chunks_mut(PIECE));
+        let way = self
+            .solver
+            .search
+            .chunks(PIECE)
+            .zip(self.solver.image.chunks(PIECE));
+        let pieces = self
+            .solver
+            .sums
+            .iter_mut()
+            .zip(self.solver.blocks.chunks(PIECE));
         let pieces = pieces.zip(state.zip(way));
         share(
             pieces,
@@ -128,14 +149,13 @@ impl Solver {
                 }
             },
         );
-        self.sums.iter().sum()
+        self.solver.sums.iter().sum()
     }
 
-    /// Chooses the next search direction, which keeps so much of the last one.
     fn turn(&mut self, keep: f64) {
-        let search = self.search.chunks_mut(PIECE);
+        let search = self.solver.search.chunks_mut(PIECE);
         share(
-            search.zip(self.preconditioned.chunks(PIECE)),
+            search.zip(self.solver.preconditioned.chunks(PIECE)),
             |(search, preconditioned)| {
                 for (p, z) in search.iter_mut().zip(preconditioned) {
                     *p = keep * *p + *z;
