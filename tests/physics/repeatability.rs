@@ -130,6 +130,42 @@ fn networks_that_threads_share_move_as_each_does_alone() {
     assert_eq!(run(1), run(200));
 }
 
+/// A net of 60 by 60 points, whose step threads share; and as many beside it as are asked for.
+#[test]
+fn a_net_that_threads_share_moves_beside_another_as_alone() {
+    const SIDE: usize = 60;
+    let run = |nets: usize| {
+        let mut lab = Lab::weightless();
+        let mut first = Vec::new();
+        for net in 0..nets {
+            let points: Vec<Entity> = (0..SIDE * SIDE)
+                .map(|i| {
+                    let at = Vec3::new((i % SIDE) as f32, 2.0 * net as f32, (i / SIDE) as f32);
+                    let point = lab.body(0.1, at);
+                    lab.get_mut::<Velocity>(point).linear = Vec3::Y * (i % 7) as f32 * 0.1;
+                    point
+                })
+                .collect();
+            for i in 0..SIDE * SIDE {
+                let aside = (i % SIDE + 1 < SIDE).then_some(i + 1);
+                let ahead = (i + SIDE < SIDE * SIDE).then_some(i + SIDE);
+                for other in [aside, ahead].into_iter().flatten() {
+                    let spring = SpringDamper::new(points[i], points[other]);
+                    lab.spawn(spring.with_stiffness(50.0).with_rest_length(0.9));
+                }
+            }
+            if net == 0 {
+                first = points;
+            }
+        }
+        for _ in 0..20 {
+            lab.tick();
+        }
+        state(&lab, &first)
+    };
+    assert_eq!(run(1), run(2));
+}
+
 #[test]
 fn the_order_in_which_springs_are_spawned_changes_nothing() {
     let run = |reversed: bool| {

@@ -24,6 +24,15 @@ enum Link {
 }
 
 impl Link {
+    const ALL: [Self; 6] = [
+        Self::Rope,
+        Self::Sided,
+        Self::Table,
+        Self::Both,
+        Self::Buffer,
+        Self::Loose,
+    ];
+
     /// Energy of a link so stretched, J; what it says itself where it is a curve.
     fn stored(self, stiffness: f32, rest_length: f64, stretch: f64, says: f32) -> f64 {
         let within = match self {
@@ -132,14 +141,7 @@ impl Chain {
 #[test]
 fn a_rope_that_falls_on_the_ground_wins_nothing() {
     for (name, way) in ways().into_iter().step_by(2) {
-        for link in [
-            Link::Rope,
-            Link::Sided,
-            Link::Table,
-            Link::Both,
-            Link::Buffer,
-            Link::Loose,
-        ] {
+        for link in Link::ALL {
             let mut line = String::new();
             // ω·dt of two neighbours 5, 15, 52.
             for (links, firmness) in [(10, 100.0), (30, 100.0), (10, 1e4)] {
@@ -165,14 +167,6 @@ fn a_rope_that_falls_on_the_ground_wins_nothing() {
 /// 5·10⁴, and dampers that all but weld.
 #[test]
 fn a_rope_that_is_all_but_rigid_falls_as_a_chain_does() {
-    let kinds = [
-        Link::Rope,
-        Link::Sided,
-        Link::Table,
-        Link::Both,
-        Link::Buffer,
-        Link::Loose,
-    ];
     let firm = [
         (1e8, None),
         (1e10, None),
@@ -180,7 +174,10 @@ fn a_rope_that_is_all_but_rigid_falls_as_a_chain_does() {
         (1e2, Some(1e5)),
         (1e2, Some(1e11)),
     ];
-    for (link, links) in kinds.into_iter().flat_map(|link| [(link, 10), (link, 13)]) {
+    for (link, links) in Link::ALL
+        .into_iter()
+        .flat_map(|link| [(link, 10), (link, 13)])
+    {
         for (firmness, damping) in firm {
             let mut chain = chain(CoiloverPlugin::default(), link, links, firmness);
             if let Some(damping) = damping {
