@@ -20,7 +20,7 @@ use bevy_rapier3d::prelude::*;
 /// Seconds that the script takes.
 pub const SECONDS: f32 = 78.0;
 /// Second of the picture: in the air.
-pub const PICTURE: f32 = 56.2;
+pub const PICTURE: f32 = 57.0;
 
 pub fn setup(app: &mut App) {
     app.insert_resource(stage::SpaceIsTaken);
