@@ -9,6 +9,10 @@ use std::thread::available_parallelism;
 static CORES: LazyLock<usize> =
     LazyLock::new(|| available_parallelism().map_or(1, NonZeroUsize::get));
 
+/// Elements or bodies of a large network that are one piece of work: it takes some twenty times as long as to wake a thread. Pinned
+/// by the benchmark `own/Lattice`.
+pub(crate) const PIECE: usize = 4096;
+
 /// How many threads there are.
 pub(crate) fn count() -> usize {
     #[cfg(test)]

@@ -17,11 +17,11 @@ use super::excited::spread;
 use super::guide::Guide;
 use super::resolution::{EXTRAPOLATION_LIMIT, network_steps};
 use super::tolerance::{Motion, velocity_counts};
-use crate::threads::share;
+use crate::threads::{PIECE, share};
 use bevy::math::DVec3;
 pub(crate) use free_points::{Flight, FreePoint};
 use kick::Bar;
-use parts::{PIECE, Parts};
+use parts::Parts;
 use solve::Solver;
 use survey::Survey;
 

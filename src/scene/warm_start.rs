@@ -7,12 +7,9 @@ use crate::scene::assembly::{Assembly, State};
 use crate::scene::push::Given;
 use crate::scene::rows::{BodyFlags, BodyRow, ElementRow, Members, pull_mark, take};
 use crate::scene::step::Step;
-use crate::threads;
+use crate::threads::{PIECE, share};
 use bevy::math::{DVec3, Vec3};
 use std::sync::atomic::Ordering;
-
-/// Bodies that are one piece of work. Pinned by the benchmark `own/Lattice`.
-const PIECE: usize = 4096;
 
 /// What is known of such a network.
 #[derive(Default)]
@@ -133,7 +130,7 @@ impl WarmStart {
             let first = std::mem::replace(&mut first, end);
             (slots, pulls, met, noted, rows, first)
         });
-        threads::share(pieces, |(slots, pulls, met, noted, rows, first)| {
+        share(pieces, |(slots, pulls, met, noted, rows, first)| {
             for ((slot, pull), met) in slots.iter().zip(pulls).zip(met) {
                 let (row, center) = (&mut rows[row_of(*slot) - first], centers[*slot as usize]);
                 let Some(now) = noted.meet(step, row, center, pull, omega, sight) else {
@@ -270,7 +267,7 @@ impl Assembly {
         } = &mut self.warm;
         given.resize(more.len(), Given::default());
         let pieces = given.chunks_mut(PIECE).zip(more.chunks(PIECE)).enumerate();
-        threads::share(pieces, |(piece, (given, more))| {
+        share(pieces, |(piece, (given, more))| {
             for (at, (given, more)) in given.iter_mut().zip(more).enumerate() {
                 let slot = piece * PIECE + at;
                 let (origin, flight) = (points.origin(slot), points.flight(slot));

@@ -1,10 +1,10 @@
 //! The kick at the half drift; see [`crate::dynamics::network`], whose formulas these are.
 
-use super::parts::{PIECE, Window};
+use super::parts::Window;
 use super::{Line, Point, Points, Wire};
 use crate::dynamics::line;
 use crate::dynamics::network::{damper_placement, placement, settling};
-use crate::threads::share;
+use crate::threads::{PIECE, share};
 use bevy::math::DVec3;
 
 /// One element within a kick.

@@ -8,12 +8,8 @@
 
 use super::Wire;
 use super::kick::Bar;
-use crate::threads::share;
+use crate::threads::{PIECE, share};
 use std::ops::Range;
-
-/// Elements or points that are one piece of work: it takes some twenty times as long as to wake a thread. Pinned by the benchmark
-/// `own/Lattice`.
-pub(super) const PIECE: usize = 4096;
 
 /// A run of elements.
 #[derive(Clone, Debug)]

@@ -3,9 +3,9 @@
 
 use super::Point;
 use super::kick::Bar;
-use super::parts::{PIECE, Parts};
+use super::parts::Parts;
 use crate::dynamics::conjugate::{self, Iterated};
-use crate::threads::share;
+use crate::threads::{PIECE, share};
 use bevy::math::{DMat3, DVec3};
 
 #[derive(Clone, Default)]

@@ -1,9 +1,8 @@
 //! What a network of points has, for its [bound](crate::dynamics::bound).
 
-use super::parts::PIECE;
 use super::{Point, Points, Wire};
 use crate::dynamics::energy::Energy;
-use crate::threads::share;
+use crate::threads::{PIECE, share};
 use bevy::math::DVec3;
 
 /// Rounding of the engine's numbers.
