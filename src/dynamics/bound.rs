@@ -49,9 +49,9 @@ pub(crate) struct Bound {
 impl Bound {
     /// Sees what was done to the network since the last step.
     pub(crate) fn begin(&mut self, elements: &[Element], bodies: &[Body], perturbed: bool) {
-        let now = Energy::of(elements, bodies).sum();
-        let rounding = rounding(elements, bodies);
-        self.start(now, rounding, power(elements, bodies), perturbed);
+        let (energy, rounding) = energy_and_rounding(elements, bodies);
+        let power = power(elements, bodies);
+        self.start(energy.sum(), rounding, power, perturbed);
     }
 
     /// Begins a step with the energy `now`, of which `rounding` can be noise, and the power of moving ends, W.
@@ -104,30 +104,35 @@ impl Bound {
         share * lively.max(self.liveliest)
     }
 
-    /// Takes a surplus out of the motion; says whether that was enough. One that this step has not made, as roundings make in
-    /// an hour, waits until there is motion along the elements: to take the step again would cost far more.
-    pub(crate) fn hold(&mut self, elements: &[Element], bodies: &mut [Body], time: f64) -> bool {
-        if self.given.is_none() {
-            return true;
-        }
+    /// Takes a surplus out of the motion; returns what energy there is then, if that was enough. One that this step has not
+    /// made, as roundings make in an hour, waits until there is motion along the elements: to take the step again would cost
+    /// far more.
+    pub(crate) fn hold(
+        &mut self,
+        elements: &[Element],
+        bodies: &mut [Body],
+        time: f64,
+    ) -> Option<Energy> {
         self.work = self.work.max(power(elements, bodies));
         for _ in 0..ROUNDS {
             let energy = Energy::of(elements, bodies);
             let surplus = self.surplus(&energy, time);
             if surplus <= 0.0 {
-                return true;
+                return Some(energy);
             }
             if !surplus.is_finite() {
-                return false;
+                return None;
             }
             let enough =
                 surplus <= energy.motion && take(elements, bodies, surplus) >= 0.01 * surplus;
             if !enough {
-                return self.may_wait(&energy, surplus);
+                let waits = self.may_wait(&energy, surplus);
+                return waits.then(|| Energy::of(elements, bodies));
             }
         }
         let energy = Energy::of(elements, bodies);
-        self.may_wait(&energy, self.surplus(&energy, time))
+        let waits = self.may_wait(&energy, self.surplus(&energy, time));
+        waits.then_some(energy)
     }
 
     fn may_wait(&self, energy: &Energy, surplus: f64) -> bool {
@@ -181,10 +186,10 @@ impl Bound {
             .is_none_or(|most| energy.stored + energy.place <= most)
     }
 
-    /// Notes what the step ends with.
-    pub(crate) fn end(&mut self, elements: &[Element], bodies: &[Body], time: f64) {
+    /// Notes what energy the step ends with.
+    pub(crate) fn end(&mut self, energy: &Energy, bodies: &[Body], time: f64) {
         if self.given.is_some() {
-            self.finish(&Energy::of(elements, bodies), time);
+            self.finish(energy, time);
             // From the next step on what torques gave is what the bodies have.
             let torque_work: f64 = bodies.iter().map(|body| body.torque_work).sum();
             self.last += torque_work;
@@ -202,21 +207,20 @@ impl Bound {
     }
 }
 
-/// Energy that rounding a step's positions and velocities to f32 can add, J.
-fn rounding(elements: &[Element], bodies: &[Body]) -> f64 {
+/// The energy, and how much of it rounding a step's positions and velocities to f32 can add, J.
+fn energy_and_rounding(elements: &[Element], bodies: &[Body]) -> (Energy, f64) {
     let unit = f64::from(f32::EPSILON);
-    let mut sum = 0.0;
-    for body in bodies {
-        sum += 2.0 * unit * body.motion();
-    }
+    let mut energy = Energy::of(&[], bodies);
+    let mut rounding = 2.0 * unit * energy.motion;
     for element in elements {
         // Four substeps, two ends.
         let (length, reach) = element.distance(bodies);
         let off = 8.0 * unit * reach;
         let elastic = element.elastic(length);
-        sum += off * (elastic.force.abs() + elastic.stiffness * off);
+        energy.stored += elastic.energy;
+        rounding += off * (elastic.force.abs() + elastic.stiffness * off);
     }
-    sum
+    (energy, rounding)
 }
 
 /// Power of ends that something else moves, at most, W.

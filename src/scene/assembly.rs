@@ -6,7 +6,7 @@ use crate::dynamics::step::{Component, copy};
 use crate::dynamics::tolerance::{Accuracy, Outcome};
 use crate::scene::element::element;
 use crate::scene::rows::{
-    BodyFlags, BodyRow, ElementFlags, ElementRow, Members, Solved, pull_mark, take,
+    BodyFlags, BodyRow, Cut, ElementFlags, ElementRow, Members, Solved, pull_mark, take,
 };
 use crate::scene::sleep::{omega_of, rouse};
 use crate::scene::step::Step;
@@ -34,6 +34,8 @@ pub(crate) struct Assembly {
     rouse: bool,
     /// Some body of it has colliders that had none, or the other way round.
     pub(crate) touch_changed: bool,
+    /// Some body of it can be moved no more.
+    pub(crate) stale: bool,
     pub(crate) outcome: Outcome,
     pub(crate) warm: WarmStart,
 }
@@ -81,10 +83,9 @@ impl Assembly {
         &mut self,
         step: &Step,
         members: &Members,
-        elements: &mut [ElementRow],
-        bodies: &mut [BodyRow],
+        elements: &mut Cut<ElementRow>,
+        bodies: &mut Cut<BodyRow>,
         sight: &impl Sight,
-        stale: &mut bool,
     ) {
         self.state = State::Resting;
         self.rouse = false;
@@ -96,7 +97,7 @@ impl Assembly {
         if self.continue_warm(step, members, elements, bodies, sight) {
             return;
         }
-        if !self.gather_bodies(step, members, bodies, sight, stale) {
+        if !self.gather_bodies(step, members, bodies, sight) {
             return;
         }
         let sound = self.start.iter().all(Body::is_finite);
@@ -125,9 +126,8 @@ impl Assembly {
         &mut self,
         step: &Step,
         members: &Members,
-        bodies: &mut [BodyRow],
+        bodies: &mut Cut<BodyRow>,
         sight: &impl Sight,
-        stale: &mut bool,
     ) -> bool {
         let component = &mut self.component;
         component.forget_points();
@@ -142,7 +142,7 @@ impl Assembly {
         component.elements.reserve_exact(members.elements.len());
         for b in members.bodies {
             let row = &mut bodies[*b as usize];
-            let Some(seen) = step.movable(sight, row.id, stale) else {
+            let Some(seen) = step.movable(sight, row.id, &mut self.stale) else {
                 return false;
             };
             let turns = row.has(BodyFlags::TURNS);
@@ -168,8 +168,8 @@ impl Assembly {
         &mut self,
         step: &Step,
         members: &Members,
-        elements: &mut [ElementRow],
-        bodies: &[BodyRow],
+        elements: &mut Cut<ElementRow>,
+        bodies: &Cut<BodyRow>,
         sight: &impl Sight,
     ) -> bool {
         let (mut disturbed, mut omega) = (false, 0.0_f32);

@@ -5,7 +5,7 @@ use crate::dynamics::body::Body;
 use crate::dynamics::element::{Element, End, Path};
 use crate::dynamics::guide::Guide;
 use crate::input::check::Fault;
-use crate::scene::rows::{BodyRow, ElementFlags, ElementRow, Held};
+use crate::scene::rows::{BodyRow, ElementFlags, ElementRow, Held, Rows};
 use crate::scene::step::Step;
 
 impl Step {
@@ -14,7 +14,7 @@ impl Step {
         &self,
         row: &ElementRow,
         end: usize,
-        bodies: &[BodyRow],
+        bodies: &(impl Rows<BodyRow> + ?Sized),
         sight: &impl Sight,
     ) -> End {
         let held = row.rare.held[end];

@@ -3,6 +3,8 @@
 use crate::backend::{Engine, Sight};
 use crate::scene::assembly::Assembly;
 use crate::scene::lone::{Lone, Piece, Route, Way, Worker, pieces};
+use crate::scene::rows::Cut;
+use crate::scene::runs::Runs;
 use crate::scene::state::Scene;
 use crate::scene::step::Step;
 use crate::threads;
@@ -22,6 +24,7 @@ pub(crate) struct Spare {
     general: Vec<Assembly>,
     /// and the components that they are.
     groups: Vec<u32>,
+    runs: Runs,
 }
 
 impl Scene {
@@ -35,7 +38,7 @@ impl Scene {
     ) -> bool {
         let lone = self.lone.iter().position(|lone| lone.context == context);
         // Read,
-        let networks_asleep = self.gather_networks(context, step, engine);
+        let networks_asleep = self.gather_networks(context, step, engine, &mut spare.runs);
         let lone_asleep = lone.is_none_or(|lone| self.solve_lone(lone, step, engine, spare));
         let general = self.gather_general(lone, step, engine, spare);
         // solve,
@@ -69,16 +72,32 @@ impl Scene {
     }
 
     /// Reads what is solved in an assembly of its own; says whether all of that is asleep.
-    fn gather_networks(&mut self, context: Entity, step: &Step, sight: &impl Sight) -> bool {
+    fn gather_networks(
+        &mut self,
+        context: Entity,
+        step: &Step,
+        sight: &impl Sight,
+        runs: &mut Runs,
+    ) -> bool {
+        let groups = &self.groups;
+        runs.find(&self.assemblies, groups);
+        let (elements, bodies) = (&mut self.elements, &mut self.bodies);
+        let pieces = runs.cut(&mut self.assemblies, Cut::all(elements), Cut::all(bodies));
+        threads::share(pieces, |(assemblies, mut elements, mut bodies)| {
+            for assembly in assemblies {
+                let group = &groups.list()[assembly.group];
+                if group.is_free(context) {
+                    let members = groups.members(group);
+                    assembly.gather(step, &members, &mut elements, &mut bodies, sight);
+                }
+            }
+        });
         let mut all_asleep = true;
         for assembly in &mut self.assemblies {
-            let group = &self.groups.list()[assembly.group];
-            if group.is_free(context) {
-                let members = self.groups.members(group);
-                let (elements, bodies) = (&mut self.elements, &mut self.bodies);
-                assembly.gather(step, &members, elements, bodies, sight, &mut self.stale);
+            if groups.list()[assembly.group].is_free(context) {
                 all_asleep &= assembly.is_asleep();
                 self.touch_changed |= take(&mut assembly.touch_changed);
+                self.stale |= take(&mut assembly.stale);
             }
         }
         all_asleep
@@ -99,18 +118,13 @@ impl Scene {
         let each = lone.len().div_ceil(count).max(1);
         spare.workers.resize_with(count, Worker::default);
         let bodies = &self.bodies;
-        let mut rows = &mut self.elements[..];
-        let mut first = 0;
+        let mut rows = Cut::all(&mut self.elements);
         let parts = lone.chunks(each).zip(spare.ways.chunks_mut(each));
         let parts = parts.zip(&mut spare.workers).map(|((lone, ways), worker)| {
-            // The rows of this piece, cut off the rest.
-            let end = lone.last().map_or(first, |last| last.element as usize + 1);
-            let (own, others) = take(&mut rows).split_at_mut(end - first);
-            rows = others;
+            let end = lone.last().map_or(0, |last| last.element as usize + 1);
             let piece = Piece {
                 lone,
-                rows: own,
-                first: std::mem::replace(&mut first, end),
+                rows: rows.take_before(end),
                 bodies,
                 ways,
                 sight,
@@ -149,8 +163,10 @@ impl Scene {
             let members = self.groups.members(&self.groups.list()[group as usize]);
             let (elements, bodies) = (&mut self.elements, &mut self.bodies);
             let assembly = &mut spare.general[at];
-            assembly.gather(step, &members, elements, bodies, sight, &mut self.stale);
+            let (elements, bodies) = (&mut Cut::all(elements), &mut Cut::all(bodies));
+            assembly.gather(step, &members, elements, bodies, sight);
             self.touch_changed |= take(&mut assembly.touch_changed);
+            self.stale |= take(&mut assembly.stale);
         }
         spare.groups.len()
     }

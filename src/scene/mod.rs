@@ -33,6 +33,7 @@ pub(crate) mod refresh;
 pub(crate) mod renew;
 pub(crate) mod report;
 pub(crate) mod rows;
+pub(crate) mod runs;
 pub(crate) mod show;
 pub(crate) mod sleep;
 pub(crate) mod state;

@@ -7,7 +7,7 @@
 
 use crate::backend::{Engine, Seen, Sight};
 use crate::dynamics::body::Body;
-use crate::scene::rows::{BodyFlags, BodyRow, ElementRow, Members, Rest, take};
+use crate::scene::rows::{BodyFlags, BodyRow, ElementRow, Members, Rest, Rows, RowsMut, take};
 use crate::scene::step::Step;
 
 /// Speed (m/s, rad/s; times the engine's length unit) that counts as rest.
@@ -122,8 +122,8 @@ impl Step {
     pub(crate) fn is_left_alone(
         &self,
         members: &Members,
-        elements: &[ElementRow],
-        bodies: &[BodyRow],
+        elements: &(impl Rows<ElementRow> + ?Sized),
+        bodies: &(impl Rows<BodyRow> + ?Sized),
         sight: &impl Sight,
     ) -> bool {
         let sleeps = |b: &u32| sight.is_asleep(bodies[*b as usize].id);
@@ -176,7 +176,7 @@ impl Step {
     /// natural frequency of the stiffest element.
     pub(crate) fn is_awake(
         &self,
-        rows: &mut [BodyRow],
+        rows: &mut (impl RowsMut<BodyRow> + ?Sized),
         members: &[u32],
         omega: f32,
         sight: &impl Sight,

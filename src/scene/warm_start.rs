@@ -5,7 +5,7 @@ use crate::backend::{Engine, Sight};
 use crate::dynamics::points::{FreePoint, Points};
 use crate::scene::assembly::{Assembly, State};
 use crate::scene::push::Given;
-use crate::scene::rows::{BodyFlags, BodyRow, ElementRow, Members, pull_mark, take};
+use crate::scene::rows::{BodyFlags, BodyRow, Cut, ElementRow, Members, pull_mark, take};
 use crate::scene::step::Step;
 use crate::threads::{PIECE, share};
 use bevy::math::{DVec3, Vec3};
@@ -109,7 +109,7 @@ impl WarmStart {
         &mut self,
         step: &Step,
         members: &Members,
-        bodies: &mut [BodyRow],
+        bodies: &mut Cut<BodyRow>,
         sight: &impl Sight,
     ) -> Noted {
         let count = self.in_memory.len();
@@ -119,20 +119,17 @@ impl WarmStart {
         let (centers, omega) = (&self.centers, self.omega);
         let row_of = |slot: u32| members.bodies[slot as usize] as usize;
         // The rows of each piece, cut off those of the next.
-        let (mut rest, mut first) = (bodies, 0);
+        let mut rest = bodies.again();
         let slots = self.in_memory.chunks(PIECE);
         let pieces = slots.zip(self.pulls.chunks_mut(PIECE));
         let pieces = pieces.zip(self.met.chunks_mut(PIECE)).zip(&mut self.noted);
         let pieces = pieces.map(|(((slots, pulls), met), noted)| {
-            let end = slots.last().map_or(first, |last| row_of(*last) + 1);
-            let (rows, others) = std::mem::take(&mut rest).split_at_mut(end - first);
-            rest = others;
-            let first = std::mem::replace(&mut first, end);
-            (slots, pulls, met, noted, rows, first)
+            let end = slots.last().map_or(0, |last| row_of(*last) + 1);
+            (slots, pulls, met, noted, rest.take_before(end))
         });
-        share(pieces, |(slots, pulls, met, noted, rows, first)| {
+        share(pieces, |(slots, pulls, met, noted, mut rows)| {
             for ((slot, pull), met) in slots.iter().zip(pulls).zip(met) {
-                let (row, center) = (&mut rows[row_of(*slot) - first], centers[*slot as usize]);
+                let (row, center) = (&mut rows[row_of(*slot)], centers[*slot as usize]);
                 let Some(now) = noted.meet(step, row, center, pull, omega, sight) else {
                     noted.stops = true;
                     return;
@@ -174,8 +171,8 @@ impl Assembly {
         &mut self,
         step: &Step,
         members: &Members,
-        elements: &[ElementRow],
-        bodies: &mut [BodyRow],
+        elements: &Cut<ElementRow>,
+        bodies: &mut Cut<BodyRow>,
         sight: &impl Sight,
     ) -> bool {
         self.component.is_warm = false;
@@ -207,8 +204,8 @@ impl Assembly {
         &mut self,
         step: &Step,
         members: &Members,
-        elements: &[ElementRow],
-        bodies: &mut [BodyRow],
+        elements: &Cut<ElementRow>,
+        bodies: &mut Cut<BodyRow>,
         sight: &impl Sight,
         disturbed: &mut bool,
     ) -> Option<()> {

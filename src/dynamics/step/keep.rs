@@ -4,6 +4,7 @@
 use super::{Component, Memory};
 use crate::dynamics::body::{Body, is_within};
 use crate::dynamics::bound::Bound;
+use crate::dynamics::energy::Energy;
 use crate::dynamics::points::Points;
 use crate::dynamics::system::DENSE;
 use crate::dynamics::tolerance::{Accuracy, Method, Motion, Outcome};
@@ -76,13 +77,14 @@ impl Component {
     /// taken again: finer, or else in the way that only loses energy.
     pub(super) fn keep_bound(&mut self, time: f64, accuracy: Accuracy, outcome: &mut Outcome) {
         let mut bound = std::mem::take(&mut self.memory.bound);
-        if !bound.hold(&self.elements, &mut self.bodies, time)
-            && !self.retake(time, accuracy, outcome, &mut bound)
-        {
+        let kept = bound.hold(&self.elements, &mut self.bodies, time);
+        let kept = kept.or_else(|| self.retake(time, accuracy, outcome, &mut bound));
+        let energy = kept.unwrap_or_else(|| {
             self.load(0);
             self.settle(time, &mut bound);
-        }
-        bound.end(&self.elements, &self.bodies, time);
+            Energy::of(&self.elements, &self.bodies)
+        });
+        bound.end(&energy, &self.bodies, time);
         self.memory.bound = bound;
     }
 

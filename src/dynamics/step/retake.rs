@@ -6,6 +6,7 @@
 
 use super::Component;
 use crate::dynamics::bound::Bound;
+use crate::dynamics::energy::Energy;
 use crate::dynamics::tolerance::{Accuracy, Motion, Outcome};
 
 /// Times as many micro-steps as those that have won energy.
@@ -43,7 +44,7 @@ impl Caution {
 }
 
 impl Component {
-    /// Takes a network's step again, finer and finer; says whether that won nothing. Where as many micro-steps are taken as
+    /// Takes a network's step again, finer and finer; returns what energy there is then, if that won nothing. Where as many micro-steps are taken as
     /// are asked, it is left as it is.
     pub(super) fn retake(
         &mut self,
@@ -51,31 +52,31 @@ impl Component {
         accuracy: Accuracy,
         outcome: &mut Outcome,
         bound: &mut Bound,
-    ) -> bool {
+    ) -> Option<Energy> {
         let caution = self.memory.caution;
         let is_tried = caution.left > 0.0 && caution.microsteps == 0;
         if is_tried || accuracy.resolve == 0 || self.is_alone() {
-            return false;
+            return None;
         }
         let most = accuracy.resolve.max(MOST);
         let mut taken = outcome.microsteps.max(1);
         loop {
             let (count, _) = accuracy.cap(FINER.saturating_mul(taken).min(most));
             if count <= taken {
-                return false;
+                return None;
             }
             self.load(0);
             self.run(time, count);
             self.hold_back(time);
             outcome.microsteps += count;
             taken = count;
-            let wins_nothing = bound.hold(&self.elements, &mut self.bodies, time);
+            let kept = bound.hold(&self.elements, &mut self.bodies, time);
             self.memory.caution = Caution {
                 left: STAYS,
-                microsteps: if wins_nothing { count } else { 0 },
+                microsteps: if kept.is_some() { count } else { 0 },
             };
-            if wins_nothing {
-                return true;
+            if kept.is_some() {
+                return kept;
             }
         }
     }

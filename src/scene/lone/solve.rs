@@ -10,7 +10,7 @@ use crate::dynamics::poles::Poles;
 use crate::dynamics::tolerance::{Method, Outcome};
 use crate::input::check::Numbers;
 use crate::scene::push::Given;
-use crate::scene::rows::{BodyFlags, BodyRow, ElementFlags, ElementRow, Solved};
+use crate::scene::rows::{BodyFlags, BodyRow, Cut, ElementFlags, ElementRow, Solved};
 use crate::scene::step::Step;
 use pulp::{Simd, WithSimd};
 
@@ -66,9 +66,8 @@ struct Found {
 /// A piece of all lone elements.
 pub(crate) struct Piece<'a, S> {
     pub lone: &'a [Pair],
-    /// The rows that they are among, and the index of the first of these.
-    pub rows: &'a mut [ElementRow],
-    pub first: usize,
+    /// The rows that they are among.
+    pub rows: Cut<'a, ElementRow>,
     pub bodies: &'a [BodyRow],
     pub ways: &'a mut [Way],
     pub sight: &'a S,
@@ -111,7 +110,7 @@ impl Worker {
     ) -> Result<(), Route> {
         let (bodies, sight) = (piece.bodies, piece.sight);
         let pair = &piece.lone[at];
-        let row = &mut piece.rows[pair.element as usize - piece.first];
+        let row = &mut piece.rows[pair.element as usize];
         let way = &mut piece.ways[at];
         if row.has(ElementFlags::HELD) {
             return Err(Route::None);
@@ -225,7 +224,7 @@ impl Worker {
             let (lanes, lane) = (&self.lanes[at / LANES], at % LANES);
             let at = taken.at as usize;
             let way = &mut piece.ways[at];
-            let row = &mut piece.rows[piece.lone[at].element as usize - piece.first];
+            let row = &mut piece.rows[piece.lone[at].element as usize];
             let Some(reached) = lanes.way(lane) else {
                 let alone = Alone {
                     points: lanes.points(lane),

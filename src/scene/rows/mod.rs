@@ -1,12 +1,14 @@
 //! The rows of a scene: plain data about elements and bodies that is kept from step to step.
 
 mod body;
+mod cut;
 mod element;
 mod flags;
 mod marks;
 mod raised;
 
 pub(crate) use body::{BodyRow, RareBody, Rest};
+pub(crate) use cut::{Cut, Rows, RowsMut};
 pub(crate) use element::{ElementRow, EnergyLedger, Held, RareElement, Solved};
 pub(crate) use flags::{BodyFlags, ElementFlags, take};
 pub(crate) use marks::{mix, pull_mark, turning_mark};

@@ -1,0 +1,99 @@
+//! Runs of networks that share no rows with other runs, so that several threads read them.
+
+use crate::scene::assembly::Assembly;
+use crate::scene::group::Groups;
+use crate::scene::rows::{BodyRow, Cut, ElementRow};
+use crate::threads;
+use std::mem::take;
+
+/// Elements of all networks above which it is worth waking other threads. Pinned by the benchmark `own/isolated/turning`.
+const WORTH_SHARING: usize = 256;
+
+/// Runs for each thread: what one has done sooner, another need not wait for.
+const RUNS: usize = 4;
+
+/// Places among the rows of elements and of bodies.
+type Places = [usize; 2];
+
+/// Where each run ends.
+#[derive(Default)]
+pub(crate) struct Runs {
+    ends: Vec<End>,
+    /// First rows of each network and all that come after it.
+    firsts: Vec<Places>,
+}
+
+/// Where one ends among the networks and the rows.
+#[derive(Clone, Copy)]
+struct End {
+    network: usize,
+    rows: Places,
+}
+
+impl Runs {
+    /// Finds the runs. Where rows of networks lie between those of others, they are in one; how many there are changes nothing
+    /// of what comes out.
+    pub(crate) fn find(&mut self, assemblies: &[Assembly], groups: &Groups) {
+        self.ends.clear();
+        let members = |assembly: &Assembly| groups.members(&groups.list()[assembly.group]);
+        let load = |assembly: &Assembly| members(assembly).elements.len();
+        let all: usize = assemblies.iter().map(load).sum();
+        let threads = threads::count();
+        if threads > 1 && assemblies.len() > 1 && all >= WORTH_SHARING {
+            self.firsts.clear();
+            let mut first = [usize::MAX; 2];
+            self.firsts.extend(assemblies.iter().rev().map(|assembly| {
+                let members = members(assembly);
+                let rows = [members.elements, members.bodies];
+                let least = rows.map(|rows| rows.iter().min());
+                for (first, least) in first.iter_mut().zip(least) {
+                    *first = least.map_or(*first, |least| (*first).min(*least as usize));
+                }
+                first
+            }));
+            let (mut last, mut waiting) = ([0; 2], 0);
+            for (at, assembly) in assemblies.iter().enumerate() {
+                let members = members(assembly);
+                for (last, rows) in last.iter_mut().zip([members.elements, members.bodies]) {
+                    *last = rows
+                        .iter()
+                        .fold(*last, |last, row| last.max(*row as usize + 1));
+                }
+                waiting += members.elements.len();
+                let Some(next) = self.firsts.iter().rev().nth(at + 1) else {
+                    break;
+                };
+                let apart = last[0] <= next[0] && last[1] <= next[1];
+                if apart && waiting >= all.div_ceil(RUNS * threads) {
+                    waiting = 0;
+                    self.ends.push(End {
+                        network: at + 1,
+                        rows: last,
+                    });
+                }
+            }
+        }
+        self.ends.push(End {
+            network: assemblies.len(),
+            rows: [usize::MAX; 2],
+        });
+    }
+
+    /// Cuts networks and rows there.
+    pub(crate) fn cut<'a>(
+        &'a self,
+        mut assemblies: &'a mut [Assembly],
+        mut elements: Cut<'a, ElementRow>,
+        mut bodies: Cut<'a, BodyRow>,
+    ) -> impl ExactSizeIterator<Item = (&'a mut [Assembly], Cut<'a, ElementRow>, Cut<'a, BodyRow>)>
+    {
+        let mut first = 0;
+        self.ends.iter().map(move |end| {
+            let (own, others) = take(&mut assemblies).split_at_mut(end.network - first);
+            assemblies = others;
+            first = end.network;
+            let [e, b] = end.rows;
+            (own, elements.take_before(e), bodies.take_before(b))
+        })
+    }
+}
