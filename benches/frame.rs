@@ -110,6 +110,7 @@ fn networks(c: &mut Criterion) {
         // A longer one reaches so far that the engine's f32 shakes it.
         (Scene::Chain, &sizes[..3]),
         (Scene::Lattice, &sizes),
+        (Scene::Cloth, &sizes),
         (Scene::Cars, &sizes[..1]),
     ] {
         let mut group = c.benchmark_group(format!("own/{scene:?}"));

@@ -75,8 +75,10 @@ pub enum Scene {
     AllButOne,
     /// One long chain, hung at both ends.
     Chain,
-    /// A cubic lattice with springs along its edges.
+    /// A cubic lattice with springs along its edges,
     Lattice,
+    /// and one that is square and flat, with fewer springs for each body.
+    Cloth,
     /// Many chassis, each on four springs held at its corners, with a wheel below each.
     Cars,
     /// Cars of five bodies that roll on a road, one for each of `count`,
@@ -131,12 +133,22 @@ impl Scene {
     /// How many springs [`Self::app`] makes of about `count`.
     pub fn springs(self, count: u32) -> u32 {
         match self {
-            Self::Lattice => {
-                let n = edge(count);
-                3 * n * n * (n - 1)
+            Self::Lattice | Self::Cloth => {
+                let [n, deep] = self.bodies_along(count);
+                2 * n * (n - 1) * deep + n * n * (deep - 1)
             }
             Self::Rolling | Self::Parked => 4 * count,
             _ => count,
+        }
+    }
+
+    /// Bodies along the long edges of a lattice, and along the third, whose springs number about `count`.
+    fn bodies_along(self, count: u32) -> [u32; 2] {
+        let count = f64::from(count);
+        let along = |edge: f64| (edge.round() as u32 + 1).max(2);
+        match self {
+            Self::Cloth => [along((count / 2.0).sqrt()), 1],
+            _ => [along((count / 3.0).cbrt()); 2],
         }
     }
 
@@ -205,7 +217,7 @@ impl Scene {
             Self::Cars => cars(app.world_mut(), count),
             Self::Rolling => road::cars(app.world_mut(), count, link, 3.0),
             Self::Parked => road::cars(app.world_mut(), count, link, 0.0),
-            Self::Lattice => lattice(app.world_mut(), count, link),
+            Self::Lattice | Self::Cloth => lattice(app.world_mut(), self.bodies_along(count), link),
         }
         let settle = match self {
             Self::Asleep | Self::AllButOne => 200,
@@ -331,34 +343,21 @@ fn cars(world: &mut World, count: u32) {
     }
 }
 
-/// Bodies along an edge of the cube whose springs number about `count`.
-fn edge(count: u32) -> u32 {
-    ((f64::from(count) / 3.0).cbrt().round() as u32 + 1).max(2)
-}
-
-/// The cube whose springs number about `count`.
-fn lattice(world: &mut World, count: u32, link: Link) {
-    let n = edge(count);
+/// A lattice of `n` × `n` × `deep` bodies.
+fn lattice(world: &mut World, [n, deep]: [u32; 2], link: Link) {
     let at = |x: u32, y: u32, z: u32| Vec3::new(x as f32, y as f32, z as f32) * 1.05;
+    let all = || (0..n * n * deep).map(|i| (i / deep / n, i / deep % n, i % deep));
     let mut bodies = Vec::new();
-    for x in 0..n {
-        for y in 0..n {
-            for z in 0..n {
-                let kick = Vec3::Y * ((x + z) % 2) as f32 * 0.2;
-                bodies.push(body(world, at(x, y, z), kick));
-            }
-        }
+    for (x, y, z) in all() {
+        let kick = Vec3::Y * ((x + z) % 2) as f32 * 0.2;
+        bodies.push(body(world, at(x, y, z), kick));
     }
-    let index = |x: u32, y: u32, z: u32| ((x * n + y) * n + z) as usize;
-    for x in 0..n {
-        for y in 0..n {
-            for z in 0..n {
-                let here = bodies[index(x, y, z)];
-                for (nx, ny, nz) in [(x + 1, y, z), (x, y + 1, z), (x, y, z + 1)] {
-                    if nx < n && ny < n && nz < n {
-                        join(world, here, bodies[index(nx, ny, nz)], link);
-                    }
-                }
+    let index = |x: u32, y: u32, z: u32| ((x * n + y) * deep + z) as usize;
+    for (x, y, z) in all() {
+        let here = bodies[index(x, y, z)];
+        for (nx, ny, nz) in [(x + 1, y, z), (x, y + 1, z), (x, y, z + 1)] {
+            if nx < n && ny < n && nz < deep {
+                join(world, here, bodies[index(nx, ny, nz)], link);
             }
         }
     }

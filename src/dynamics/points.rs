@@ -17,7 +17,7 @@ use super::excited::spread;
 use super::guide::Guide;
 use super::resolution::{EXTRAPOLATION_LIMIT, network_steps};
 use super::tolerance::{Motion, velocity_counts};
-use crate::threads::{PIECE, share};
+use crate::threads::{copy, each};
 use bevy::math::DVec3;
 pub(crate) use free_points::{Flight, FreePoint};
 use kick::Bar;
@@ -49,8 +49,21 @@ struct Wire {
     side: DVec3,
     /// See [`Element::stiff_damper`].
     stiff_damper: bool,
+}
+
+/// What an element's damper has taken in this step so far, and what its moving ends have given, J.
+#[derive(Clone, Copy, Debug, Default)]
+struct Exchanged {
     heat: f64,
     work: f64,
+}
+
+/// A state that can be gone back to.
+#[derive(Clone, Default)]
+struct Saved {
+    points: Vec<Point>,
+    wires: Vec<Wire>,
+    exchanged: Vec<Exchanged>,
 }
 
 /// Such a network, kept from step to step.
@@ -62,6 +75,8 @@ pub(crate) struct Points {
     /// So many of them are bodies; the others come after.
     bodies: usize,
     wires: Vec<Wire>,
+    /// Of each of them.
+    exchanged: Vec<Exchanged>,
     /// For each point, the stiffness and damping of its elements over its mass; see
     /// [`super::network::Network`].
     stiffness: Vec<f64>,
@@ -74,7 +89,7 @@ pub(crate) struct Points {
     solver: Solver,
     budget: u32,
     converged: bool,
-    saved: [(Vec<Point>, Vec<Wire>); 3],
+    saved: [Saved; 3],
     /// Of each piece of points and elements.
     surveys: Vec<Survey>,
 }
@@ -189,6 +204,7 @@ impl Points {
         self.points.extend(bodies.iter().map(Point::of));
         self.bodies = bodies.len();
         self.wires.clear();
+        self.exchanged.clear();
         for element in elements {
             let ends = element.ends.map(|end| match end {
                 End::Body { index, .. } => index as u32,
@@ -205,6 +221,8 @@ impl Points {
                 rest_length: element.rest_length,
                 side: element.direction.unwrap_or(DVec3::ZERO),
                 stiff_damper: element.stiff_damper,
+            });
+            self.exchanged.push(Exchanged {
                 heat: element.heat,
                 work: element.work,
             });
@@ -221,7 +239,8 @@ impl Points {
             body.velocity = point.velocity;
             body.given.0 = point.given;
         }
-        for (element, wire) in elements.iter_mut().zip(&mut self.wires) {
+        let wires = self.wires.iter().zip(&self.exchanged);
+        for (element, (wire, exchanged)) in elements.iter_mut().zip(wires) {
             for (end, index) in element.ends.iter_mut().zip(wire.ends) {
                 if let End::Path(path) = end {
                     path.position = self.points[index as usize].position;
@@ -229,8 +248,7 @@ impl Points {
             }
             element.direction = wire.side.try_normalize();
             element.stiff_damper = wire.stiff_damper;
-            element.heat = std::mem::take(&mut wire.heat);
-            element.work = std::mem::take(&mut wire.work);
+            (element.heat, element.work) = (exchanged.heat, exchanged.work);
         }
     }
 
@@ -268,11 +286,7 @@ impl Points {
     /// See [`Element::aim`].
     fn aim(&mut self, step: f64) {
         let points = &self.points;
-        share(self.wires.chunks_mut(PIECE), |wires| {
-            for wire in wires {
-                wire.aim(wire.of(points), step);
-            }
-        });
+        each(&mut self.wires, |_, wire| wire.aim(wire.of(points), step));
     }
 
     /// Time over which velocities that are off those count.
@@ -291,25 +305,25 @@ impl Points {
     }
 
     fn drift(&mut self, time: f64) {
-        share(self.points.chunks_mut(PIECE), |points| {
-            for point in points {
-                point.position += time * point.velocity;
-            }
+        each(&mut self.points, |_, point| {
+            point.position += time * point.velocity;
         });
     }
 }
 
 impl Motion for Points {
     fn save(&mut self, slot: usize) {
-        let (points, wires) = &mut self.saved[slot];
-        points.clone_from(&self.points);
-        wires.clone_from(&self.wires);
+        let saved = &mut self.saved[slot];
+        copy(&mut saved.points, &self.points);
+        copy(&mut saved.wires, &self.wires);
+        copy(&mut saved.exchanged, &self.exchanged);
     }
 
     fn load(&mut self, slot: usize) {
-        let (points, wires) = &self.saved[slot];
-        self.points.clone_from(points);
-        self.wires.clone_from(wires);
+        let saved = &self.saved[slot];
+        copy(&mut self.points, &saved.points);
+        copy(&mut self.wires, &saved.wires);
+        copy(&mut self.exchanged, &saved.exchanged);
     }
 
     fn least(&mut self, time: f64, most: u32) -> u32 {
@@ -331,7 +345,7 @@ impl Motion for Points {
     }
 
     fn distance(&self, slot: usize) -> f64 {
-        let other = &self.saved[slot].0;
+        let other = &self.saved[slot].points;
         let counts = self.velocity_counts(other);
         let apart = |(a, b): (&Point, &Point)| {
             a.position.distance(b.position) + counts * a.velocity.distance(b.velocity)
@@ -340,7 +354,7 @@ impl Motion for Points {
     }
 
     fn travelled(&self, slot: usize) -> f64 {
-        let before = &self.saved[slot].0;
+        let before = &self.saved[slot].points;
         let moved = self.points.iter().zip(before);
         spread(moved.clone().map(|(now, was)| now.position - was.position))
             + self.velocity_counts(before)
@@ -348,7 +362,7 @@ impl Motion for Points {
     }
 
     fn extrapolate(&mut self, slot: usize) {
-        for (fine, coarse) in self.points.iter_mut().zip(&self.saved[slot].0) {
+        for (fine, coarse) in self.points.iter_mut().zip(&self.saved[slot].points) {
             fine.position += (fine.position - coarse.position) / 3.0;
             fine.velocity += (fine.velocity - coarse.velocity) / 3.0;
             fine.given += (fine.given - coarse.given) / 3.0;

@@ -93,7 +93,7 @@ impl Component {
         }
         let accuracy = self.memory.caution.pass(time, accuracy);
         if self.is_warm {
-            self.memory.points.begin(self.memory.max_iterations);
+            self.memory.points.go_on(self.memory.max_iterations);
         }
         if self.is_warm || self.is_of_points(time) {
             let outcome = self.advance_points(time, accuracy, |motion| {

@@ -56,14 +56,18 @@ impl Trouble {
         }
     }
 
+    /// Whether there is something to say that was not said before.
+    pub(crate) fn has_news(&self) -> bool {
+        let news = |faults: &Faults| faults.said != faults.lasting.or(faults.passing);
+        self.0.as_deref().is_some_and(news)
+    }
+
     /// What there is to say that was not said before: a fault, or that there is none any more.
     pub(crate) fn news(&mut self) -> Option<Option<Fault>> {
-        let faults = self.0.as_mut()?;
-        let fault = faults.lasting.or(faults.passing);
-        (faults.said != fault).then(|| {
-            faults.said = fault;
-            fault
-        })
+        let has_news = self.has_news();
+        let faults = self.0.as_mut().filter(|_| has_news)?;
+        faults.said = faults.lasting.or(faults.passing);
+        Some(faults.said)
     }
 }
 

@@ -58,7 +58,7 @@ impl Scene {
 }
 
 /// How many rows a piece of work has.
-fn share_of(rows: usize) -> usize {
+pub(crate) fn share_of(rows: usize) -> usize {
     if rows < WORTH_SHARING {
         return rows.max(1);
     }

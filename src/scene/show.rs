@@ -4,10 +4,17 @@ use crate::dynamics::single;
 use crate::element::{Spring, SpringDamper, SpringTuning, TorsionSpring, TorsionSpringDamper};
 use crate::input::parts::{Acts, IsElement};
 use crate::readout::SpringReadout;
+use crate::scene::observe::share_of;
 use crate::scene::report::report;
 use crate::scene::rows::{ElementFlags, ElementRow, take};
 use crate::scene::state::Scene;
+use crate::threads;
+use bevy::ecs::change_detection::ContiguousMut;
 use bevy::prelude::*;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// What was found of an element and is to be written into its components.
+const FOUND: ElementFlags = ElementFlags::TUNED.union(ElementFlags::CAPTURED);
 
 /// What a captured rest length or angle is written into.
 pub(crate) type Springs<'a> = (
@@ -18,56 +25,103 @@ pub(crate) type Springs<'a> = (
     Option<&'a SpringTuning>,
 );
 
+/// What elements show.
+pub(crate) type Readouts<'w, 's> = Query<'w, 's, (Entity, &'static mut SpringReadout), Acts>;
+
 impl Scene {
     /// Writes readouts, captured rest lengths, and faults found while solving.
     pub(crate) fn show(
         &mut self,
-        readouts: &mut Query<(Entity, &mut SpringReadout), Acts>,
+        readouts: &mut Readouts,
         springs: &mut Query<Springs, IsElement>,
         commands: &mut Commands,
     ) {
         let time = self.time;
-        let mut show = |row: &mut ElementRow, readout: Option<&mut Mut<SpringReadout>>| {
-            if !row.is_seen() {
-                return;
-            }
-            row.tell(springs, commands);
-            if let Some(readout) = readout {
-                readout.set_if_neq(row.read_out(time));
-            }
-        };
-        // The rows stand in the query's order; if something came, went or got other components since they were
-        // made, from there on each is looked up, and the rows are made anew.
-        let mut unordered = false;
-        let mut rows = self.elements.iter_mut();
-        for (entity, mut readout) in &mut *readouts {
-            let next = rows.as_slice().first();
-            unordered = next.is_none_or(|row| row.entity != entity);
-            if unordered {
-                break;
-            }
-            if let Some(row) = rows.next() {
-                show(row, Some(&mut readout));
+        let seen = self.show_in_order(readouts);
+        if seen.has_news {
+            for row in self.elements.iter_mut().filter(|row| row.is_seen()) {
+                row.tell(springs, commands);
             }
         }
-        for row in rows {
-            let mut readout = readouts.get_mut(row.entity).ok();
-            show(row, readout.as_mut().map(|(_, readout)| readout));
+        if seen.is_incomplete {
+            for row in self.elements.iter().filter(|row| row.is_seen()) {
+                if let Ok((_, mut readout)) = readouts.get_mut(row.entity) {
+                    readout.set_if_neq(row.read_out(time));
+                }
+            }
         }
         if self.renewed {
-            self.unordered = unordered;
+            self.unordered = seen.is_unordered;
         }
-        self.stale |= unordered && !self.unordered;
+        self.stale |= seen.is_unordered && !self.unordered;
+    }
+
+    /// Writes the readouts of rows that stand in the query's order. If something came, went or got other components since they
+    /// were made, there are others, and the rows are made anew.
+    fn show_in_order(&self, readouts: &mut Readouts) -> SeenInOrder {
+        let (time, mut rest) = (self.time, &self.elements[..]);
+        let (has_news, is_unordered) = (AtomicBool::new(false), AtomicBool::new(false));
+        for (entities, readouts) in readouts.contiguous_iter_mut().into_iter().flatten() {
+            let count = rest.len().min(entities.len());
+            is_unordered.fetch_or(count < entities.len(), Ordering::Relaxed);
+            let (rows, others) = rest.split_at(count);
+            rest = others;
+            let (readouts, mut ticks) = ContiguousMut::bypass_change_detection_split(readouts);
+            let (now, ticks) = (ticks.this_run(), ticks.changed_mut());
+            let each = share_of(count);
+            let shown = readouts.chunks_mut(each).zip(ticks.chunks_mut(each));
+            let pieces = rows.chunks(each).zip(entities.chunks(each)).zip(shown);
+            threads::share(pieces, |((rows, entities), (readouts, ticks))| {
+                let shown = readouts.iter_mut().zip(ticks);
+                for ((row, entity), (readout, tick)) in rows.iter().zip(entities).zip(shown) {
+                    if row.entity != *entity {
+                        is_unordered.store(true, Ordering::Relaxed);
+                        return;
+                    }
+                    if row.is_seen() {
+                        let new = row.read_out(time);
+                        if *readout != new {
+                            (*readout, *tick) = (new, now);
+                        }
+                        if row.has_news() {
+                            has_news.store(true, Ordering::Relaxed);
+                        }
+                    }
+                }
+            });
+        }
+        let is_unordered = is_unordered.into_inner();
+        let is_incomplete = is_unordered || !rest.is_empty();
+        SeenInOrder {
+            // What was not met may have some.
+            has_news: has_news.into_inner() || is_incomplete,
+            is_unordered,
+            is_incomplete,
+        }
     }
 }
 
+/// What there was where rows and readouts were gone through side by side.
+struct SeenInOrder {
+    /// Some element has something to tell.
+    has_news: bool,
+    /// Some readout was not that of the row in its place.
+    is_unordered: bool,
+    /// Some rows have not met their readouts.
+    is_incomplete: bool,
+}
+
 impl ElementRow {
-    /// Tells what was found in this tick: faults, captured rest lengths, coefficients that were worked out.
+    /// Whether it has something to [tell](Self::tell).
     #[inline(always)]
+    fn has_news(&self) -> bool {
+        self.flags.intersects(FOUND) || self.trouble.has_news()
+    }
+
+    /// Tells what was found in this tick: faults, captured rest lengths, coefficients that were worked out.
     fn tell(&mut self, springs: &mut Query<Springs, IsElement>, commands: &mut Commands) {
         report(self, commands);
-        let found = ElementFlags::TUNED | ElementFlags::CAPTURED;
-        if !self.flags.intersects(found) {
+        if !self.flags.intersects(FOUND) {
             return;
         }
         let tuned = take!(self.flags, ElementFlags::TUNED);

@@ -7,7 +7,7 @@ use crate::scene::assembly::{Assembly, State};
 use crate::scene::push::Given;
 use crate::scene::rows::{BodyFlags, BodyRow, Cut, ElementRow, Members, pull_mark, take};
 use crate::scene::step::Step;
-use crate::threads::{PIECE, share};
+use crate::threads::{PIECE, beside, each, share};
 use bevy::math::{DVec3, Vec3};
 use std::sync::atomic::Ordering;
 
@@ -20,23 +20,31 @@ pub(crate) struct WarmStart {
     pub omega: f32,
     /// Where each body's centre of mass is in its own frame.
     pub centers: Vec<Vec3>,
-    /// Places of its bodies within the component in the order of their rows, which is that of the engine's memory: large networks
-    /// are read and written in that.
-    in_memory: Vec<u32>,
-    /// Acceleration of each by everything but elements in the last step, in that order,
-    pulls: Vec<DVec3>,
-    /// and how many substeps it asked for beyond those of all, in the component's.
-    more: Vec<u32>,
-    /// What each is given, in the component's order.
+    in_memory: InMemory,
+    /// What each body is given.
     given: Vec<Given>,
-    /// How each is now, in the order of memory,
-    met: Vec<Met>,
-    /// and what was noted of each piece of them.
-    noted: Vec<Noted>,
     /// Some body has not rested for long.
     restless: bool,
     /// Something else than elements can have changed what it has.
     pub perturbed: bool,
+}
+
+/// Bodies and elements in the order of their rows, which is that of the engine's memory: large networks are read and written in
+/// that.
+#[derive(Default)]
+struct InMemory {
+    /// Places of bodies within the component,
+    bodies: Vec<u32>,
+    /// and of elements.
+    elements: Vec<u32>,
+    /// Of each body of the component its place here.
+    place_of: Vec<u32>,
+    /// Acceleration of each body by everything but elements in the last step.
+    pulls: Vec<DVec3>,
+    /// How each is now,
+    met: Vec<Met>,
+    /// and what was noted of each piece of them.
+    noted: Vec<Noted>,
 }
 
 /// A body of it before a step.
@@ -103,6 +111,35 @@ impl Noted {
     }
 }
 
+impl InMemory {
+    /// Takes in which bodies there are, and how they were at the start of the last step.
+    fn line_up(&mut self, members: &Members, points: &Points) {
+        for (places, rows) in [
+            (&mut self.bodies, members.bodies),
+            (&mut self.elements, members.elements),
+        ] {
+            places.clear();
+            places.extend(0..rows.len() as u32);
+            places.sort_unstable_by_key(|slot| rows[*slot as usize]);
+        }
+        self.place_of.resize(self.bodies.len(), 0);
+        for (place, slot) in self.bodies.iter().enumerate() {
+            self.place_of[*slot as usize] = place as u32;
+        }
+        self.pulls.clear();
+        self.pulls.extend(
+            self.bodies
+                .iter()
+                .map(|slot| points.origin(*slot as usize).acceleration),
+        );
+    }
+
+    /// How a body of the component is.
+    fn met(&self, slot: usize) -> &Met {
+        &self.met[self.place_of[slot] as usize]
+    }
+}
+
 impl WarmStart {
     /// Reads all bodies; how many threads there are changes nothing of what comes out.
     fn meet(
@@ -112,17 +149,22 @@ impl WarmStart {
         bodies: &mut Cut<BodyRow>,
         sight: &impl Sight,
     ) -> Noted {
-        let count = self.in_memory.len();
-        self.met.resize(count, Met::default());
-        self.noted.clear();
-        self.noted.resize(count.div_ceil(PIECE), Noted::default());
         let (centers, omega) = (&self.centers, self.omega);
+        let InMemory {
+            bodies: slots,
+            pulls,
+            met,
+            noted,
+            ..
+        } = &mut self.in_memory;
+        met.resize(slots.len(), Met::default());
+        noted.clear();
+        noted.resize(slots.len().div_ceil(PIECE), Noted::default());
         let row_of = |slot: u32| members.bodies[slot as usize] as usize;
         // The rows of each piece, cut off those of the next.
         let mut rest = bodies.again();
-        let slots = self.in_memory.chunks(PIECE);
-        let pieces = slots.zip(self.pulls.chunks_mut(PIECE));
-        let pieces = pieces.zip(self.met.chunks_mut(PIECE)).zip(&mut self.noted);
+        let pieces = slots.chunks(PIECE).zip(pulls.chunks_mut(PIECE));
+        let pieces = pieces.zip(met.chunks_mut(PIECE)).zip(&mut *noted);
         let pieces = pieces.map(|(((slots, pulls), met), noted)| {
             let end = slots.last().map_or(0, |last| row_of(*last) + 1);
             (slots, pulls, met, noted, rest.take_before(end))
@@ -138,30 +180,14 @@ impl WarmStart {
             }
         });
         let mut all = Noted::default();
-        self.noted.iter().for_each(|noted| all.add(noted));
+        noted.iter().for_each(|noted| all.add(noted));
         all
     }
 
     /// Forgets what was known of its bodies: they are read anew.
     pub(crate) fn begin(&mut self) {
         self.centers.clear();
-        self.in_memory.clear();
-    }
-
-    /// Takes in which bodies there are, and how they were at the start of the last step.
-    fn line_up(&mut self, members: &Members, points: &Points) {
-        let count = members.bodies.len();
-        self.in_memory.extend(0..count as u32);
-        self.in_memory
-            .sort_unstable_by_key(|slot| members.bodies[*slot as usize]);
-        self.pulls.clear();
-        self.pulls.extend(
-            self.in_memory
-                .iter()
-                .map(|slot| points.origin(*slot as usize).acceleration),
-        );
-        self.more.clear();
-        self.more.resize(count, 0);
+        self.in_memory.bodies.clear();
     }
 }
 
@@ -212,8 +238,8 @@ impl Assembly {
         let warm = &mut self.warm;
         let time = step.plan.time;
         let points = self.component.points_to_continue(time)?;
-        if warm.in_memory.is_empty() {
-            warm.line_up(members, points);
+        if warm.in_memory.bodies.is_empty() {
+            warm.in_memory.line_up(members, points);
         }
         let noted = warm.meet(step, members, bodies, sight);
         self.touch_changed |= noted.touch_changed;
@@ -223,12 +249,8 @@ impl Assembly {
         if noted.stops {
             return None;
         }
-        for (slot, met) in warm.in_memory.iter().zip(&warm.met) {
-            let slot = *slot as usize;
-            warm.more[slot] = met.more;
-            if !points.place(slot, &met.point) {
-                return None;
-            }
+        if !points.place(|slot| &warm.in_memory.met(slot).point) {
+            return None;
         }
         for (index, (element, end)) in warm.ends.iter().enumerate() {
             let row = &elements[members.elements[*element] as usize];
@@ -254,35 +276,44 @@ impl Assembly {
         bodies: &mut [BodyRow],
         engine: &mut impl Engine,
     ) {
-        let points = self.component.warm_points();
+        let points = &*self.component.warm_points();
         let WarmStart {
             in_memory,
-            more,
             given,
             restless,
             ..
         } = &mut self.warm;
-        given.resize(more.len(), Given::default());
-        let pieces = given.chunks_mut(PIECE).zip(more.chunks(PIECE)).enumerate();
-        share(pieces, |(piece, (given, more))| {
-            for (at, (given, more)) in given.iter_mut().zip(more).enumerate() {
-                let slot = piece * PIECE + at;
-                let (origin, flight) = (points.origin(slot), points.flight(slot));
-                *given = step.push_point(*more as usize, &origin, &flight).into();
+        given.resize(members.bodies.len(), Given::default());
+        each(given, |slot, given| {
+            let more = in_memory.met(slot).more as usize;
+            let (origin, flight) = (points.origin(slot), points.flight(slot));
+            *given = step.push_point(more, &origin, &flight).into();
+        });
+        let give = || {
+            for (slot, met) in in_memory.bodies.iter().zip(&in_memory.met) {
+                let row = &mut bodies[members.bodies[*slot as usize] as usize];
+                let second_substep = step.terms(met.more as usize).second_substep;
+                let push = given[*slot as usize].push(*restless, second_substep);
+                row.give(&push, step.tick, engine);
+            }
+        };
+        step.delivered.store(true, Ordering::Relaxed);
+        let row_of = |slot: u32| members.elements[slot as usize] as usize;
+        let mut rest = Cut::all(elements);
+        let pieces = in_memory.elements.chunks(PIECE).map(|slots| {
+            let end = slots.last().map_or(0, |last| row_of(*last) + 1);
+            (slots, rest.take_before(end))
+        });
+        let solved = self.outcome.into();
+        beside(give, pieces, |(slots, mut rows)| {
+            for slot in slots {
+                let row = &mut rows[row_of(*slot)];
+                let (direction, heat, work) = points.result(*slot as usize);
+                row.solved = solved;
+                row.ledger.dissipated += heat;
+                row.ledger.work += work;
+                row.set_direction(direction);
             }
         });
-        for slot in in_memory.iter().map(|slot| *slot as usize) {
-            let row = &mut bodies[members.bodies[slot] as usize];
-            let push = given[slot].push(*restless, step.terms(more[slot] as usize).second_substep);
-            row.give(&push, step.tick, engine);
-        }
-        step.delivered.store(true, Ordering::Relaxed);
-        for (e, (direction, heat, work)) in members.elements.iter().zip(points.take_results()) {
-            let row = &mut elements[*e as usize];
-            row.solved = self.outcome.into();
-            row.ledger.dissipated += heat;
-            row.ledger.work += work;
-            row.set_direction(direction);
-        }
     }
 }

@@ -2,9 +2,8 @@
 
 use super::body::Bodies;
 use crate::backend::Worlds;
-use crate::input::parts::{Acts, IsElement};
-use crate::readout::SpringReadout;
-use crate::scene::show::Springs;
+use crate::input::parts::IsElement;
+use crate::scene::show::{Readouts, Springs};
 use crate::scene::state::Scene;
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
@@ -14,7 +13,7 @@ use bevy_rapier3d::rapier::dynamics::RigidBodySet;
 pub(crate) fn measure(
     mut scene: ResMut<Scene>,
     sets: Query<(Entity, Ref<RapierRigidBodySet>)>,
-    mut readouts: Query<(Entity, &mut SpringReadout), Acts>,
+    mut readouts: Readouts,
     mut springs: Query<Springs, IsElement>,
     mut commands: Commands,
 ) {

@@ -1,9 +1,10 @@
 //! From one step into the next without being taken apart: where only the engine has moved a network since,
 //! nothing but its points' places has to be read again.
 
-use super::{Point, Points, Wire};
+use super::{Exchanged, Point, Points, Wire};
 use crate::dynamics::body::{Body, is_within};
 use crate::dynamics::element::{Element, End};
+use crate::threads::{PIECE, all, copy, each};
 use bevy::math::DVec3;
 
 /// A body before a step, as the point that its centre of mass is; or an end that nothing here moves.
@@ -26,6 +27,19 @@ pub(crate) struct Flight {
     pub velocity: DVec3,
 }
 
+impl Point {
+    /// Moves a body there; says whether it is the same mass still.
+    fn place(&mut self, at: &FreePoint) -> bool {
+        let is_same = self.inverse_mass == at.inverse_mass;
+        *self = Self {
+            acceleration: at.acceleration,
+            inverse_mass: at.inverse_mass,
+            ..Self::prescribed(at.position, at.velocity)
+        };
+        is_same && (at.position + at.velocity + at.acceleration).is_finite()
+    }
+}
+
 impl Points {
     /// What iterations of the next solve start from.
     pub(in crate::dynamics) fn solution(&self) -> &[DVec3] {
@@ -44,19 +58,25 @@ impl Points {
     pub(in crate::dynamics) fn begin(&mut self, budget: u32) {
         self.budget = budget;
         self.converged = true;
-        self.start.clone_from(&self.points);
+        copy(&mut self.start, &self.points);
     }
 
-    /// Moves a body to where the engine has taken it; says whether it is the same mass still.
-    pub(crate) fn place(&mut self, body: usize, at: &FreePoint) -> bool {
-        let point = &mut self.points[body];
-        let is_same = point.inverse_mass == at.inverse_mass;
-        *point = Point {
-            acceleration: at.acceleration,
-            inverse_mass: at.inverse_mass,
-            ..Point::prescribed(at.position, at.velocity)
-        };
-        is_same && (at.position + at.velocity + at.acceleration).is_finite()
+    /// Readies what goes on from the last step for its next.
+    pub(in crate::dynamics) fn go_on(&mut self, budget: u32) {
+        each(&mut self.exchanged, |_, exchanged| {
+            *exchanged = Exchanged::default();
+        });
+        self.begin(budget);
+    }
+
+    /// Moves all bodies to where the engine has taken them; says whether they are the same masses still.
+    pub(crate) fn place<'a>(&mut self, at: impl Fn(usize) -> &'a FreePoint + Sync) -> bool {
+        let pieces = self.points[..self.bodies].chunks_mut(PIECE).enumerate();
+        all(pieces, |(piece, points)| {
+            let first = piece * PIECE;
+            let mut places = points.iter_mut().zip(first..);
+            places.all(|(point, body)| point.place(at(body)))
+        })
     }
 
     /// Places an end that elements cannot move, counted in the order of the elements.
@@ -85,31 +105,27 @@ impl Points {
         }
     }
 
-    /// Of each element in turn its direction, and the heat and the work of the step, which are forgotten with
-    /// this.
-    pub(crate) fn take_results(&mut self) -> impl Iterator<Item = (Option<DVec3>, f64, f64)> {
-        self.wires.iter_mut().map(|wire| {
-            let (heat, work) = (
-                std::mem::take(&mut wire.heat),
-                std::mem::take(&mut wire.work),
-            );
-            (wire.side.try_normalize(), heat, work)
-        })
+    /// Of an element its direction, and the heat and the work of the step.
+    pub(crate) fn result(&self, element: usize) -> (Option<DVec3>, f64, f64) {
+        let Exchanged { heat, work } = self.exchanged[element];
+        (self.wires[element].side.try_normalize(), heat, work)
     }
 
     /// Whether the engine takes all of them along, if it flies none further than so far in such a time.
     pub(in crate::dynamics) fn are_within(&self, farthest: f64, time: f64) -> bool {
-        let mut moves = self.points.iter().zip(&self.start).take(self.bodies);
-        moves.all(|(end, start)| {
-            let by = end.position - start.position;
-            is_within(by, end.velocity, farthest / time, time)
+        let bodies = self.points[..self.bodies].chunks(PIECE);
+        all(bodies.zip(self.start.chunks(PIECE)), |(bodies, start)| {
+            bodies.iter().zip(start).all(|(end, start)| {
+                let by = end.position - start.position;
+                is_within(by, end.velocity, farthest / time, time)
+            })
         })
     }
 
     pub(in crate::dynamics) fn are_finite(&self) -> bool {
-        self.points[..self.bodies]
-            .iter()
-            .all(|point| (point.position + point.velocity).is_finite())
+        let finite = |point: &Point| (point.position + point.velocity).is_finite();
+        let bodies = self.points[..self.bodies].chunks(PIECE);
+        all(bodies, |bodies| bodies.iter().all(finite))
     }
 
     /// Has bodies and elements that took no part since stand as at the start of the step.

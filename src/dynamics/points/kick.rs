@@ -1,10 +1,10 @@
 //! The kick at the half drift; see [`crate::dynamics::network`], whose formulas these are.
 
 use super::parts::Window;
-use super::{Line, Point, Points, Wire};
+use super::{Exchanged, Line, Point, Points, Wire};
 use crate::dynamics::line;
 use crate::dynamics::network::{damper_placement, placement, settling};
-use crate::threads::{PIECE, share};
+use crate::threads::each;
 use bevy::math::DVec3;
 
 /// One element within a kick.
@@ -137,31 +137,25 @@ impl Points {
         self.solve();
         self.push(step);
         let (points, impulses) = (&self.points, &self.impulses);
-        share(self.bars.chunks_mut(PIECE), |bars| {
-            for bar in bars {
-                // The mean of before and after the kick keeps the step its own mirror image in time.
-                let after = |end: u32| {
-                    let (point, impulse) = (&points[end as usize], impulses[end as usize]);
-                    point.velocity + point.inverse_mass * impulse + step * point.acceleration
-                };
-                let velocity = after(bar.ends[1]) - after(bar.ends[0]);
-                let lateral = velocity - velocity.dot(bar.direction) * bar.direction;
-                let turns = bar.turning_at(lateral.length_squared(), step);
-                bar.turns = 0.5 * (bar.turns + turns);
-            }
+        each(&mut self.bars, |_, bar| {
+            // The mean of before and after the kick keeps the step its own mirror image in time.
+            let after = |end: u32| {
+                let (point, impulse) = (&points[end as usize], impulses[end as usize]);
+                point.velocity + point.inverse_mass * impulse + step * point.acceleration
+            };
+            let velocity = after(bar.ends[1]) - after(bar.ends[0]);
+            let lateral = velocity - velocity.dot(bar.direction) * bar.direction;
+            let turns = bar.turning_at(lateral.length_squared(), step);
+            bar.turns = 0.5 * (bar.turns + turns);
         });
         self.solve();
         self.push(step);
-        let points = self.points[..self.bodies].chunks_mut(PIECE);
-        share(
-            points.zip(self.impulses.chunks(PIECE)),
-            |(points, impulses)| {
-                for (point, impulse) in points.iter_mut().zip(impulses) {
-                    point.given += *impulse;
-                    point.velocity += point.inverse_mass * *impulse + step * point.acceleration;
-                }
-            },
-        );
+        let impulses = &self.impulses;
+        each(&mut self.points[..self.bodies], |at, point| {
+            let impulse = impulses[at];
+            point.given += impulse;
+            point.velocity += point.inverse_mass * impulse + step * point.acceleration;
+        });
         self.account(step);
     }
 
@@ -169,21 +163,20 @@ impl Points {
     pub(super) fn measure(&mut self, step: f64, theta: f64) {
         self.bars.resize(self.wires.len(), Bar::default());
         let (points, stiffness) = (&self.points, &self.stiffness);
-        let pieces = self.bars.chunks_mut(PIECE).zip(self.wires.chunks(PIECE));
-        share(pieces, |(bars, wires)| {
-            for (bar, wire) in bars.iter_mut().zip(wires) {
-                let stiffest = wire.ends.map(|end| stiffness[end as usize]);
-                let stiffest = stiffest[0].max(stiffest[1]);
-                *bar = Bar::measure(wire, wire.of(points), stiffest, step, theta);
-            }
+        let wires = &self.wires;
+        each(&mut self.bars, |at, bar| {
+            let wire = &wires[at];
+            let stiffest = wire.ends.map(|end| stiffness[end as usize]);
+            let stiffest = stiffest[0].max(stiffest[1]);
+            *bar = Bar::measure(wire, wire.of(points), stiffest, step, theta);
         });
     }
 
     /// Accelerations for the lines' present turning.
     fn solve(&mut self) {
-        let right = &mut self.impulses;
-        right.clear();
-        right.extend(self.points.iter().map(weight));
+        let (right, points) = (&mut self.impulses, &self.points);
+        right.resize(points.len(), DVec3::ZERO);
+        each(right, |at, right| *right = weight(&points[at]));
         self.parts
             .scatter(&self.bars, right, |bar, right| bar.add(right, -bar.force()));
         self.converged &= self
@@ -194,8 +187,7 @@ impl Points {
     /// Impulses of the solution. They come in pairs along the lines, so both momenta are kept however
     /// exact it is.
     fn push(&mut self, step: f64) {
-        self.impulses.clear();
-        self.impulses.resize(self.points.len(), DVec3::ZERO);
+        each(&mut self.impulses, |_, impulse| *impulse = DVec3::ZERO);
         let solution = &self.solver.solution;
         self.parts
             .scatter(&self.bars, &mut self.impulses, |bar, impulses| {
@@ -207,11 +199,10 @@ impl Points {
     /// Notes what dampers took and moving ends gave.
     fn account(&mut self, step: f64) {
         let (points, solution) = (&self.points, &self.solver.solution);
-        let pieces = self.wires.chunks_mut(PIECE).zip(self.bars.chunks(PIECE));
-        share(pieces, |(wires, bars)| {
-            for (wire, bar) in wires.iter_mut().zip(bars) {
-                bar.account(wire, bar.of(points), bar.relative(solution), step);
-            }
+        let bars = &self.bars;
+        each(&mut self.exchanged, |at, exchanged| {
+            let bar = &bars[at];
+            bar.account(exchanged, bar.of(points), bar.relative(solution), step);
         });
     }
 }
@@ -219,18 +210,18 @@ impl Points {
 impl Bar {
     /// Notes what its damper took and moving ends gave, where its ends have been accelerated so against each other.
     #[inline(always)]
-    fn account(&self, wire: &mut Wire, [a, b]: [&Point; 2], relative: DVec3, step: f64) {
+    fn account(&self, exchanged: &mut Exchanged, [a, b]: [&Point; 2], relative: DVec3, step: f64) {
         let moved = [a, b].map(|end| end.inverse_mass == 0.0 && end.velocity != DVec3::ZERO);
         if self.damping == 0.0 && moved == [false; 2] {
             return;
         }
         let gained = relative.dot(self.direction);
         let rate = self.axial + 0.5 * step * gained;
-        wire.heat += ((self.drag + self.damping * gained) * rate * step).max(0.0);
+        exchanged.heat += ((self.drag + self.damping * gained) * rate * step).max(0.0);
         let force = self.force() + self.answer(relative);
         for (end, sign) in [(a, -1.0), (b, 1.0)] {
             if end.inverse_mass == 0.0 {
-                wire.work += sign * step * force.dot(end.velocity);
+                exchanged.work += sign * step * force.dot(end.velocity);
             }
         }
     }

@@ -5,7 +5,7 @@ use super::Point;
 use super::kick::Bar;
 use super::parts::Parts;
 use crate::dynamics::conjugate::{self, Iterated};
-use crate::threads::{PIECE, share};
+use crate::threads::{PIECE, each, share};
 use bevy::math::{DMat3, DVec3};
 
 #[derive(Clone, Default)]
@@ -30,12 +30,15 @@ fn outer(u: DVec3) -> DMat3 {
 impl Solver {
     /// Takes in the movable points and the bars as they are now.
     pub(super) fn begin(&mut self, points: &[Point], bars: &[Bar], parts: &Parts) {
-        self.masses.clear();
-        self.masses
-            .extend(points.iter().map(|point| point.inverse_mass.recip()));
-        self.blocks.clear();
-        self.blocks
-            .extend(self.masses.iter().map(|m| DMat3::IDENTITY * *m));
+        self.masses.resize(points.len(), 0.0);
+        each(&mut self.masses, |at, mass| {
+            *mass = points[at].inverse_mass.recip();
+        });
+        let masses = &self.masses;
+        self.blocks.resize(points.len(), DMat3::ZERO);
+        each(&mut self.blocks, |at, block| {
+            *block = DMat3::IDENTITY * masses[at];
+        });
         parts.scatter(bars, &mut self.blocks, |bar, blocks| {
             let across = DMat3::from_diagonal(DVec3::splat(bar.across));
             let own = across + outer(bar.direction) * (bar.along - bar.across);
@@ -45,11 +48,7 @@ impl Solver {
                 }
             }
         });
-        share(self.blocks.chunks_mut(PIECE), |blocks| {
-            for block in blocks {
-                *block = block.inverse();
-            }
-        });
+        each(&mut self.blocks, |_, block| *block = block.inverse());
         self.sums.resize(points.len().div_ceil(PIECE), 0.0);
     }
 
@@ -76,11 +75,10 @@ impl Solver {
         let weight = self.weigh(right);
         let (masses, sums) = (&self.masses, &mut self.sums);
         apply(masses, bars, parts, &self.solution, &mut self.image, sums);
-        for (r, (right, image)) in self.residual.iter_mut().zip(right.iter().zip(&self.image)) {
-            *r = *right - *image;
-        }
+        let (image, right) = (&self.image, &*right);
+        each(&mut self.residual, |at, r| *r = right[at] - image[at]);
         // Whatever the last search came to, nothing of it is kept.
-        self.search.fill(DVec3::ZERO);
+        each(&mut self.search, |_, p| *p = DVec3::ZERO);
         let mut running = Running {
             solver: self,
             bars,

@@ -5,7 +5,7 @@ use crate::dynamics::element::Path;
 use crate::dynamics::energy::Energy;
 use crate::dynamics::step::Component;
 use crate::dynamics::tests;
-use crate::threads;
+use crate::threads::{self, PIECE};
 use bevy::tasks::{ComputeTaskPool, TaskPoolBuilder};
 
 /// Small numbers that follow no pattern.

@@ -6,7 +6,7 @@
 mod engine;
 
 use super::free::Spare;
-use super::show::Springs;
+use super::show::{Readouts, Springs};
 use super::state::Scene;
 use super::step::Step;
 use crate::backend::{BodyId, Finder, Found, Movable, Place, Wrench};
@@ -173,7 +173,7 @@ impl Lab {
             scene.observe(&Only(engine));
         });
         let show = |mut scene: ResMut<Scene>,
-                    mut readouts: Query<(Entity, &mut SpringReadout), Acts>,
+                    mut readouts: Readouts,
                     mut springs: Query<Springs, IsElement>,
                     mut commands: Commands| {
             scene.show(&mut readouts, &mut springs, &mut commands);
