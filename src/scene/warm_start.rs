@@ -140,6 +140,20 @@ impl InMemory {
     }
 }
 
+/// Pieces of such an order of these rows, each with the rows themselves, cut off those of the next.
+fn pieces<'a, T>(
+    order: &'a [u32],
+    rows: &'a [u32],
+    mut all: Cut<'a, T>,
+) -> impl ExactSizeIterator<Item = (&'a [u32], Cut<'a, T>)> {
+    order.chunks(PIECE).map(move |slots| {
+        let end = slots
+            .last()
+            .map_or(0, |last| rows[*last as usize] as usize + 1);
+        (slots, all.take_before(end))
+    })
+}
+
 impl WarmStart {
     /// Reads all bodies; how many threads there are changes nothing of what comes out.
     fn meet(
@@ -160,18 +174,12 @@ impl WarmStart {
         met.resize(slots.len(), Met::default());
         noted.clear();
         noted.resize(slots.len().div_ceil(PIECE), Noted::default());
-        let row_of = |slot: u32| members.bodies[slot as usize] as usize;
-        // The rows of each piece, cut off those of the next.
-        let mut rest = bodies.again();
-        let pieces = slots.chunks(PIECE).zip(pulls.chunks_mut(PIECE));
+        let pieces = pieces(slots, members.bodies, bodies.again()).zip(pulls.chunks_mut(PIECE));
         let pieces = pieces.zip(met.chunks_mut(PIECE)).zip(&mut *noted);
-        let pieces = pieces.map(|(((slots, pulls), met), noted)| {
-            let end = slots.last().map_or(0, |last| row_of(*last) + 1);
-            (slots, pulls, met, noted, rest.take_before(end))
-        });
-        share(pieces, |(slots, pulls, met, noted, mut rows)| {
+        share(pieces, |((((slots, mut rows), pulls), met), noted)| {
             for ((slot, pull), met) in slots.iter().zip(pulls).zip(met) {
-                let (row, center) = (&mut rows[row_of(*slot)], centers[*slot as usize]);
+                let slot = *slot as usize;
+                let (row, center) = (&mut rows[members.bodies[slot] as usize], centers[slot]);
                 let Some(now) = noted.meet(step, row, center, pull, omega, sight) else {
                     noted.stops = true;
                     return;
@@ -298,17 +306,12 @@ impl Assembly {
             }
         };
         step.delivered.store(true, Ordering::Relaxed);
-        let row_of = |slot: u32| members.elements[slot as usize] as usize;
-        let mut rest = Cut::all(elements);
-        let pieces = in_memory.elements.chunks(PIECE).map(|slots| {
-            let end = slots.last().map_or(0, |last| row_of(*last) + 1);
-            (slots, rest.take_before(end))
-        });
+        let pieces = pieces(&in_memory.elements, members.elements, Cut::all(elements));
         let solved = self.outcome.into();
         beside(give, pieces, |(slots, mut rows)| {
-            for slot in slots {
-                let row = &mut rows[row_of(*slot)];
-                let (direction, heat, work) = points.result(*slot as usize);
+            for slot in slots.iter().map(|slot| *slot as usize) {
+                let row = &mut rows[members.elements[slot] as usize];
+                let (direction, heat, work) = points.result(slot);
                 row.solved = solved;
                 row.ledger.dissipated += heat;
                 row.ledger.work += work;
