@@ -114,3 +114,63 @@ pub(crate) fn alone<T>(work: impl FnOnce() -> T) -> T {
     ALONE.set(false);
     done
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bevy::tasks::TaskPoolBuilder;
+    use std::sync::atomic::AtomicUsize;
+
+    const MANY: usize = 3 * PIECE + 5;
+
+    fn several_threads() {
+        ComputeTaskPool::get_or_init(|| TaskPoolBuilder::new().num_threads(3).build());
+    }
+
+    #[test]
+    fn each_value_is_met_once_and_at_its_place() {
+        several_threads();
+        for count in [0, 1, PIECE, PIECE + 1, MANY] {
+            let mut met = vec![0; count];
+            each(&mut met, |at, met| *met += at + 1);
+            assert!(met.iter().copied().eq(1..=count));
+        }
+    }
+
+    #[test]
+    fn a_copy_is_the_same_whatever_was_there() {
+        several_threads();
+        let from: Vec<usize> = (0..MANY).collect();
+        for was in [vec![], vec![7; MANY], vec![7; MANY + 1]] {
+            let mut to = was;
+            copy(&mut to, &from);
+            assert_eq!(to, from);
+        }
+    }
+
+    #[test]
+    fn one_piece_of_which_it_is_not_so_decides() {
+        several_threads();
+        let values: Vec<usize> = (0..MANY).collect();
+        let below = |limit: usize| {
+            let pieces = values.chunks(PIECE);
+            all(pieces, |piece| piece.iter().all(|value| *value < limit))
+        };
+        assert!(below(MANY));
+        assert!(!below(MANY - 1));
+        assert!(!below(0));
+    }
+
+    #[test]
+    fn what_goes_beside_other_work_is_done_once() {
+        several_threads();
+        for count in [0, 1, 9] {
+            let (mut first, done) = (0, AtomicUsize::new(0));
+            let work = |piece: usize| {
+                done.fetch_add(piece, Ordering::Relaxed);
+            };
+            beside(|| first += 1, (0..count).map(|piece| piece + 1), work);
+            assert_eq!((first, done.into_inner()), (1, count * (count + 1) / 2));
+        }
+    }
+}
