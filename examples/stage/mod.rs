@@ -16,6 +16,7 @@ mod look;
 mod means;
 mod offscreen;
 mod orbit;
+mod plain;
 mod plot;
 mod progress;
 mod rope;
@@ -179,6 +180,7 @@ fn window(stage: &Stage) -> AppExit {
     physics(&mut app, stage, 0);
     again::repeat(&mut app, stage.again);
     look::dress(&mut app, stage.eye, stage.target, None);
+    plain::add(&mut app);
     hand::add(&mut app);
     orbit::add(&mut app, stage);
     keys::add(&mut app, stage);
