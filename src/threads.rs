@@ -27,20 +27,8 @@ pub(crate) fn count() -> usize {
 
 /// Does some work on each of these pieces, on all threads if they are more than one: so cut pieces only where the work is worth
 /// waking other threads, and the few allocations that this takes.
-pub(crate) fn share<T: Send>(
-    mut pieces: impl ExactSizeIterator<Item = T>,
-    work: impl Fn(T) + Sync,
-) {
-    if pieces.len() == 1 || count() == 1 {
-        pieces.by_ref().for_each(work);
-        return;
-    }
-    let work = &work;
-    ComputeTaskPool::get().scope(|scope| {
-        for piece in pieces {
-            scope.spawn(async move { work(piece) });
-        }
-    });
+pub(crate) fn share<T: Send>(pieces: impl ExactSizeIterator<Item = T>, work: impl Fn(T) + Sync) {
+    beside(|| {}, pieces, work);
 }
 
 /// Does some work on each of these, which many threads share where they are many; it is told the place of each.
