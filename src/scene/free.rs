@@ -4,15 +4,12 @@ use crate::backend::{Engine, Sight};
 use crate::scene::assembly::Assembly;
 use crate::scene::lone::{Lone, Piece, Route, Way, Worker, pieces};
 use crate::scene::rows::Cut;
-use crate::scene::runs::Runs;
+use crate::scene::runs::{Runs, WORTH_SHARING};
 use crate::scene::state::Scene;
 use crate::scene::step::Step;
 use crate::threads;
 use bevy::prelude::Entity;
 use std::mem::take;
-
-/// Elements in networks that are about to be solved, above which it is worth waking other threads.
-const WORTH_SHARING: usize = 256;
 
 /// Room for the work of a step.
 #[derive(Default)]

@@ -6,8 +6,9 @@ use crate::scene::rows::{BodyRow, Cut, ElementRow};
 use crate::threads;
 use std::mem::take;
 
-/// Elements of all networks above which it is worth waking other threads. Pinned by the benchmark `own/isolated/turning`.
-const WORTH_SHARING: usize = 256;
+/// Elements of networks that are about to be read or solved, above which it is worth waking other threads. Pinned by the benchmark
+/// `own/isolated/turning`.
+pub(crate) const WORTH_SHARING: usize = 256;
 
 /// Runs for each thread: what one has done sooner, another need not wait for.
 const RUNS: usize = 4;
