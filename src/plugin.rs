@@ -91,7 +91,8 @@ impl CoiloverPlugin {
     }
 
     /// Sets the accuracy dial: exactly so many micro-steps per engine step (0 counts as 1). By default it is one, and more
-    /// where springs are too stiff for that: see [`with_resolve`](Self::with_resolve), which may follow.
+    /// where springs are too stiff for that. This switches that off: follow it by [`with_resolve`](Self::with_resolve) for at least so
+    /// many, and more for stiffer springs.
     pub const fn with_microsteps(mut self, microsteps: u32) -> Self {
         self.settings.microsteps = microsteps;
         self.settings.resolve = 1;

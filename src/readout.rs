@@ -37,7 +37,9 @@ pub struct SpringReadout {
     /// than the physics moves.
     pub work: f32,
     /// Phase per engine step, rad: √(stiffness / effective mass) times the step. Up to 1 the motion is
-    /// followed closely, beyond 2.5 it is no longer resolved, only stable.
+    /// followed closely with one micro-step. Free elements beyond 2 take more by themselves, as far as
+    /// [`CoiloverSettings::resolve`](crate::CoiloverSettings::resolve) goes; a motion that no step resolves is stable, with a wrong
+    /// frequency.
     pub omega_dt: f32,
     /// Mass that the two ends have against each other along the line, kg, with their lever arms and
     /// inertia; infinite if neither can move.
@@ -49,8 +51,9 @@ pub struct SpringReadout {
     /// Estimate of the error that the last step added to a position, m; where the accuracy was asked for
     /// as a tolerance, else 0.
     pub error: f32,
-    /// A cap of [`CoiloverSettings`](crate::CoiloverSettings) kept the step from being finer or more
-    /// exact.
+    /// An upper bound of [`CoiloverSettings`](crate::CoiloverSettings) (`max_…`) kept the step from being finer or more
+    /// exact. It does not tell of `resolve`: where that does not reach, a network in motion has far fewer micro-steps than
+    /// three times its `omega_dt`.
     pub capped: bool,
 }
 
