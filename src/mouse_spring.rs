@@ -144,21 +144,39 @@ pub(crate) fn hold(
         }
         if let Some(body) = body {
             at.translation = spring.target;
-            let springs = [Vec3::X, Vec3::Y, Vec3::Z]
-                .map(|axis| commands.spawn(along(axis, entity, spring, body)).id());
+            let springs = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| along(axis, entity, spring, body));
             let of = *spring;
-            commands.entity(entity).insert(Grip { springs, of });
-            if let Some(newtons) = spring.max_force {
-                for spring in springs {
-                    commands.entity(spring).insert(MaxForce(newtons));
-                }
-            }
+            // Where the game has let go in the same tick there is nothing to hold by.
+            commands
+                .entity(entity)
+                .queue_silenced(move |mut held: EntityWorldMut| {
+                    let springs = held.world_scope(|world| {
+                        springs.map(|spring| {
+                            let mut spring = world.spawn(spring);
+                            if let Some(newtons) = of.max_force {
+                                spring.insert(MaxForce(newtons));
+                            }
+                            spring.id()
+                        })
+                    });
+                    held.insert(Grip { springs, of });
+                });
         }
     }
 }
 
+/// A pointer that lets go takes what was wrong with it along.
+pub(crate) fn forget(gone: On<Remove, MouseSpring>, mut commands: Commands) {
+    commands.entity(gone.entity).try_remove::<SpringFault>();
+}
+
 /// The spring along an axis.
-fn along(axis: Vec3, entity: Entity, spring: &MouseSpring, body: &RapierBody) -> impl Bundle {
+fn along(
+    axis: Vec3,
+    entity: Entity,
+    spring: &MouseSpring,
+    body: &RapierBody,
+) -> impl Bundle + use<> {
     let tuning = SpringTuning::frequency(spring.frequency, 1.0);
     let (stiffness, damping) = tuning.coefficients(mass_at(body, spring.point, axis), 0.0);
     (

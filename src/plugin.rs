@@ -161,6 +161,7 @@ impl Plugin for CoiloverPlugin {
             crate::input::strays::tell_strays.run_if(crate::input::strays::any_strays),
         );
         let any_held = any_with_component::<MouseSpring>.or_else(any_with_component::<Grip>);
+        app.add_observer(mouse_spring::forget);
         app.add_systems(
             schedule,
             mouse_spring::hold

@@ -206,10 +206,14 @@ fn tie(world: &mut World, entity: Entity, ends: [End; 2]) {
     );
 }
 
-/// The element waits no longer; what else is wrong with it the engine will say.
+/// The element waits no longer. What else is wrong with it the scene has said or will say.
 fn settle(world: &mut World, entity: Entity) {
     if let Ok(mut element) = world.get_entity_mut(entity) {
-        element.remove::<(AwaitsEnds, SpringFault)>();
+        element.remove::<AwaitsEnds>();
+        let fault = element.get::<SpringFault>();
+        if fault.is_some_and(|fault| fault.field.starts_with("EndNames")) {
+            element.remove::<SpringFault>();
+        }
     }
 }
 

@@ -27,7 +27,9 @@ pub(crate) fn break_overloaded(
         match limit.then {
             WhenBroken::Despawn => commands.entity(entity).try_despawn(),
             WhenBroken::Disable => {
-                commands.entity(entity).try_insert(Disabled);
+                // What it shows would break it again before the next step, once it is mended.
+                let mended = (Disabled, SpringReadout::default());
+                commands.entity(entity).try_insert(mended);
             }
         }
     }

@@ -47,9 +47,10 @@ impl Scene {
             });
         }
         let bodies = &self.bodies;
+        let stepped = self.some_rest.then_some(&self.stepped[..]);
         let each = share_of(self.elements.len());
         threads::share(self.elements.chunks_mut(each), |rows| {
-            for row in rows.iter_mut().filter(|row| row.is_seen()) {
+            for row in rows.iter_mut().filter(|row| row.is_seen(bodies, stepped)) {
                 row.observe(bodies, &eyes);
             }
         });
@@ -105,11 +106,12 @@ impl<'a, W: Worlds> Eyes<'a, W> {
 }
 
 impl ElementRow {
-    /// Whether anything about it can have changed in the step.
+    /// Whether anything about it can have changed in the step of these worlds; of all if there are none that rest.
     #[inline(always)]
-    pub(crate) fn is_seen(&self) -> bool {
+    pub(crate) fn is_seen(&self, bodies: &[BodyRow], stepped: Option<&[Entity]>) -> bool {
         let acts = self.has(ElementFlags::ACTIVE) || self.moves() == 0;
         acts && self.trouble.lasting().is_none()
+            && stepped.is_none_or(|stepped| self.has_acted(bodies, stepped))
     }
 
     /// Finds its length and rate after the step, and notes where its ends are.

@@ -52,7 +52,8 @@ impl Scene {
             if found.is_err() {
                 self.faulty.push(index);
             }
-            if found.is_err() || !held_by.is_held_like(&row.rare.ties) {
+            let elsewhere = found.as_ref().is_ok_and(|found| row.is_elsewhere(found));
+            if found.is_err() || elsewhere || !held_by.is_held_like(&row.rare.ties) {
                 self.left.extend(row.take_inside());
             }
             found_all.push(found.ok());
@@ -108,6 +109,8 @@ impl Scene {
         for row in &mut self.elements {
             if row.moves() == 0 {
                 self.left.extend(row.take_inside());
+                // Nothing solves it, so nothing can go wrong in that.
+                row.trouble.set_passing(None);
             }
         }
         self.immovable = self
@@ -171,15 +174,13 @@ impl Scene {
             first.turns |= same && again.turns;
             same
         });
-        let is_same =
-            |(row, body): (&BodyRow, &Wanted)| row.entity == body.entity && row.id == body.id;
-        if wanted.len() != self.bodies.len() || !self.bodies.iter().zip(&wanted).all(is_same) {
+        let mut rows = self.bodies.iter().zip(&wanted);
+        if wanted.len() != self.bodies.len() || !rows.all(|(row, body)| body.is(row)) {
             self.replace_bodies(&wanted);
         }
         let rows = self.bodies.iter_mut().zip(&wanted);
         rows.map(|(row, body)| {
             row.flags.set(BodyFlags::TURNS, body.turns);
-            row.rare.context = body.context;
             if modified.contains(&row.entity) {
                 row.flags.insert(BodyFlags::DISTURBED);
             }
@@ -200,7 +201,7 @@ impl Scene {
                 gone.push(row);
             }
             let row = before.next_if(|row| row.entity == body.entity);
-            let same = row.filter(|row| row.id == body.id);
+            let same = row.filter(|row| body.is(row));
             self.bodies.push(same.unwrap_or_else(|| {
                 let mut row = BodyRow::new(body.entity, body.id, body.context);
                 row.rare.rank = body.rank;
@@ -216,6 +217,13 @@ impl Scene {
 }
 
 impl ElementRow {
+    /// Whether what it has in the engine's solver is in another world than its ends.
+    fn is_elsewhere(&self, found: &Found) -> bool {
+        let inside = self.inside.as_ref().and_then(|inside| inside.context);
+        let is_other = |place: &Place| matches!(place, Place::OnBody { context, .. } if Some(*context) != inside);
+        inside.is_some() && found.places.iter().any(is_other)
+    }
+
     /// Reads an element's components as if it were new; says where its ends are, or what is wrong with it.
     fn read_anew(
         &mut self,
@@ -226,6 +234,8 @@ impl ElementRow {
         commands: &mut Commands,
     ) -> Result<Found, Fault> {
         let entity = parts.entity;
+        // Its coefficients have been worked out, and no step has been since.
+        let waits = self.has(ElementFlags::TUNED);
         self.reset();
         let parameters = parts
             .parameters()
@@ -254,7 +264,7 @@ impl ElementRow {
             tuned.check()?;
             companion = companions.of(entity, &tuned)?;
             self.set_parameters(tuned);
-            let again = can_touch && !self.has(ElementFlags::TUNED_AGAIN);
+            let again = can_touch && self.has(ElementFlags::TUNED_AGAIN) == waits;
             self.flags.insert(ElementFlags::TUNED);
             self.flags.set(ElementFlags::TUNED_AGAIN, again);
         }

@@ -38,13 +38,17 @@ impl Scene {
     ) {
         let time = self.time;
         let seen = self.show_in_order(readouts);
+        let (bodies, stepped) = (&self.bodies, self.some_rest.then_some(&self.stepped[..]));
         if seen.has_news {
-            for row in self.elements.iter_mut().filter(|row| row.is_seen()) {
-                row.tell(springs, commands);
+            for row in &mut self.elements {
+                if row.is_seen(bodies, stepped) {
+                    row.tell(springs, commands);
+                }
             }
         }
         if seen.is_incomplete {
-            for row in self.elements.iter().filter(|row| row.is_seen()) {
+            let seen = |row: &&ElementRow| row.is_seen(bodies, stepped);
+            for row in self.elements.iter().filter(seen) {
                 if let Ok((_, mut readout)) = readouts.get_mut(row.entity) {
                     readout.set_if_neq(row.read_out(time));
                 }
@@ -60,6 +64,7 @@ impl Scene {
     /// were made, there are others, and the rows are made anew.
     fn show_in_order(&self, readouts: &mut Readouts) -> SeenInOrder {
         let (time, mut rest) = (self.time, &self.elements[..]);
+        let (bodies, stepped) = (&self.bodies, self.some_rest.then_some(&self.stepped[..]));
         let (has_news, is_unordered) = (AtomicBool::new(false), AtomicBool::new(false));
         for (entities, readouts) in readouts.contiguous_iter_mut().into_iter().flatten() {
             let count = rest.len().min(entities.len());
@@ -78,7 +83,7 @@ impl Scene {
                         is_unordered.store(true, Ordering::Relaxed);
                         return;
                     }
-                    if row.is_seen() {
+                    if row.is_seen(bodies, stepped) {
                         let new = row.read_out(time);
                         if *readout != new {
                             (*readout, *tick) = (new, now);

@@ -47,6 +47,8 @@ pub struct Scene {
     pub(crate) tick: u32,
     /// The contexts that are stepped in this tick.
     pub(crate) stepped: Vec<Entity>,
+    /// Some context is not.
+    pub(crate) some_rest: bool,
     /// Seconds that the engine will step in this tick; 0 if it will not.
     pub(crate) time: f64,
     /// A body or an element that it knows has lost a component, or a body is another one: look at everything again.
@@ -97,9 +99,18 @@ impl Scene {
         self.time = 0.0;
         self.tick = self.tick.wrapping_add(1).max(1);
         self.stepped.clear();
+        self.some_rest = false;
         self.delivered = false;
         self.noting = false;
         self.engine_went_back = false;
+    }
+
+    /// Forgets what has been left in worlds that are gone.
+    pub(crate) fn forget_worlds(&mut self, is_there: impl Fn(Entity) -> bool) {
+        self.left.retain(|(context, _)| is_there(*context));
+        self.unloaded.retain(|(context, ..)| is_there(*context));
+        self.sweeps.retain(|context, _| is_there(*context));
+        self.still.retain(is_there);
     }
 
     /// Finds the components of which contacts may hold some body, or joints, where there are any.

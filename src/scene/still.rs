@@ -20,6 +20,10 @@ impl Still {
         }
     }
 
+    pub(crate) fn retain(&mut self, is_there: impl Fn(Entity) -> bool) {
+        self.0.retain(|context, _| is_there(*context));
+    }
+
     /// Keeps in mind what a step has found.
     pub(crate) fn note(&mut self, context: Entity, all_asleep: bool) {
         if all_asleep {

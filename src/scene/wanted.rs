@@ -1,6 +1,7 @@
 //! The bodies that there are to be rows of.
 
 use crate::backend::{BodyId, Found, Movable, Place};
+use crate::scene::rows::BodyRow;
 use bevy::prelude::Entity;
 
 /// A body that elements can move.
@@ -14,6 +15,11 @@ pub(crate) struct Wanted {
 }
 
 impl Wanted {
+    /// Whether this is its row.
+    pub(crate) fn is(&self, row: &BodyRow) -> bool {
+        row.entity == self.entity && row.id == self.id && row.rare.context == self.context
+    }
+
     /// The bodies of both ends that elements can move.
     pub(crate) fn of(found: &Found) -> impl Iterator<Item = Self> {
         let ends = found.places.iter().zip(found.movable);

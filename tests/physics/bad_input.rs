@@ -231,3 +231,47 @@ fn a_body_that_the_engine_has_quarantined_takes_no_one_with_it() {
     let x = b.lab.position(b.neighbour).x;
     assert!(x.is_finite() && (x - 1.0).abs() < 0.301, "{x}");
 }
+
+#[test]
+fn a_mount_below_a_body_whose_transform_is_not_finite() {
+    let mut b = bench();
+    let mount = b.lab.spawn((Transform::default(), ChildOf(b.body)));
+    b.pair().body_b = mount;
+    b.lab.tick();
+    b.lab.get_mut::<Transform>(mount).translation.x = f32::NAN;
+    b.expect_fault("SpringDamper::body_b", "not finite");
+    b.lab.get_mut::<Transform>(mount).translation.x = 0.0;
+    b.expect_recovery();
+}
+
+#[test]
+fn two_points_of_one_body() {
+    let mut b = bench();
+    let mount = b.lab.spawn((Transform::default(), ChildOf(b.body)));
+    let body = b.body;
+    *b.pair() = SpringDamper {
+        body_a: body,
+        body_b: mount,
+        ..*b.pair()
+    };
+    b.expect_fault("SpringDamper::body_b", "same rigid body");
+}
+
+#[test]
+fn what_coincided_acts_again_in_what_it_shows_once_nothing_can_be_moved() {
+    let mut lab = Lab::weightless();
+    let (hook, body) = (lab.point(Vec3::ZERO), lab.body(1.0, Vec3::ZERO));
+    let spring = Spring::new(hook, body)
+        .with_stiffness(40.0)
+        .with_rest_length(1.0);
+    let element = lab.spawn(spring);
+    lab.run(0.1);
+    assert!(lab.get::<SpringFault>(element).reason.contains("coincides"));
+    lab.app
+        .world_mut()
+        .entity_mut(body)
+        .insert((RigidBody::Fixed, Transform::from_xyz(1.5, 0.0, 0.0)));
+    lab.run(0.1);
+    assert!(lab.app.world().get::<SpringFault>(element).is_none());
+    assert!((lab.readout(element).spring_force - 20.0).abs() < 1e-3);
+}

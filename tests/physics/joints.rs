@@ -236,3 +236,30 @@ fn planar_bodies_on_a_hinge_are_thrown_by_rapier_alone() {
     }
     assert!(planar > 100.0, "{planar}");
 }
+
+#[test]
+fn beside_links_a_spring_is_as_true_whatever_sleeps_far_from_it() {
+    let places = [false, true].map(|sleeper| {
+        let mut lab = Lab::new();
+        let rail = lab.spawn((RigidBody::Fixed, Transform::from_xyz(0.0, 0.0, 20.0)));
+        let hinge = RevoluteJointBuilder::new(Vec3::Z).local_anchor1(Vec3::X);
+        lab.spawn((
+            body(1.0, Vec3::new(1.0, 0.0, 20.0)),
+            MultibodyJoint::new(rail, TypedJoint::RevoluteJoint(hinge.build())),
+        ));
+        if sleeper {
+            let finer = AdditionalSolverIterations(12);
+            let far = lab.spawn((body(1.0, Vec3::X * 40.0), GravityScale(0.0), finer));
+            lab.get_mut::<Sleeping>(far).sleeping = true;
+        }
+        let (hook, lamp) = (lab.point(Vec3::ZERO), lab.body(1.0, Vec3::NEG_Y));
+        lab.spawn(
+            Spring::new(hook, lamp)
+                .with_stiffness(100.0)
+                .with_rest_length(1.0),
+        );
+        lab.run(2.0);
+        lab.position(lamp)
+    });
+    assert!(places[0].distance(places[1]) < 1e-5, "{places:?}");
+}

@@ -201,3 +201,18 @@ fn a_target_that_jumps_is_overshot_by_the_blow_that_its_damper_gets() {
     assert!((farthest - 1.0 - 0.135).abs() < 0.01, "{farthest}");
     assert!((lab.position(body).x - 1.0).abs() < 1e-3);
 }
+
+#[test]
+fn a_pointer_that_was_wrong_and_lets_go_leaves_no_fault() {
+    let mut lab = Lab::weightless();
+    let body = lab.body(1.0, Vec3::ZERO);
+    let mouse = grab(&mut lab, body, Vec3::NAN);
+    lab.tick();
+    assert!(lab.app.world().get::<SpringFault>(mouse).is_some());
+    lab.app
+        .world_mut()
+        .entity_mut(mouse)
+        .remove::<MouseSpring>();
+    lab.tick();
+    assert!(lab.app.world().get::<SpringFault>(mouse).is_none());
+}

@@ -308,3 +308,21 @@ fn a_hundred_scenes_of_three_hundred_springs_are_tied_in_no_time() {
     // Every spring against every bearer of its name would be a hundred times as long.
     assert!(took.as_secs_f64() < 10.0, "{took:?}");
 }
+
+#[test]
+fn a_given_end_that_is_gone_stays_a_fault_where_the_other_end_has_a_name() {
+    let mut lab = Lab::new();
+    let hook = lab.point(Vec3::Y);
+    lab.spawn(weight("Weight"));
+    let pair = SpringDamper {
+        body_a: hook,
+        ..default()
+    };
+    let element = lab.spawn((pair.with_stiffness(100.0), EndNames::new("", "Weight")));
+    lab.run(0.1);
+    assert_eq!(fault(&lab, element), None);
+    lab.app.world_mut().despawn(hook);
+    lab.run(0.2);
+    let told = fault(&lab, element).expect("a fault");
+    assert!(told.contains("does not exist"), "{told}");
+}

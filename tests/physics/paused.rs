@@ -211,3 +211,97 @@ fn equal_networks_in_two_worlds_take_in_the_same_change() {
     assert!(lengths[0] < 0.6, "{lengths:?}");
     assert!((lengths[0] - lengths[2]).abs() < 1e-5, "{lengths:?}");
 }
+
+#[test]
+fn a_world_that_rests_turns_nothing_into_heat_while_another_runs() {
+    let mut lab = Lab::weightless();
+    let link = second_world(&mut lab, Vec3::ZERO);
+    let (hook, swings) = (lab.point(Vec3::ZERO), lab.body(1.0, Vec3::X * 1.5));
+    lab.spawn(
+        Spring::new(hook, swings)
+            .with_stiffness(40.0)
+            .with_rest_length(1.0),
+    );
+    let led = |lab: &mut Lab, speed: f32| {
+        let body = RigidBody::KinematicVelocityBased;
+        let velocity = Velocity::linear(Vec3::X * speed);
+        lab.spawn((body, Transform::from_xyz(speed, 1.0, 0.0), velocity, link))
+    };
+    let (a, b) = (led(&mut lab, 0.0), led(&mut lab, 1.0));
+    let damper = lab.spawn(Damper::new(a, b).with_damping(3.0));
+    lab.run(0.5);
+    let before = lab.readout(damper);
+    assert!(before.dissipated_energy > 1.0, "{before:?}");
+    lab.get_mut::<RapierConfiguration>(link.0)
+        .physics_pipeline_active = false;
+    lab.run(1.0);
+    assert_eq!(lab.readout(damper), before);
+}
+
+/// A floor, a box on it, a point, and a spring from that to the box, in a world.
+fn box_on_floor(lab: &mut Lab, link: RapierContextEntityLink) -> [Entity; 4] {
+    let below = Transform::from_xyz(0.0, -0.5, 0.0);
+    let floor = lab.spawn((Collider::cuboid(5.0, 0.5, 5.0), below, link));
+    let at = Transform::from_xyz(0.0, 0.2, 0.0);
+    let block = Collider::cuboid(0.2, 0.2, 0.2);
+    let mass = ColliderMassProperties::Mass(2.0);
+    let block = lab.spawn((RigidBody::Dynamic, block, mass, at, link));
+    let hook = lab.point(Vec3::Y);
+    let spring = SpringDamper::new(hook, block)
+        .with_stiffness(20.0)
+        .with_damping(2.0)
+        .with_rest_length(0.5);
+    [floor, block, hook, lab.spawn(spring)]
+}
+
+fn first_world(lab: &mut Lab) -> RapierContextEntityLink {
+    let world = lab.app.world_mut();
+    let mut engines = world.query_filtered::<Entity, With<RapierContextSimulation>>();
+    RapierContextEntityLink(engines.single(world).expect("one world"))
+}
+
+#[test]
+fn of_a_world_that_is_gone_no_snapshot_knows_anything() {
+    let mut lab = Lab::new();
+    let first = first_world(&mut lab);
+    box_on_floor(&mut lab, first);
+    let link = second_world(&mut lab, Vec3::NEG_Y * GRAVITY as f32);
+    let level = box_on_floor(&mut lab, link);
+    lab.run(0.5);
+    assert_eq!(lab.readout(level[3]).method, SpringMethod::Engine);
+    for entity in level.into_iter().chain([link.0]) {
+        lab.app.world_mut().despawn(entity);
+    }
+    lab.run(0.1);
+    let then = CoiloverSnapshot::take(lab.app.world());
+    assert_eq!(then.restore(lab.app.world_mut()), Ok(()));
+}
+
+#[test]
+fn a_box_that_goes_to_another_world_harms_nobody_there() {
+    let mut lab = Lab::new();
+    let first = first_world(&mut lab);
+    let [_, block, ..] = box_on_floor(&mut lab, first);
+    let link = second_world(&mut lab, Vec3::NEG_Y * GRAVITY as f32);
+    let below = Transform::from_xyz(0.0, -0.5, 0.0);
+    lab.spawn((Collider::cuboid(9.0, 0.5, 5.0), below, link));
+    let others: Vec<_> = (0..6)
+        .map(|i| {
+            let at = Transform::from_xyz(1.0 + i as f32 * 0.6, 0.2, 0.0);
+            let block = Collider::cuboid(0.2, 0.2, 0.2);
+            lab.spawn((RigidBody::Dynamic, block, at, link))
+        })
+        .collect();
+    lab.run(1.0);
+    let before: Vec<_> = others.iter().map(|other| lab.position(*other)).collect();
+    lab.app.world_mut().entity_mut(block).insert(link);
+    lab.run(1.0);
+    let world = lab.app.world_mut();
+    let mut sets = world.query::<&RapierRigidBodySet>();
+    let bodies = &sets.get(world, link.0).expect("its bodies").bodies;
+    // The box, those that were there, and what stands for the hook: the floor is a collider alone.
+    assert_eq!(bodies.len(), 8);
+    for (other, before) in others.iter().zip(before) {
+        assert!(lab.position(*other).distance(before) < 1e-3);
+    }
+}

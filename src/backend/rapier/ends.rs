@@ -42,6 +42,12 @@ impl Ends<'_, '_> {
                 if point != DVec3::ZERO {
                     point *= steady_scale(global, scale);
                 }
+                if !point.is_finite() {
+                    return Err(Fault::new(
+                        field,
+                        "has a Transform, below its rigid body, that is not finite",
+                    ));
+                }
                 return Ok(Place::OnBody {
                     entity: current,
                     body: id(handle.0),

@@ -70,6 +70,17 @@ impl Finder for RapierFinder<'_, '_> {
                 "is in another Rapier context than body_a",
             ));
         }
+        if let [
+            Place::OnBody { entity: a, .. },
+            Place::OnBody { entity: b, .. },
+        ] = places
+            && a == b
+        {
+            return Err(Fault::new(
+                parameters.ties.names.ends[1],
+                "is on the same rigid body as body_a",
+            ));
+        }
         let mut movable = [None; 2];
         for (i, place) in places.iter().enumerate() {
             let field = parameters.ties.names.ends[i];

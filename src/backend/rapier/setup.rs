@@ -10,7 +10,7 @@ use bevy_rapier3d::prelude::*;
 /// What has been told already.
 #[derive(Resource, Default)]
 pub(crate) struct Watched {
-    /// The engine does not step where we run: doing anything would only heap up impulses.
+    /// The engine is missing, or does not step where we run: doing anything would only heap up impulses.
     misplaced: bool,
     variable: bool,
     mismatch: bool,
@@ -28,6 +28,7 @@ pub(crate) fn check_schedule(
             "bevy_coilover: RapierPhysicsPlugin is missing, so springs and dampers do nothing; add \
              RapierPhysicsPlugin::<NoUserData>::default().in_fixed_schedule() to the app"
         );
+        watched.misplaced = true;
         return;
     }
     let label = settings.schedule;
@@ -50,7 +51,7 @@ pub(crate) fn check_schedule(
     }
 }
 
-/// Whether Rapier steps in our schedule, as far as [`check_schedule`] could see.
+/// Whether Rapier is there and steps in our schedule, as far as [`check_schedule`] could see.
 pub(crate) fn in_place(watched: Res<Watched>) -> bool {
     !watched.misplaced
 }

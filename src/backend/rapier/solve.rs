@@ -8,6 +8,7 @@ use crate::scene::free;
 use crate::scene::state::Scene;
 use crate::scene::step::Step;
 use crate::settings::CoiloverSettings;
+use bevy::ecs::entity::Entities;
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
 use bevy_rapier3d::rapier::dynamics::IntegrationParameters;
@@ -40,6 +41,7 @@ pub(crate) fn solve(
     mut loads: ParamSet<(ChangedLoads, Loads)>,
     handles: Handles,
     users: Query<&AdditionalSolverIterations>,
+    entities: &Entities,
     mut spare: Local<Spare>,
     mut commands: Commands,
 ) {
@@ -50,12 +52,14 @@ pub(crate) fn solve(
         forces::release(scene, &mut loads, &handles, &mut sets, &mut commands);
     }
     scene.begin();
+    scene.forget_worlds(|context| entities.contains(context));
     for (context, mut simulation, mut colliders, mut joints, configuration, lag) in &mut contexts {
         let parameters = &simulation.integration_parameters;
         let plan = timestep::plan(*mode, time.delta_secs(), lag.diff, parameters);
         if plan.time <= 0.0 || !configuration.physics_pipeline_active {
             // What is moved meanwhile is not to be taken for known.
             scene.still.note(context, false);
+            scene.some_rest = true;
             continue;
         }
         scene.time = plan.time;

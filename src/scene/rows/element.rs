@@ -193,10 +193,14 @@ impl ElementRow {
 
     /// Whether its context is among those that were stepped.
     pub(crate) fn has_acted(&self, bodies: &[BodyRow], stepped: &[Entity]) -> bool {
-        match self.movable(0).or(self.movable(1)) {
-            Some(body) => stepped.contains(&bodies[body].rare.context),
-            None => !stepped.is_empty(),
+        if let Some(body) = self.movable(0).or(self.movable(1)) {
+            return stepped.contains(&bodies[body].rare.context);
         }
+        let context = self.rare.held.iter().find_map(|held| match held {
+            Held::Body { context, .. } => Some(context),
+            Held::Path { .. } => None,
+        });
+        context.map_or(!stepped.is_empty(), |context| stepped.contains(context))
     }
 
     /// Whether an end has to be looked for in every tick.

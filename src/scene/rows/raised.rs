@@ -71,11 +71,6 @@ impl Raised {
             && Replaced::fits(self.prediction, prediction, meanwhile.prediction)
     }
 
-    /// Substeps that it has been lent beyond those of all.
-    pub(crate) fn substeps(&self) -> usize {
-        self.substeps.map_or(0, |substeps| substeps.ours)
-    }
-
     /// Whether there is anything to give back.
     pub(crate) fn is_any(&self) -> bool {
         self.substeps.is_some() || self.prediction.is_some()

@@ -10,6 +10,7 @@ use crate::scene::rows::{BodyFlags, BodyRow, ElementFlags, ElementRow};
 use crate::scene::state::Scene;
 use crate::scene::step::Step;
 use bevy::prelude::Entity;
+use bevy_rapier3d::rapier::dynamics::RigidBody;
 use bevy_rapier3d::rapier::geometry::{DefaultBroadPhase, NarrowPhase};
 use std::mem::take;
 
@@ -71,8 +72,12 @@ impl Scene {
         solver.write(step, groups, elements, bodies, engine, finest);
         let links = engine.joints.multibody_joints.multibodies().next();
         step.alike = links.map(|_| {
-            let more = |row: &BodyRow| row.rare.raised.substeps();
-            bodies.iter().map(more).max().unwrap_or(0).max(finest)
+            let awake = engine.bodies.iter().map(|(_, body)| body);
+            let awake = awake.filter(|body| !(body.is_fixed() || body.is_sleeping()));
+            awake
+                .map(RigidBody::additional_solver_iterations)
+                .max()
+                .unwrap_or(0)
         });
         all_asleep
     }
