@@ -1,5 +1,6 @@
 //! Pulling a body by one of its points: with a mouse, a hand, a tractor beam.
 
+use crate::compat;
 use crate::element::{Anchors, MaxForce, SpringAxis, SpringDamper, SpringFault, SpringTuning};
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::{
@@ -166,7 +167,7 @@ pub(crate) fn hold(
 }
 
 /// A pointer that lets go takes what was wrong with it along.
-pub(crate) fn forget(gone: On<Remove, MouseSpring>, mut commands: Commands) {
+pub(crate) fn forget(gone: compat::Removed<MouseSpring>, mut commands: Commands) {
     commands.entity(gone.entity).try_remove::<SpringFault>();
 }
 
