@@ -28,8 +28,8 @@ pub(crate) fn break_overloaded(
             WhenBroken::Despawn => commands.entity(entity).try_despawn(),
             WhenBroken::Disable => {
                 // What it shows would break it again before the next step, once it is mended.
-                let mended = (Disabled, SpringReadout::default());
-                commands.entity(entity).try_insert(mended);
+                let slack = SpringReadout::default();
+                commands.entity(entity).try_insert((Disabled, slack));
             }
         }
     }

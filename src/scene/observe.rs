@@ -5,6 +5,7 @@ use crate::dynamics::element::{End, Path};
 use crate::dynamics::guide::Guide;
 use crate::scene::rows::{BodyFlags, BodyRow, ElementFlags, ElementRow, Held, turning_mark};
 use crate::scene::state::Scene;
+use crate::scene::still::Stepped;
 use crate::threads;
 use bevy::math::{DQuat, DVec3};
 use bevy::prelude::*;
@@ -46,8 +47,7 @@ impl Scene {
                 rows.iter_mut().for_each(|row| eyes.note(row));
             });
         }
-        let bodies = &self.bodies;
-        let stepped = self.some_rest.then_some(&self.stepped[..]);
+        let (bodies, stepped) = (&self.bodies, &self.stepped);
         let each = share_of(self.elements.len());
         threads::share(self.elements.chunks_mut(each), |rows| {
             for row in rows.iter_mut().filter(|row| row.is_seen(bodies, stepped)) {
@@ -106,12 +106,12 @@ impl<'a, W: Worlds> Eyes<'a, W> {
 }
 
 impl ElementRow {
-    /// Whether anything about it can have changed in the step of these worlds; of all if there are none that rest.
+    /// Whether anything about it can have changed in the step.
     #[inline(always)]
-    pub(crate) fn is_seen(&self, bodies: &[BodyRow], stepped: Option<&[Entity]>) -> bool {
+    pub(crate) fn is_seen(&self, bodies: &[BodyRow], stepped: &Stepped) -> bool {
         let acts = self.has(ElementFlags::ACTIVE) || self.moves() == 0;
         acts && self.trouble.lasting().is_none()
-            && stepped.is_none_or(|stepped| self.has_acted(bodies, stepped))
+            && (!stepped.some_rest || self.has_acted(bodies, stepped))
     }
 
     /// Finds its length and rate after the step, and notes where its ends are.

@@ -36,7 +36,7 @@ pub(crate) fn refresh(
         row.flags.set(ElementFlags::CHANGED, waits);
         waits
     });
-    if !stepped.is_empty() {
+    if !stepped.worlds.is_empty() {
         *shifted = false;
     }
     for entity in changed.chain(companions.touched.iter().copied()) {

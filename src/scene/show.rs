@@ -38,7 +38,7 @@ impl Scene {
     ) {
         let time = self.time;
         let seen = self.show_in_order(readouts);
-        let (bodies, stepped) = (&self.bodies, self.some_rest.then_some(&self.stepped[..]));
+        let (bodies, stepped) = (&self.bodies, &self.stepped);
         if seen.has_news {
             for row in &mut self.elements {
                 if row.is_seen(bodies, stepped) {
@@ -64,7 +64,7 @@ impl Scene {
     /// were made, there are others, and the rows are made anew.
     fn show_in_order(&self, readouts: &mut Readouts) -> SeenInOrder {
         let (time, mut rest) = (self.time, &self.elements[..]);
-        let (bodies, stepped) = (&self.bodies, self.some_rest.then_some(&self.stepped[..]));
+        let (bodies, stepped) = (&self.bodies, &self.stepped);
         let (has_news, is_unordered) = (AtomicBool::new(false), AtomicBool::new(false));
         for (entities, readouts) in readouts.contiguous_iter_mut().into_iter().flatten() {
             let count = rest.len().min(entities.len());

@@ -6,7 +6,7 @@ use crate::scene::group::{Group, Groups};
 use crate::scene::held::Inside;
 use crate::scene::lone::Lone;
 use crate::scene::rows::{BodyFlags, BodyRow, ElementRow, Raised, Sweeps};
-use crate::scene::still::Still;
+use crate::scene::still::{Stepped, Still};
 use bevy::ecs::change_detection::Tick;
 use bevy::ecs::entity::{EntityHashMap, EntityHashSet};
 use bevy::platform::collections::HashMap;
@@ -45,10 +45,7 @@ pub struct Scene {
     pub(crate) had_joints: bool,
     /// Number of the tick.
     pub(crate) tick: u32,
-    /// The contexts that are stepped in this tick.
-    pub(crate) stepped: Vec<Entity>,
-    /// Some context is not.
-    pub(crate) some_rest: bool,
+    pub(crate) stepped: Stepped,
     /// Seconds that the engine will step in this tick; 0 if it will not.
     pub(crate) time: f64,
     /// A body or an element that it knows has lost a component, or a body is another one: look at everything again.
@@ -98,8 +95,8 @@ impl Scene {
     pub(crate) fn begin(&mut self) {
         self.time = 0.0;
         self.tick = self.tick.wrapping_add(1).max(1);
-        self.stepped.clear();
-        self.some_rest = false;
+        self.stepped.worlds.clear();
+        self.stepped.some_rest = false;
         self.delivered = false;
         self.noting = false;
         self.engine_went_back = false;

@@ -7,6 +7,14 @@ use bevy::ecs::change_detection::Tick;
 use bevy::ecs::entity::EntityHashMap;
 use bevy::prelude::*;
 
+/// What is stepped in this tick.
+#[derive(Default)]
+pub(crate) struct Stepped {
+    pub worlds: Vec<Entity>,
+    /// Some world is not.
+    pub some_rest: bool,
+}
+
 /// Contexts whose every component was found asleep in their last step, and when their bodies had been
 /// changed last at the end of that tick.
 #[derive(Default)]

@@ -37,23 +37,12 @@ impl Ends<'_, '_> {
     ) -> Result<Place, Fault> {
         let mut point = anchor.as_dvec3();
         let mut current = end;
-        loop {
+        let body = loop {
             if let Ok((handle, link, global)) = self.bodies.get(current) {
                 if point != DVec3::ZERO {
                     point *= steady_scale(global, scale);
                 }
-                if !point.is_finite() {
-                    return Err(Fault::new(
-                        field,
-                        "has a Transform, below its rigid body, that is not finite",
-                    ));
-                }
-                return Ok(Place::OnBody {
-                    entity: current,
-                    body: id(handle.0),
-                    context: link.0,
-                    local: point,
-                });
+                break Some((id(handle.0), link.0));
             }
             let (transform, parent) = self.places.get(current).map_err(|_| {
                 Fault::new(field, "is an entity that does not exist or is disabled")
@@ -65,7 +54,7 @@ impl Ends<'_, '_> {
                         "has neither a rigid body (on itself or above it) nor a Transform",
                     ));
                 }
-                break;
+                break None;
             };
             point = DAffine3::from_scale_rotation_translation(
                 transform.scale.as_dvec3(),
@@ -75,14 +64,21 @@ impl Ends<'_, '_> {
             .transform_point3(point);
             match parent {
                 Some(parent) => current = parent.parent(),
-                None => break,
+                None => break None,
             }
+        };
+        if !point.is_finite() {
+            return Err(Fault::new(field, "has a Transform that is not finite"));
         }
-        if point.is_finite() {
-            Ok(Place::Point(point))
-        } else {
-            Err(Fault::new(field, "has a Transform that is not finite"))
-        }
+        Ok(match body {
+            Some((body, context)) => Place::OnBody {
+                entity: current,
+                body,
+                context,
+                local: point,
+            },
+            None => Place::Point(point),
+        })
     }
 }
 

@@ -59,27 +59,20 @@ impl Finder for RapierFinder<'_, '_> {
                 &mut scales[i],
             )?;
         }
-        if let [
-            Place::OnBody { context: a, .. },
-            Place::OnBody { context: b, .. },
-        ] = places
-            && a != b
-        {
-            return Err(Fault::new(
-                parameters.ties.names.ends[1],
-                "is in another Rapier context than body_a",
-            ));
-        }
-        if let [
-            Place::OnBody { entity: a, .. },
-            Place::OnBody { entity: b, .. },
-        ] = places
-            && a == b
-        {
-            return Err(Fault::new(
-                parameters.ties.names.ends[1],
-                "is on the same rigid body as body_a",
-            ));
+        let on = places.map(|place| match place {
+            Place::OnBody {
+                entity, context, ..
+            } => Some((entity, context)),
+            Place::Point(_) => None,
+        });
+        if let [Some(a), Some(b)] = on {
+            let fault = |reason| Err(Fault::new(parameters.ties.names.ends[1], reason));
+            if a.1 != b.1 {
+                return fault("is in another Rapier context than body_a");
+            }
+            if a.0 == b.0 {
+                return fault("is on the same rigid body as body_a");
+            }
         }
         let mut movable = [None; 2];
         for (i, place) in places.iter().enumerate() {

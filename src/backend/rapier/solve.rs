@@ -59,11 +59,11 @@ pub(crate) fn solve(
         if plan.time <= 0.0 || !configuration.physics_pipeline_active {
             // What is moved meanwhile is not to be taken for known.
             scene.still.note(context, false);
-            scene.some_rest = true;
+            scene.stepped.some_rest = true;
             continue;
         }
         scene.time = plan.time;
-        scene.stepped.push(context);
+        scene.stepped.worlds.push(context);
         let Ok(mut set) = sets.get_mut(context) else {
             continue;
         };

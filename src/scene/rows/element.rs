@@ -10,6 +10,7 @@ use crate::dynamics::tolerance::{Controller, Method, Outcome};
 use crate::input::check::{Numbers, Parameters, Ties, Trouble};
 use crate::input::companions::Companion;
 use crate::scene::held::Inside;
+use crate::scene::still::Stepped;
 use bevy::ecs::entity::EntityHashMap;
 use bevy::math::{DQuat, DVec3};
 use bevy::prelude::*;
@@ -192,7 +193,8 @@ impl ElementRow {
     }
 
     /// Whether its context is among those that were stepped.
-    pub(crate) fn has_acted(&self, bodies: &[BodyRow], stepped: &[Entity]) -> bool {
+    pub(crate) fn has_acted(&self, bodies: &[BodyRow], stepped: &Stepped) -> bool {
+        let stepped = &stepped.worlds;
         if let Some(body) = self.movable(0).or(self.movable(1)) {
             return stepped.contains(&bodies[body].rare.context);
         }

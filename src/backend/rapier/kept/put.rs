@@ -215,7 +215,7 @@ impl Kept {
         scene.list_lone();
         scene.time = self.time;
         let stepped = self.contexts.iter().filter(|context| context.stepped);
-        scene.stepped = stepped.map(|context| context.entity).collect();
+        scene.stepped.worlds = stepped.map(|context| context.entity).collect();
         if !self.engine_stays {
             let sweeps = self.contexts.iter();
             scene.sweeps = sweeps

@@ -65,11 +65,14 @@ impl Kept {
     }
 
     fn take_contexts(&mut self, scene: &Scene) {
-        let with_sweeps = scene.sweeps.keys().filter(|c| !scene.stepped.contains(c));
-        let all = scene.stepped.iter().chain(with_sweeps);
+        let with_sweeps = scene
+            .sweeps
+            .keys()
+            .filter(|c| !scene.stepped.worlds.contains(c));
+        let all = scene.stepped.worlds.iter().chain(with_sweeps);
         self.contexts.extend(all.map(|context| KeptContext {
             entity: *context,
-            stepped: scene.stepped.contains(context),
+            stepped: scene.stepped.worlds.contains(context),
             sweeps: scene.sweeps.get(context).copied().unwrap_or_default(),
         }));
         self.contexts.sort_by_key(|context| context.entity);
