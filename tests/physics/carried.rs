@@ -153,13 +153,7 @@ impl Net {
                 let mut mode = self.lab.app.world_mut().resource_mut::<TimestepMode>();
                 *mode = TimestepMode::Fixed { dt, substeps: 1 };
             }
-            16 | 17 => {
-                let world = self.lab.app.world_mut();
-                let mut engines = world.query::<&mut RapierConfiguration>();
-                for mut engine in engines.iter_mut(world) {
-                    engine.physics_pipeline_active = kind == 16;
-                }
-            }
+            16 | 17 => self.lab.set_stepping(kind == 16),
             12 => {
                 let mut spring = self.lab.get_mut::<SpringDamper>(spring);
                 spring.rest_length = Some(0.5 + 0.1 * size);
@@ -236,11 +230,7 @@ fn what_is_changed_while_the_engine_rests_holds_when_it_goes_on() {
     let mut net = Net::new(60.0, 0.4);
     net.lab.run(0.2);
     let pause = |net: &mut Net, active: bool| {
-        let world = net.lab.app.world_mut();
-        let mut engines = world.query::<&mut RapierConfiguration>();
-        for mut engine in engines.iter_mut(world) {
-            engine.physics_pipeline_active = active;
-        }
+        net.lab.set_stepping(active);
         net.lab.run(0.1);
     };
     pause(&mut net, false);

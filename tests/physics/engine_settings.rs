@@ -261,15 +261,9 @@ fn a_paused_pipeline_heaps_nothing_up() {
             .with_rest_length(1.0),
     );
     lab.run(0.5);
-    let pause = |lab: &mut Lab, active: bool| {
-        let mut q = lab.app.world_mut().query::<&mut RapierConfiguration>();
-        q.single_mut(lab.app.world_mut())
-            .expect("one context")
-            .physics_pipeline_active = active;
-    };
-    pause(&mut lab, false);
+    lab.set_stepping(false);
     lab.run(1.0);
-    pause(&mut lab, true);
+    lab.set_stepping(true);
     let omega = 40.0_f64.sqrt();
     for i in 1..=60 {
         lab.tick();

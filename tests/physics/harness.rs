@@ -100,6 +100,15 @@ impl Lab {
         }
     }
 
+    /// Whether the engines of all worlds step.
+    pub fn set_stepping(&mut self, active: bool) {
+        let world = self.app.world_mut();
+        let mut engines = world.query::<&mut RapierConfiguration>();
+        for mut engine in engines.iter_mut(world) {
+            engine.physics_pipeline_active = active;
+        }
+    }
+
     pub fn dt(&self) -> f64 {
         match *self.app.world().resource::<TimestepMode>() {
             TimestepMode::Fixed { dt, .. } => f64::from(dt),

@@ -5,14 +5,6 @@ use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
 
-fn pause(lab: &mut Lab, active: bool) {
-    let world = lab.app.world_mut();
-    let mut engines = world.query::<&mut RapierConfiguration>();
-    for mut engine in engines.iter_mut(world) {
-        engine.physics_pipeline_active = active;
-    }
-}
-
 /// A weight asleep below a post, on a spring.
 struct Hung {
     lab: Lab,
@@ -51,12 +43,12 @@ impl Hung {
 
     /// How far it rises within five seconds after a pause in which this happens.
     fn rises(mut self, change: impl FnOnce(&mut Self)) -> f32 {
-        pause(&mut self.lab, false);
+        self.lab.set_stepping(false);
         self.lab.tick();
         change(&mut self);
         self.lab.tick();
         self.lab.tick();
-        pause(&mut self.lab, true);
+        self.lab.set_stepping(true);
         self.lab.run(5.0);
         self.lab.position(self.weight).y - self.slept_at.y
     }
@@ -88,12 +80,12 @@ fn a_spring_shortened_while_the_engine_rests_pulls_even_if_others_come() {
 fn a_weight_moved_while_the_engine_rests_is_held_from_its_first_step() {
     let motion = |watched| {
         let mut hung = Hung::new(Lab::new(), watched);
-        pause(&mut hung.lab, false);
+        hung.lab.set_stepping(false);
         hung.lab.tick();
         hung.lab.get_mut::<Transform>(hung.weight).translation.y -= 0.5;
         hung.lab.tick();
         hung.lab.tick();
-        pause(&mut hung.lab, true);
+        hung.lab.set_stepping(true);
         let ticks = 0..30;
         ticks
             .map(|_| {

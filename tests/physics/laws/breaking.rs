@@ -4,7 +4,6 @@ use crate::harness::*;
 use bevy::ecs::entity_disabling::Disabled;
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
-use bevy_rapier3d::prelude::*;
 
 #[derive(Resource, Default)]
 struct Broken(Vec<SpringBroke>);
@@ -71,10 +70,7 @@ fn mended_while_the_engine_rests_it_does_not_break_by_what_it_showed_before() {
     let (mut lab, _, element) = rope(Breakable::at_length(1.15).disabling());
     lab.run(0.5);
     assert_eq!(lab.app.world().resource::<Broken>().0.len(), 1);
-    let world = lab.app.world_mut();
-    for mut engine in world.query::<&mut RapierConfiguration>().iter_mut(world) {
-        engine.physics_pipeline_active = false;
-    }
+    lab.set_stepping(false);
     lab.app.world_mut().entity_mut(element).remove::<Disabled>();
     lab.run(0.1);
     assert_eq!(lab.app.world().resource::<Broken>().0.len(), 1);

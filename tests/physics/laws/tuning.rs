@@ -151,12 +151,6 @@ fn over_a_wheel_on_the_ground_it_is_the_load_that_swings() {
 /// So many other springs come after it, one by one, while the engine rests.
 fn over_a_wheel(others: usize) {
     let mut lab = Lab::new();
-    let pause = |lab: &mut Lab, active: bool| {
-        let world = lab.app.world_mut();
-        for mut engine in world.query::<&mut RapierConfiguration>().iter_mut(world) {
-            engine.physics_pipeline_active = active;
-        }
-    };
     lab.spawn((
         Collider::halfspace(Vec3::Y).expect("up"),
         Transform::default(),
@@ -177,14 +171,14 @@ fn over_a_wheel(others: usize) {
         SpringDamper::new(load, wheel).with_rest_length(0.5),
         SpringTuning::frequency(1.5, 0.3),
     ));
-    pause(&mut lab, false);
+    lab.set_stepping(false);
     for at in (0..others).map(|other| 5.0 * (other + 1) as f32) {
         lab.tick();
         let (hook, other) = (lab.point(Vec3::X * at), lab.body(1.0, Vec3::X * (at + 1.0)));
         lab.spawn(Spring::new(hook, other).with_stiffness(1.0));
     }
     lab.tick();
-    pause(&mut lab, true);
+    lab.set_stepping(true);
     lab.run(0.1);
     let k = lab.get::<SpringDamper>(element).stiffness;
     let wanted = 300.0 * (1.5 * TAU) * (1.5 * TAU);
