@@ -2,6 +2,7 @@
 
 use crate::compat;
 use crate::element::{Anchors, MaxForce, SpringAxis, SpringDamper, SpringFault, SpringTuning};
+use crate::input::say::{Stays, say};
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::{
     RapierContextEntityLink, RapierRigidBodyHandle, RapierRigidBodySet, RigidBody,
@@ -113,7 +114,7 @@ pub(crate) fn hold(
         &MouseSpring,
         &mut Transform,
         Option<&Grip>,
-        Option<&SpringFault>,
+        Has<SpringFault>,
     )>,
     released: Query<(Entity, &Grip), Without<MouseSpring>>,
     bodies: Query<(&RapierRigidBodyHandle, &RapierContextEntityLink), With<RigidBody>>,
@@ -217,23 +218,24 @@ fn release(entity: Entity, grip: &Grip, commands: &mut Commands) {
 fn tell(
     entity: Entity,
     fault: Option<(&'static str, &'static str)>,
-    told: Option<&SpringFault>,
+    told: bool,
     commands: &mut Commands,
 ) {
-    match (fault, told) {
-        (Some((field, _)), Some(told)) if told.field == field => {}
-        (Some((field, reason)), _) => {
+    let mut held = commands.entity(entity);
+    match fault {
+        Some((field, reason)) => {
             let fault = SpringFault {
                 entity,
                 field: field.into(),
                 reason: reason.into(),
             };
-            log::warn!("{fault}");
-            commands.entity(entity).try_insert(fault);
+            held.queue_silenced(move |mut held: EntityWorldMut| {
+                say(&mut held, fault, Stays::UntilMended);
+            });
         }
-        (None, Some(_)) => {
-            commands.entity(entity).try_remove::<SpringFault>();
+        None if told => {
+            held.try_remove::<SpringFault>();
         }
-        (None, None) => {}
+        None => {}
     }
 }

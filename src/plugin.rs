@@ -3,6 +3,7 @@
 use crate::backend::rapier::forces::SpringLoad;
 use crate::backend::rapier::setup::Watched;
 use crate::element::*;
+use crate::input::lists::{with_companions, with_elements};
 use crate::input::strays::{Role, Strays};
 use crate::mouse_spring::{self, Grip, MouseSpring};
 use crate::readout::SpringReadout;
@@ -208,14 +209,12 @@ impl Plugin for CoiloverPlugin {
 
 /// What a designer writes is in the type registry: elements and their companions.
 pub(crate) fn register_elements(app: &mut App) {
-    app.register_type::<Spring>()
-        .register_type::<Damper>()
-        .register_type::<SpringDamper>()
-        .register_type::<TorsionSpring>()
-        .register_type::<TorsionDamper>()
-        .register_type::<TorsionSpringDamper>()
-        .register_type::<Anchors>()
-        .register_type::<SpringLaw>()
+    macro_rules! elements {
+        ($($element:ident),*) => {$(app.register_type::<$element>();)*};
+    }
+    with_elements!(elements);
+    // Laws that are functions are no data.
+    app.register_type::<SpringLaw>()
         .register_type::<DampingLaw>()
         .register_type::<SpringAction>()
         .register_type::<SpringTravel>()
@@ -225,6 +224,7 @@ pub(crate) fn register_elements(app: &mut App) {
         .register_type::<Breakable>()
         .register_type::<SpringTuning>()
         .register_type::<HoldPose>()
+        .register_type::<Anchors>()
         .register_type::<WorldAnchors>()
         .register_type::<EndNames>()
         .register_type::<MouseSpring>();
@@ -250,25 +250,20 @@ fn set_rates(app: &mut App, hertz: f64) {
 /// What stands where no element is does nothing, and that is told.
 fn notice_strays(app: &mut App) {
     use crate::input::strays::notice;
-    notice::<Anchors>(app, Role::Companion, "Anchors");
-    notice::<WorldAnchors>(app, Role::Companion, "WorldAnchors");
-    notice::<EndNames>(app, Role::Companion, "EndNames");
-    notice::<SpringLaw>(app, Role::Companion, "SpringLaw");
-    notice::<CustomSpringLaw>(app, Role::Companion, "CustomSpringLaw");
-    notice::<DampingLaw>(app, Role::Companion, "DampingLaw");
-    notice::<CustomDampingLaw>(app, Role::Companion, "CustomDampingLaw");
-    notice::<SpringAction>(app, Role::Companion, "SpringAction");
-    notice::<SpringTravel>(app, Role::Companion, "SpringTravel");
-    notice::<SpringAxis>(app, Role::Companion, "SpringAxis");
-    notice::<Preload>(app, Role::Companion, "Preload");
-    notice::<MaxForce>(app, Role::Companion, "MaxForce");
-    notice::<Breakable>(app, Role::Companion, "Breakable");
-    notice::<SpringTuning>(app, Role::Companion, "SpringTuning");
-    notice::<HoldPose>(app, Role::Companion, "HoldPose");
+    macro_rules! companions {
+        ([$($law:ident: $kind:ident),*] [$($other:ident: $other_kind:ident),*]) => {
+            $(notice::<$kind>(app, Role::Companion);)*
+            $(notice::<$other_kind>(app, Role::Companion);)*
+        };
+    }
+    with_companions!(companions);
+    notice::<Anchors>(app, Role::Companion);
+    notice::<WorldAnchors>(app, Role::Companion);
+    notice::<EndNames>(app, Role::Companion);
     #[cfg(feature = "visual")]
     {
-        notice::<crate::Coil>(app, Role::Look, "Coil");
-        notice::<crate::Telescope>(app, Role::Look, "Telescope");
-        notice::<crate::TorsionCoil>(app, Role::Spiral, "TorsionCoil");
+        notice::<crate::Coil>(app, Role::Look);
+        notice::<crate::Telescope>(app, Role::Look);
+        notice::<crate::TorsionCoil>(app, Role::Spiral);
     }
 }

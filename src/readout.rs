@@ -51,9 +51,8 @@ pub struct SpringReadout {
     /// Estimate of the error that the last step added to a position, m; where the accuracy was asked for
     /// as a tolerance, else 0.
     pub error: f32,
-    /// An upper bound of [`CoiloverSettings`](crate::CoiloverSettings) (`max_…`) kept the step from being finer or more
-    /// exact. It does not tell of `resolve`: where that does not reach, a network in motion has far fewer micro-steps than
-    /// three times its `omega_dt`.
+    /// An upper bound of [`CoiloverSettings`](crate::CoiloverSettings) (`max_…`, `resolve`) kept the step from being finer
+    /// or more exact. Of an element whose own vibration is not followed for that, the log tells once.
     pub capped: bool,
 }
 

@@ -37,7 +37,7 @@ impl CoiloverSettings {
     pub(crate) fn accuracy(&self) -> Accuracy {
         Accuracy {
             microsteps: self.microsteps.max(1),
-            resolve: self.resolve.max(1),
+            resolve: if self.resolve > 1 { self.resolve } else { 0 },
             extrapolate: self.extrapolation,
             tolerance: self
                 .tolerance

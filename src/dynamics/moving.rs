@@ -3,7 +3,7 @@
 use super::kick::Memo;
 use super::pair::{Pair, Separation};
 use super::resolution::lone_steps;
-use super::tolerance::{Motion, VELOCITY_COUNTS};
+use super::tolerance::{Least, Motion, VELOCITY_COUNTS};
 use bevy::math::DVec3;
 
 /// A pair in motion, for [`super::tolerance`] to drive.
@@ -39,7 +39,7 @@ impl Motion for Moving<'_> {
         self.state = self.saved(slot);
     }
 
-    fn least(&mut self, time: f64, most: u32) -> u32 {
+    fn least(&mut self, time: f64, most: u32) -> Least {
         lone_steps(self.pair.stiffness_number(time), most)
     }
 

@@ -15,7 +15,7 @@ use super::kick::Memo;
 use super::law::Law;
 use super::pair::{Line, Pair, Separation};
 use super::poles::{Poles, RESOLVED_PHASE, UNRESOLVED_DECAY, decay_ratio};
-use super::tolerance::{Motion, VELOCITY_COUNTS};
+use super::tolerance::{Least, Motion, VELOCITY_COUNTS};
 use bevy::math::DVec3;
 
 /// (ω h)² up to which the kick is used: where the law is smooth as a whole, and where it is kinked somewhere. The
@@ -308,8 +308,12 @@ impl Motion for NonlinearPair<'_> {
         self.state = self.saved[slot];
     }
 
-    fn least(&mut self, _: f64, _: u32) -> u32 {
-        1
+    /// One: it takes finer ones by itself where it needs them.
+    fn least(&mut self, _: f64, _: u32) -> Least {
+        Least {
+            count: 1,
+            suffice: true,
+        }
     }
 
     fn run(&mut self, time: f64, count: u32) {

@@ -16,7 +16,7 @@ use super::element::{Element, End, rounding};
 use super::excited::spread;
 use super::guide::Guide;
 use super::resolution::{EXTRAPOLATION_LIMIT, network_steps};
-use super::tolerance::{Motion, velocity_counts};
+use super::tolerance::{Least, Motion, velocity_counts};
 use crate::threads::{copy, each};
 use bevy::math::DVec3;
 pub(crate) use free_points::{Flight, FreePoint};
@@ -326,11 +326,11 @@ impl Motion for Points {
         copy(&mut self.exchanged, &saved.exchanged);
     }
 
-    fn least(&mut self, time: f64, most: u32) -> u32 {
+    fn least(&mut self, time: f64, most: u32) -> Least {
         let (z, _) = self.bounds(time);
-        let steps = network_steps(z, self.wires.len(), most);
-        self.stiffest = z / f64::from(steps * steps);
-        steps
+        let least = network_steps(z, self.wires.len(), most);
+        self.stiffest = least.in_each(z);
+        least
     }
 
     fn run(&mut self, time: f64, count: u32) {

@@ -1,6 +1,7 @@
 //! How finely motion has to be stepped.
 
 use super::line::Motion;
+use super::tolerance::Least;
 
 /// Phase per coarse step up to which the fourth-order combination converges.
 pub(super) const EXTRAPOLATION_LIMIT: f64 = 1.5;
@@ -26,13 +27,16 @@ const AHEAD: f64 = 1.25;
 
 /// Micro-steps that resolve a lone element of (ω h)² = `z`, along whose line the step is exact then; one where that is more
 /// than `most`.
-pub(super) fn lone_steps(z: f64, most: u32) -> u32 {
-    within((z / RESOLVED).sqrt(), most.min(MOST_ALONE)).unwrap_or(1)
+pub(super) fn lone_steps(z: f64, most: u32) -> Least {
+    Least::of(
+        z,
+        within((z / RESOLVED).sqrt(), most.min(MOST_ALONE)).unwrap_or(1),
+    )
 }
 
 /// Micro-steps with which a network of so many elements follows its stiffest mode, of (ω h)² = `z`, if they are not more than
 /// `most`; else those that just resolve it, if they are few.
-pub(super) fn network_steps(z: f64, elements: usize, most: u32) -> u32 {
+pub(super) fn network_steps(z: f64, elements: usize, most: u32) -> Least {
     // These are its own, whatever others there are; none where just one step is asked for.
     let few = if most == 0 {
         1
@@ -40,9 +44,25 @@ pub(super) fn network_steps(z: f64, elements: usize, most: u32) -> u32 {
         (FEW_KICKS / elements.max(1)) as u32
     };
     let most = if z <= RESOLVED { few } else { most.max(few) };
-    within((z / FOLLOWED).sqrt(), most)
+    let count = within((z / FOLLOWED).sqrt(), most)
         .or_else(|| within((z / RESOLVED).sqrt(), EXTRA_STEPS))
-        .unwrap_or(1)
+        .unwrap_or(1);
+    Least::of(z, count)
+}
+
+impl Least {
+    /// So many micro-steps for a motion of (ω h)² = `z` in the whole step.
+    fn of(z: f64, count: u32) -> Self {
+        Self {
+            count,
+            suffice: z <= RESOLVED * f64::from(count).powi(2),
+        }
+    }
+
+    /// (ω h)² in one of the micro-steps.
+    pub(super) fn in_each(self, z: f64) -> f64 {
+        z / f64::from(self.count).powi(2)
+    }
 }
 
 fn within(steps: f64, most: u32) -> Option<u32> {

@@ -146,6 +146,7 @@ impl Fineness {
             method: Method::Engine,
             microsteps: substeps,
             capped: self.capped,
+            unresolved: self.capped,
             ..Outcome::default()
         }
     }

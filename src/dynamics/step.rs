@@ -13,7 +13,7 @@ use super::nonlinear_pair::PairView;
 use super::points::Points;
 use super::resolution::{EXTRAPOLATION_LIMIT, lone_steps, network_steps};
 use super::tolerance::{
-    Accuracy, Controller, Method, Motion, Outcome, VELOCITY_COUNTS, velocity_counts,
+    Accuracy, Controller, Least, Method, Motion, Outcome, VELOCITY_COUNTS, velocity_counts,
 };
 use bevy::math::DVec3;
 
@@ -279,7 +279,7 @@ impl Motion for Component {
     }
 
     /// As many as resolve the stiffest mode, and the blow where a law kinks; one where that is out of reach.
-    fn least(&mut self, time: f64, most: u32) -> u32 {
+    fn least(&mut self, time: f64, most: u32) -> Least {
         if self.is_alone() {
             let element = &self.elements[0];
             let line = element.line(&self.bodies);
@@ -290,9 +290,10 @@ impl Motion for Component {
         }
         let network = &mut self.memory.network;
         let (z, _) = network.bounds(&self.elements, &self.bodies, time);
-        let steps = network_steps(z, self.elements.len(), most).max(self.steps_at_bends(z, time));
-        self.memory.bound.see(z / f64::from(steps * steps));
-        steps
+        let mut least = network_steps(z, self.elements.len(), most);
+        least.count = least.count.max(self.steps_at_bends(z, time));
+        self.memory.bound.see(least.in_each(z));
+        least
     }
 
     fn run(&mut self, time: f64, count: u32) {

@@ -35,7 +35,7 @@ impl Accuracy {
     pub(crate) fn shared(self, elements: usize) -> Self {
         let share = self.resolve / u32::try_from(elements.max(1)).unwrap_or(u32::MAX);
         Self {
-            resolve: if self.resolve > 1 { share.max(1) } else { 0 },
+            resolve: share.max(self.resolve.min(1)),
             ..self
         }
     }
@@ -74,6 +74,8 @@ pub(crate) struct Outcome {
     pub error: Option<f64>,
     /// A cap kept the step from being as fine or as exact as was asked.
     pub capped: bool,
+    /// Its stiffest motion was to be followed, and that would have taken more micro-steps than may be.
+    pub unresolved: bool,
 }
 
 impl Outcome {
@@ -88,6 +90,14 @@ impl Outcome {
     }
 }
 
+/// Micro-steps that a motion needs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Least {
+    pub count: u32,
+    /// They resolve it.
+    pub suffice: bool,
+}
+
 /// A motion that can be run over the step again and again, from copies of its state.
 pub(crate) trait Motion {
     /// Copies the state into a slot, of three.
@@ -95,7 +105,7 @@ pub(crate) trait Motion {
     /// Takes it back.
     fn load(&mut self, slot: usize);
     /// Micro-steps that resolve it, if they are not more than `most`; else those that it needs in any case.
-    fn least(&mut self, time: f64, most: u32) -> u32;
+    fn least(&mut self, time: f64, most: u32) -> Least;
     /// Runs over the step in so many micro-steps.
     fn run(&mut self, time: f64, count: u32);
     /// Distance to the state in a slot, m.
@@ -174,7 +184,7 @@ impl Controller {
         };
         let most = accuracy.most();
         // How fine it has to be is found out.
-        let (least, cut) = accuracy.cap(motion.least(time, 0));
+        let (least, cut) = accuracy.cap(motion.least(time, 0).count);
         let mut outcome = match self.known.filter(|_| self.age > 0) {
             Some(known) => {
                 self.age -= 1;
@@ -271,7 +281,7 @@ impl Controller {
     fn fixed(&mut self, motion: &mut impl Motion, time: f64, accuracy: Accuracy) -> Outcome {
         let asked = accuracy.microsteps.max(1);
         let least = motion.least(time, accuracy.resolve);
-        let (count, capped) = accuracy.cap(asked.max(least));
+        let (count, capped) = accuracy.cap(asked.max(least.count));
         let microsteps = if accuracy.extrapolate {
             let plan = Plan::Extrapolated(count).sound(motion, time);
             take(motion, time, plan)
@@ -281,6 +291,7 @@ impl Controller {
         Outcome {
             microsteps,
             capped,
+            unresolved: accuracy.resolve > 0 && !least.suffice,
             ..Outcome::default()
         }
     }

@@ -4,6 +4,7 @@ use crate::dynamics::guide::Guide;
 use crate::dynamics::law::{DragLaw, Law, Recipe, SpringForce, Stop, Table};
 use crate::element::*;
 use crate::input::check::{Fault, MOST, Parameters, direction, finite, number};
+use crate::input::lists::with_companions;
 use crate::input::parts::PartsItem;
 use crate::input::stamps::{Stamps, StampsItem};
 use bevy::ecs::change_detection::Tick;
@@ -13,52 +14,21 @@ use bevy::ecs::system::{SystemChangeTick, SystemParam};
 use bevy::prelude::*;
 use std::sync::Arc;
 
-/// All that can stand beside an element.
-#[derive(QueryData)]
-pub(crate) struct Beside {
-    spring: Option<&'static SpringLaw>,
-    own_spring: Option<&'static CustomSpringLaw>,
-    damping: Option<&'static DampingLaw>,
-    own_damping: Option<&'static CustomDampingLaw>,
-    action: Option<&'static SpringAction>,
-    travel: Option<&'static SpringTravel>,
-    preload: Option<&'static Preload>,
-    max_force: Option<&'static MaxForce>,
-    axis: Option<&'static SpringAxis>,
-    breakable: Option<&'static Breakable>,
-    tuning: Option<&'static SpringTuning>,
-    pose: Option<&'static HoldPose>,
+macro_rules! beside {
+    ([$($law:ident: $kind:ident),*] [$($other:ident: $other_kind:ident),*]) => {
+        /// All that can stand beside an element.
+        #[derive(QueryData)]
+        pub(crate) struct Beside {
+            $($law: Option<&'static $kind>,)*
+            $($other: Option<&'static $other_kind>,)*
+        }
+
+        type AnyBeside = Or<($(With<$kind>,)* $(With<$other_kind>,)*)>;
+
+        type ChangedBeside = Or<($(Changed<$kind>,)* $(Changed<$other_kind>,)*)>;
+    };
 }
-
-type AnyBeside = Or<(
-    With<SpringLaw>,
-    With<CustomSpringLaw>,
-    With<DampingLaw>,
-    With<CustomDampingLaw>,
-    With<SpringAction>,
-    With<SpringTravel>,
-    With<Preload>,
-    With<MaxForce>,
-    With<SpringAxis>,
-    With<Breakable>,
-    With<SpringTuning>,
-    With<HoldPose>,
-)>;
-
-type ChangedBeside = Or<(
-    Changed<SpringLaw>,
-    Changed<CustomSpringLaw>,
-    Changed<DampingLaw>,
-    Changed<CustomDampingLaw>,
-    Changed<SpringAction>,
-    Changed<SpringTravel>,
-    Changed<Preload>,
-    Changed<MaxForce>,
-    Changed<SpringAxis>,
-    Changed<Breakable>,
-    Changed<SpringTuning>,
-    Changed<HoldPose>,
-)>;
+with_companions!(beside);
 
 /// Finds them, and those that changed or went.
 #[derive(SystemParam)]

@@ -1,10 +1,9 @@
 //! Ends by name become ends. Nothing here runs while no element waits for one.
 
-use crate::element::{
-    AwaitsEnds, Damper, EndNames, Spring, SpringDamper, SpringFault, TorsionDamper, TorsionSpring,
-    TorsionSpringDamper,
-};
+use crate::element::*;
+use crate::input::lists::with_elements;
 use crate::input::parts::IsElement;
+use crate::input::say::{Stays, say};
 use crate::readout::SpringReadout;
 use bevy::ecs::entity_disabling::Disabled;
 use bevy::ecs::system::{SystemParam, SystemState};
@@ -94,7 +93,11 @@ pub(crate) fn find_named_ends(world: &mut World, look: &mut SystemState<Look>) {
                 tie(world, entity, ends);
                 settle(world, entity);
             }
-            Err(fault) => complain(world, entity, fault),
+            Err(fault) => {
+                if let Ok(mut element) = world.get_entity_mut(entity) {
+                    say(&mut element, fault, Stays::UntilMended);
+                }
+            }
         }
     }
 }
@@ -187,8 +190,8 @@ impl Look<'_, '_> {
 
 /// Writes ends into an element, whichever it is.
 fn tie(world: &mut World, entity: Entity, ends: [End; 2]) {
-    macro_rules! tie {
-        ($($element:ty),*) => {$(
+    macro_rules! elements {
+        ($($element:ident),*) => {$(
             if let Some(mut element) = world.get_mut::<$element>(entity) {
                 element.set_changed();
                 element.body_a = ends[0].unwrap_or(element.body_a);
@@ -196,14 +199,7 @@ fn tie(world: &mut World, entity: Entity, ends: [End; 2]) {
             }
         )*};
     }
-    tie!(
-        Spring,
-        Damper,
-        SpringDamper,
-        TorsionSpring,
-        TorsionDamper,
-        TorsionSpringDamper
-    );
+    with_elements!(elements);
 }
 
 /// The element waits no longer. What else is wrong with it the scene has said or will say.
@@ -215,20 +211,4 @@ fn settle(world: &mut World, entity: Entity) {
             element.remove::<SpringFault>();
         }
     }
-}
-
-/// Says once which name is wrong.
-fn complain(world: &mut World, entity: Entity, fault: SpringFault) {
-    let Ok(mut element) = world.get_entity_mut(entity) else {
-        return;
-    };
-    if element.get() == Some(&fault) {
-        return;
-    }
-    log::warn!("{fault}");
-    if let Some(mut readout) = element.get_mut::<SpringReadout>() {
-        // What it shows would be taken for a force that still acts.
-        *readout.bypass_change_detection() = SpringReadout::default();
-    }
-    element.insert(fault);
 }

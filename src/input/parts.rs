@@ -5,6 +5,7 @@ use crate::element::{
     TorsionSpringDamper,
 };
 use crate::input::check::{Fault, Names, Numbers, Parameters, Ties};
+use crate::input::lists::with_elements;
 use bevy::ecs::change_detection::Tick;
 use bevy::ecs::query::QueryData;
 use bevy::prelude::*;
@@ -22,29 +23,22 @@ pub(crate) struct Parts {
     anchors: Option<Ref<'static, Anchors>>,
 }
 
-/// What makes an entity an element.
-pub(crate) type IsElement = Or<(
-    With<Spring>,
-    With<Damper>,
-    With<SpringDamper>,
-    With<TorsionSpring>,
-    With<TorsionDamper>,
-    With<TorsionSpringDamper>,
-)>;
+macro_rules! filters {
+    ($($element:ident),*) => {
+        /// What makes an entity an element.
+        pub(crate) type IsElement = Or<($(With<$element>,)*)>;
+
+        /// An element some part of which changed.
+        pub(crate) type ChangedParts = Or<($(Changed<$element>,)* Changed<Anchors>)>;
+    };
+}
+with_elements!(filters);
+
+/// An element that acts along a line, and not about an axis.
+pub(crate) type IsLinear = Or<(With<Spring>, With<Damper>, With<SpringDamper>)>;
 
 /// An element that takes part: one that waits for an end does not.
 pub(crate) type Acts = (IsElement, Without<AwaitsEnds>);
-
-/// An element some part of which changed.
-pub(crate) type ChangedParts = Or<(
-    Changed<Spring>,
-    Changed<Damper>,
-    Changed<SpringDamper>,
-    Changed<TorsionSpring>,
-    Changed<TorsionDamper>,
-    Changed<TorsionSpringDamper>,
-    Changed<Anchors>,
-)>;
 
 /// A component's [`Names`], in their order.
 const fn names(

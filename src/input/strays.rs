@@ -3,8 +3,7 @@
 //! Observers see them come, so that a world in which nothing comes pays nothing.
 
 use crate::compat::Added;
-use crate::element::{Damper, Spring, SpringDamper};
-use crate::input::parts::IsElement;
+use crate::input::parts::{IsElement, IsLinear};
 use bevy::ecs::entity::{EntityHashMap, EntityHashSet};
 use bevy::prelude::*;
 
@@ -43,40 +42,41 @@ struct Stray {
 }
 
 /// Makes an app notice where a component stands.
-pub(crate) fn notice<C: Component>(app: &mut App, role: Role, name: &'static str) {
-    let observer =
-        move |added: Added<C>,
-              elements: Query<(), IsElement>,
-              linear: Query<(), Or<(With<Spring>, With<Damper>, With<SpringDamper>)>>,
-              mut strays: ResMut<Strays>| {
-            let entity = added.entity;
-            #[cfg(feature = "visual")]
-            if role != Role::Companion {
-                strays.undrawn.get_or_insert(false);
-            }
-            let at_home = match role {
-                Role::Companion => elements.contains(entity),
-                Role::Look => linear.contains(entity),
-                Role::Spiral => elements.contains(entity) && !linear.contains(entity),
-            };
-            if at_home || strays.told.contains(&entity) {
-                return;
-            }
-            let stray = strays.waiting.entry(entity).or_insert(Stray {
-                names: Vec::new(),
-                looks: Vec::new(),
-                spirals: Vec::new(),
-                left: GRACE,
-            });
-            let list = match role {
-                Role::Companion => &mut stray.names,
-                Role::Look => &mut stray.looks,
-                Role::Spiral => &mut stray.spirals,
-            };
-            if !list.contains(&name) {
-                list.push(name);
-            }
+pub(crate) fn notice<C: Component>(app: &mut App, role: Role) {
+    let path = std::any::type_name::<C>();
+    let name = path.rsplit("::").next().unwrap_or(path);
+    let observer = move |added: Added<C>,
+                         elements: Query<(), IsElement>,
+                         linear: Query<(), IsLinear>,
+                         mut strays: ResMut<Strays>| {
+        let entity = added.entity;
+        #[cfg(feature = "visual")]
+        if role != Role::Companion {
+            strays.undrawn.get_or_insert(false);
+        }
+        let at_home = match role {
+            Role::Companion => elements.contains(entity),
+            Role::Look => linear.contains(entity),
+            Role::Spiral => elements.contains(entity) && !linear.contains(entity),
         };
+        if at_home || strays.told.contains(&entity) {
+            return;
+        }
+        let stray = strays.waiting.entry(entity).or_insert(Stray {
+            names: Vec::new(),
+            looks: Vec::new(),
+            spirals: Vec::new(),
+            left: GRACE,
+        });
+        let list = match role {
+            Role::Companion => &mut stray.names,
+            Role::Look => &mut stray.looks,
+            Role::Spiral => &mut stray.spirals,
+        };
+        if !list.contains(&name) {
+            list.push(name);
+        }
+    };
     app.add_observer(observer);
 }
 
@@ -92,8 +92,8 @@ pub(crate) fn any_strays(strays: Res<Strays>) -> bool {
 /// Tells of what still has no element.
 pub(crate) fn tell_strays(
     mut strays: ResMut<Strays>,
-    elements: Query<Has<Spring>, IsElement>,
-    linear: Query<(), Or<(With<Spring>, With<Damper>, With<SpringDamper>)>>,
+    elements: Query<(), IsElement>,
+    linear: Query<(), IsLinear>,
     entities: Query<()>,
     #[cfg(feature = "visual")] drawn: Option<Res<crate::visual::IsDrawn>>,
 ) {
@@ -109,6 +109,7 @@ pub(crate) fn tell_strays(
         }
     }
     let Strays { waiting, told, .. } = strays;
+    told.retain(|entity| entities.contains(*entity));
     waiting.retain(|&entity, stray| {
         if !entities.contains(entity) {
             return false;

@@ -1,7 +1,7 @@
-//! What is wrong with an element is said once.
+//! What is wrong with an element, or too stiff in it, is said once.
 
 use crate::element::{AwaitsEnds, EndNames, SpringFault};
-use crate::readout::SpringReadout;
+use crate::input::say::{Stays, say};
 use crate::scene::rows::ElementRow;
 use bevy::prelude::*;
 
@@ -10,38 +10,56 @@ pub(crate) fn report(row: &mut ElementRow, commands: &mut Commands) {
     let Some(news) = row.trouble.news() else {
         return;
     };
-    match news {
-        Some(fault) => {
-            let fault = SpringFault {
-                entity: row.entity,
-                field: fault.field.into(),
-                reason: fault.reason.into(),
-            };
-            let ends = row.rare.ties.ends;
-            let lasts = row.trouble.lasting().is_some();
-            let mut element = commands.entity(row.entity);
-            element.queue_silenced(move |mut element: EntityWorldMut| {
-                match element.get::<Name>() {
-                    Some(name) => log::warn!("{name}, {fault}"),
-                    None => log::warn!("{fault}"),
-                }
-                element.insert(fault);
-                if !lasts {
-                    return;
-                }
-                // An end that went is looked for by its name again.
-                let is_gone = |end| element.world().get_entity(end).is_err();
-                if element.contains::<EndNames>() && ends.into_iter().any(is_gone) {
-                    element.insert(AwaitsEnds);
-                }
-                // What it shows would be taken for a force that still acts.
-                if let Some(mut readout) = element.get_mut::<SpringReadout>() {
-                    *readout = SpringReadout::default();
-                }
-            });
+    let Some(fault) = news else {
+        commands.entity(row.entity).try_remove::<SpringFault>();
+        return;
+    };
+    let fault = SpringFault {
+        entity: row.entity,
+        field: fault.field.into(),
+        reason: fault.reason.into(),
+    };
+    let ends = row.rare.ties.ends;
+    let stays = match row.trouble.lasting() {
+        Some(_) => Stays::UntilMended,
+        None => Stays::ForNow,
+    };
+    let mut element = commands.entity(row.entity);
+    element.queue_silenced(move |mut element: EntityWorldMut| {
+        say(&mut element, fault, stays);
+        // An end that went is looked for by its name again.
+        let is_gone = |end| element.world().get_entity(end).is_err();
+        if stays == Stays::UntilMended
+            && element.contains::<EndNames>()
+            && ends.into_iter().any(is_gone)
+        {
+            element.insert(AwaitsEnds);
         }
-        None => {
-            commands.entity(row.entity).try_remove::<SpringFault>();
-        }
+    });
+}
+
+/// Names in one message.
+const MOST_NAMED: usize = 3;
+
+/// Says of elements that they are too stiff to be followed: one message for all that were found in a step.
+pub(crate) fn report_unresolved(elements: Vec<Entity>, commands: &mut Commands) {
+    if elements.is_empty() {
+        return;
     }
+    commands.queue(move |world: &mut World| {
+        let named = elements.iter().take(MOST_NAMED);
+        let named = named.map(|entity| match world.get::<Name>(*entity) {
+            Some(name) => format!("{name} ({entity})"),
+            None => entity.to_string(),
+        });
+        let mut who = named.collect::<Vec<_>>().join(", ");
+        if let Some(others) = elements.len().checked_sub(MOST_NAMED).filter(|n| *n > 0) {
+            who += &format!(" and {others} others");
+        }
+        log::info!(
+            "bevy_coilover: {who}: too stiff for the vibration to be followed (SpringReadout::omega_dt, microsteps). It stays stable, \
+             at a wrong frequency. Use less stiffness, more mass, or a larger CoiloverSettings::resolve (where contacts or \
+             joints hold a body, max_substeps)"
+        );
+    });
 }

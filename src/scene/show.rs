@@ -5,7 +5,7 @@ use crate::element::{Spring, SpringDamper, SpringTuning, TorsionSpring, TorsionS
 use crate::input::parts::{Acts, IsElement};
 use crate::readout::SpringReadout;
 use crate::scene::observe::share_of;
-use crate::scene::report::report;
+use crate::scene::report::{report, report_unresolved};
 use crate::scene::rows::{ElementFlags, ElementRow, take};
 use crate::scene::state::Scene;
 use crate::threads;
@@ -15,6 +15,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 /// What was found of an element and is to be written into its components.
 const FOUND: ElementFlags = ElementFlags::TUNED.union(ElementFlags::CAPTURED);
+
+/// ω·dt of a micro-step beyond which an element's own vibration is not followed, rad: the closed form turns by half a
+/// period there. Pinned by `what_cannot_be_followed_is_told_once`.
+const UNRESOLVED: f32 = 2.0;
 
 /// What a captured rest length or angle is written into.
 pub(crate) type Springs<'a> = (
@@ -40,11 +44,17 @@ impl Scene {
         let seen = self.show_in_order(readouts);
         let (bodies, stepped) = (&self.bodies, &self.stepped);
         if seen.has_news {
+            let mut unresolved = vec![];
             for row in &mut self.elements {
                 if row.is_seen(bodies, stepped) {
                     row.tell(springs, commands);
+                    if row.is_unresolved_news(&row.read_out(time)) {
+                        row.flags.insert(ElementFlags::TOLD_UNRESOLVED);
+                        unresolved.push(row.entity);
+                    }
                 }
             }
+            report_unresolved(unresolved, commands);
         }
         if seen.is_incomplete {
             let seen = |row: &&ElementRow| row.is_seen(bodies, stepped);
@@ -88,7 +98,7 @@ impl Scene {
                         if *readout != new {
                             (*readout, *tick) = (new, now);
                         }
-                        if row.has_news() {
+                        if row.has_news() || row.is_unresolved_news(&new) {
                             has_news.store(true, Ordering::Relaxed);
                         }
                     }
@@ -121,6 +131,12 @@ impl ElementRow {
     #[inline(always)]
     fn has_news(&self) -> bool {
         self.flags.intersects(FOUND) || self.trouble.has_news()
+    }
+
+    /// Whether it is too stiff to be followed, and that was not said before.
+    #[inline(always)]
+    fn is_unresolved_news(&self, readout: &SpringReadout) -> bool {
+        self.solved.unresolved && readout.capped && !self.has(ElementFlags::TOLD_UNRESOLVED)
     }
 
     /// Tells what was found in this tick: faults, captured rest lengths, coefficients that were worked out.
@@ -197,6 +213,9 @@ impl ElementRow {
             readout.omega_dt = single((elastic.stiffness * self.inverse_mass).sqrt() * time);
             readout.effective_mass = self.inverse_mass.recip() as f32;
             readout.note(&self.solved);
+            if self.solved.unresolved {
+                readout.capped |= readout.omega_dt > UNRESOLVED * readout.microsteps as f32;
+            }
         }
         readout
     }

@@ -16,7 +16,7 @@ struct Collector;
 
 impl log::Log for Collector {
     fn enabled(&self, metadata: &log::Metadata) -> bool {
-        metadata.level() <= log::Level::Warn
+        metadata.level() <= log::Level::Info
     }
 
     fn log(&self, record: &log::Record) {
@@ -35,7 +35,7 @@ impl Log {
     pub fn capture() -> Self {
         // The first test installs it; the others find it there.
         let _ = log::set_logger(&Collector);
-        log::set_max_level(log::LevelFilter::Warn);
+        log::set_max_level(log::LevelFilter::Info);
         MESSAGES.take();
         Self
     }
@@ -179,4 +179,83 @@ fn an_element_with_a_name_is_told_by_it() {
     let told = log.take();
     assert_eq!(told.len(), 1, "{told:?}");
     assert!(told[0].starts_with("Left rear, ") && told[0].contains("Spring::stiffness is NaN"));
+}
+
+/// A body pulled by a spring of so many radians a step, and one pulled by a soft one.
+fn stiff_and_soft(plugin: CoiloverPlugin, omega_dt: f32) -> (Lab, [Entity; 2]) {
+    let mut lab = Lab::with(plugin, Engine::default());
+    let springs = [omega_dt, 0.5].map(|omega_dt| {
+        let hook = lab.point(Vec3::ZERO);
+        let body = lab.body(1.0, Vec3::X * 1.01);
+        let omega = omega_dt / DT;
+        lab.spawn(
+            Spring::new(hook, body)
+                .with_stiffness(omega * omega)
+                .with_rest_length(1.0),
+        )
+    });
+    (lab, springs)
+}
+
+#[test]
+fn what_cannot_be_followed_is_told_once() {
+    let log = Log::capture();
+    // Up to 32 micro-steps are taken of each spring's own, which is enough up to ω·dt of 64.
+    let (mut lab, [stiff, soft]) = stiff_and_soft(CoiloverPlugin::default(), 100.0);
+    lab.run(0.5);
+    let told = log.take();
+    assert_eq!(told.len(), 1, "{told:?}");
+    assert!(told[0].contains(&stiff.to_string()) && told[0].contains("too stiff"));
+    assert!(!told[0].contains(&soft.to_string()), "{told:?}");
+    assert!(lab.readout(stiff).capped && !lab.readout(soft).capped);
+
+    let (mut lab, springs) = stiff_and_soft(CoiloverPlugin::default(), 50.0);
+    lab.run(0.5);
+    assert_eq!(log.take(), Vec::<String>::new());
+    assert!(springs.iter().all(|spring| !lab.readout(*spring).capped));
+    // Whoever asks for just so many has them.
+    let exactly = CoiloverPlugin::default().with_microsteps(2);
+    let (mut lab, [stiff, _]) = stiff_and_soft(exactly, 100.0);
+    lab.run(0.5);
+    assert_eq!(log.take(), Vec::<String>::new());
+    assert!(!lab.readout(stiff).capped);
+}
+
+#[test]
+fn a_network_beyond_its_budget_is_told_in_one_message() {
+    let chain = |resolve| {
+        let plugin = CoiloverPlugin::default().with_resolve(resolve);
+        let mut lab = Lab::with(plugin, Engine::default());
+        let mut last = lab.point(Vec3::ZERO);
+        let mut springs = vec![];
+        for link in 1..=5 {
+            let next = lab.body(1.0, Vec3::X * link as f32);
+            let omega = 20.0 / DT;
+            let spring = Spring::new(last, next).with_stiffness(omega * omega);
+            springs.push(lab.spawn(spring.with_rest_length(1.0)));
+            last = next;
+        }
+        (lab, springs)
+    };
+    let log = Log::capture();
+    let (mut lab, springs) = chain(10);
+    lab.run(0.5);
+    let told = log.take();
+    assert_eq!(told.len(), 1, "{told:?}");
+    assert!(told[0].contains("and 2 others"), "{told:?}");
+    assert!(springs.iter().all(|spring| lab.readout(*spring).capped));
+    // Later ones are told on their own.
+    let hook = lab.point(Vec3::Y);
+    let body = lab.body(1.0, Vec3::new(1.01, 1.0, 0.0));
+    let stiff = Spring::new(hook, body).with_stiffness(1e9);
+    let late = lab.spawn(stiff.with_rest_length(1.0));
+    lab.run(0.5);
+    let told = log.take();
+    assert_eq!(told.len(), 1, "{told:?}");
+    assert!(told[0].contains(&late.to_string()), "{told:?}");
+
+    let (mut lab, springs) = chain(1024);
+    lab.run(0.5);
+    assert_eq!(log.take(), Vec::<String>::new());
+    assert!(springs.iter().all(|spring| !lab.readout(*spring).capped));
 }

@@ -6,6 +6,7 @@
 use crate::backend::rapier::forces::SpringLoad;
 use crate::compat::{Inserted, Removed};
 use crate::element::*;
+use crate::input::lists::{with_companions, with_elements};
 use crate::scene::state::Scene;
 use bevy::ecs::entity::EntityHashSet;
 use bevy::ecs::entity_disabling::Disabled;
@@ -38,13 +39,11 @@ impl Watch<'_, '_> {
 
 /// Makes an app notice what comes and goes.
 pub(crate) fn watch(app: &mut App) {
+    macro_rules! elements {
+        ($($element:ident),*) => {$(lost::<$element>(app);)*};
+    }
     // One that was not known comes into the count of elements, or is looked for in every tick.
-    lost::<Spring>(app);
-    lost::<Damper>(app);
-    lost::<SpringDamper>(app);
-    lost::<TorsionSpring>(app);
-    lost::<TorsionDamper>(app);
-    lost::<TorsionSpringDamper>(app);
+    with_elements!(elements);
     lost::<Anchors>(app);
     lost::<RapierRigidBodyHandle>(app);
     lost::<RapierContextEntityLink>(app);
@@ -52,15 +51,10 @@ pub(crate) fn watch(app: &mut App) {
     lost::<Disabled>(app);
     unloaded::<SpringLoad>(app);
     unloaded::<ExternalForce>(app);
-    left::<SpringLaw>(app);
-    left::<CustomSpringLaw>(app);
-    left::<DampingLaw>(app);
-    left::<CustomDampingLaw>(app);
-    left::<SpringAction>(app);
-    left::<SpringTravel>(app);
-    left::<Preload>(app);
-    left::<MaxForce>(app);
-    left::<SpringAxis>(app);
+    macro_rules! companions {
+        ([$($law:ident: $kind:ident),*] $others:tt) => {$(left::<$kind>(app);)*};
+    }
+    with_companions!(companions);
     came::<RapierRigidBodyHandle>(app);
     came::<RapierContextEntityLink>(app);
     came::<RigidBodyDisabled>(app);

@@ -15,8 +15,11 @@ impl Motion for Model {
     fn load(&mut self, slot: usize) {
         self.now = self.slots[slot];
     }
-    fn least(&mut self, _: f64, _: u32) -> u32 {
-        1
+    fn least(&mut self, _: f64, _: u32) -> Least {
+        Least {
+            count: 1,
+            suffice: true,
+        }
     }
     fn run(&mut self, time: f64, count: u32) {
         let n = f64::from(count);

@@ -57,6 +57,8 @@ pub(crate) struct Solved {
     pub method: Method,
     /// A cap kept the step from being as fine or as exact as was asked.
     pub capped: bool,
+    /// A motion of what it was solved with was to be followed, and more micro-steps would have been needed than may be.
+    pub unresolved: bool,
 }
 
 impl From<Outcome> for Solved {
@@ -66,6 +68,7 @@ impl From<Outcome> for Solved {
             error: outcome.error.unwrap_or(0.0) as f32,
             method: outcome.method,
             capped: outcome.capped,
+            unresolved: outcome.unresolved,
         }
     }
 }

@@ -30,6 +30,8 @@ bitflags! {
         const HELD = 1 << 10;
         /// It was found asleep, and nothing but its bodies can wake it.
         const DOZES = 1 << 11;
+        /// It was said that it is too stiff to be followed.
+        const TOLD_UNRESOLVED = 1 << 12;
         /// What a snapshot keeps; the rest is found anew.
         const KEPT = Self::CHANGED.bits() | Self::REFITTED.bits() | Self::CAPTURED.bits()
             | Self::TUNED.bits() | Self::TUNED_AGAIN.bits() | Self::ACTIVE.bits();

@@ -45,8 +45,8 @@ pub(crate) fn verdict(now: &Snapshot, facts: &Facts) -> Vec<Sentence> {
     if facts.readout.capped {
         out.push(say(
             Tone::Warning,
-            "A cap of CoiloverSettings kept the last step from being finer: raise max_microsteps, max_iterations or \
-             max_substeps.",
+            "A cap of CoiloverSettings kept the last step from being finer: raise max_microsteps, max_iterations, \
+             max_substeps or resolve.",
         ));
     }
     out.extend(damped(now, facts));

@@ -101,6 +101,8 @@ impl Kept {
             if let Some(before) = before.remove(&kept.entity) {
                 // What has been said of it is not said again.
                 row.trouble = before.trouble;
+                row.flags
+                    .insert(before.flags & ElementFlags::TOLD_UNRESOLVED);
             }
             kept.memory.put(&mut row);
             scene.row_of.insert(kept.entity, index as u32);
