@@ -3,10 +3,32 @@
 use bevy::prelude::*;
 use std::ops::Range;
 
-/// Every third of the seeds, as a searching test takes them, or all with `COILOVER_SEEDS=all`.
-pub fn seeds(all: Range<u64>) -> Vec<u64> {
+/// What a searching test leaves out: it takes every so many of its cases, and of their time; all with `COILOVER_SEEDS=all`.
+fn each() -> usize {
     let all_of_them = std::env::var_os("COILOVER_SEEDS").is_some_and(|v| v == "all");
-    all.step_by(if all_of_them { 1 } else { 3 }).collect()
+    if all_of_them { 1 } else { 3 }
+}
+
+/// Seeds that a searching test takes.
+pub fn seeds(all: Range<u64>) -> Vec<u64> {
+    some(all)
+}
+
+/// Cases that a searching test takes: the first, the fourth and so on.
+pub fn some<T>(all: impl IntoIterator<Item = T>) -> Vec<T> {
+    all.into_iter().step_by(each()).collect()
+}
+
+/// Seconds that a searching test watches a scene which it would watch for so many.
+pub fn span(seconds: f64) -> f64 {
+    seconds / each() as f64
+}
+
+/// Of cases in every one of three ways, each in one of them, and all ways in turn.
+pub fn in_turn<T>(all: Vec<T>) -> Vec<T> {
+    let ways = each();
+    let taken = |(index, case)| (index % ways == index / ways % ways).then_some(case);
+    all.into_iter().enumerate().filter_map(taken).collect()
 }
 
 /// A small generator of our own, so that a scene is the same everywhere (SplitMix64).

@@ -1,10 +1,10 @@
 //! A white sheet of two metres, seen straight on, and where on it something is drawn.
 
-use crate::offscreen;
 use bevy::core_pipeline::tonemapping::Tonemapping;
 use bevy::image::Image;
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
+use stage::offscreen;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// Software adapters are slow, and one renderer has all their threads.

@@ -5,9 +5,6 @@
 
 mod batches;
 mod canvas;
-#[allow(dead_code, reason = "the examples use more of it")]
-#[path = "../../examples/stage/offscreen.rs"]
-mod offscreen;
 mod sight;
 mod spiral;
 mod wire;

@@ -1,6 +1,7 @@
 //! A torsion element on a body that hangs on a ball joint and spins off its axis.
 
 use super::stand::*;
+use crate::dice::span;
 use crate::harness::*;
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
@@ -50,7 +51,7 @@ fn limb(plugin: CoiloverPlugin, phase: f32, zeta: f32, weight: bool, inertia: Ve
     };
     let first = energy(&lab);
     let mut most = 0.0_f64;
-    for _ in 0..lab.ticks(20.0) {
+    for _ in 0..lab.ticks(span(20.0)) {
         lab.tick();
         most = most.max(energy(&lab));
     }

@@ -1,7 +1,7 @@
 //! Light bodies that springs and stops drive as fast as the engine lets anything fly or spin: what the engine cuts
 //! off never comes back as energy.
 
-use crate::dice::{Dice, seeds};
+use crate::dice::{Dice, seeds, span};
 use crate::harness::*;
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
@@ -118,7 +118,7 @@ fn what_spins_as_fast_as_it_may_wins_no_energy() {
         let mut most = 0.0_f64;
         for seed in seeds(0..24) {
             let tangle = Tangle::new(seed, mild(light, 0.2, phase), CoiloverPlugin::default());
-            let [here, _, spin, _] = tangle.let_go(10.0);
+            let [here, _, spin, _] = tangle.let_go(span(10.0));
             most = most.max(here);
             fastest = fastest.max(spin);
         }
@@ -201,7 +201,7 @@ fn a_lone_spring_that_would_fling_its_body_faster_than_it_may_fly_wins_no_energy
                     f64::from(k) * (0.5 * x * x + cubic * x.powi(4))
                 };
                 let first = stored(20.0 + out);
-                for _ in 0..lab.ticks(10.0) {
+                for _ in 0..lab.ticks(span(10.0)) {
                     lab.tick();
                     let speed = lab.get::<Velocity>(ball).linear.length();
                     let motion = 0.5 * f64::from(speed).powi(2);

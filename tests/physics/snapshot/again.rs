@@ -2,6 +2,7 @@
 
 use super::film::*;
 use super::scenes::*;
+use crate::dice::in_turn;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// Ticks until the snapshot, and from there.
@@ -41,7 +42,7 @@ fn what_sleeps_goes_on_sleeping_and_wakes_when_it_did() {
 fn a_scene_goes_back_to_its_first_ticks() {
     // What breaks meanwhile is for the game to spawn again: see `changed`.
     let whole = |(name, ..): &(String, _, _)| !name.starts_with("breaking");
-    for (name, plugin, scene) in all().into_iter().filter(whole) {
+    for (name, plugin, scene) in in_turn(all()).into_iter().filter(whole) {
         for before in [1, 2, 3] {
             let mut film = scene(plugin);
             film.run(before);
@@ -58,7 +59,7 @@ fn a_scene_goes_back_to_its_first_ticks() {
 #[test]
 fn a_scene_that_goes_back_has_the_same_future() {
     let mut failures = Vec::new();
-    for (name, plugin, scene) in all() {
+    for (name, plugin, scene) in in_turn(all()) {
         let run = catch_unwind(AssertUnwindSafe(|| {
             let mut film = scene(plugin);
             go_back(&name, &mut film, BEFORE);

@@ -2,12 +2,13 @@
 
 use super::film::*;
 use super::scenes::*;
+use crate::dice::in_turn;
 use bevy::ecs::schedule::MultiThreadedExecutor;
 use bevy::prelude::*;
 
 #[test]
 fn threads_and_executors_change_no_bit_of_any_scene() {
-    for (name, plugin, scene) in all() {
+    for (name, plugin, scene) in in_turn(all()) {
         let first = scene(plugin).watch(150);
         let mut film = scene(plugin);
         let world = film.lab.app.world_mut();
@@ -23,7 +24,7 @@ fn threads_and_executors_change_no_bit_of_any_scene() {
 fn that_springs_are_drawn_changes_no_bit_of_any_scene() {
     use bevy_coilover::prelude::*;
     IN_ORDER.set(true);
-    for (name, plugin, scene) in all() {
+    for (name, plugin, scene) in in_turn(all()) {
         let first = scene(plugin).watch(100);
         DRAWN.set(true);
         let mut film = scene(plugin);

@@ -2,6 +2,7 @@
 
 use super::film::*;
 use super::scenes::*;
+use crate::dice::in_turn;
 use bevy::ecs::entity::{EntityHashMap, MapEntities};
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
@@ -44,7 +45,7 @@ fn go_on_elsewhere(name: &str, plugin: CoiloverPlugin, scene: Play) {
 #[test]
 fn a_scene_goes_on_in_another_app_as_in_its_own() {
     let mut failures = Vec::new();
-    for (name, plugin, scene) in all() {
+    for (name, plugin, scene) in in_turn(all()) {
         let run = catch_unwind(AssertUnwindSafe(|| go_on_elsewhere(&name, plugin, scene)));
         if let Err(failure) = run {
             let text = failure.downcast_ref::<String>().cloned();

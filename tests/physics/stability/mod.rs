@@ -3,6 +3,7 @@
 mod nets;
 mod statics;
 
+use crate::dice::span;
 use crate::harness::*;
 use bevy::math::DVec3;
 use bevy::prelude::*;
@@ -166,7 +167,7 @@ fn check(net: fn(bool, f32) -> Net, unequal: bool, seconds: f64) {
         let net = net(unequal, phase);
         let least = net.check_rest(phase, 20.0_f64.min(seconds));
         for zeta in [0.0, 0.1] {
-            net.check_energy(phase, zeta, least, seconds);
+            net.check_energy(phase, zeta, least, span(seconds));
         }
     }
 }
