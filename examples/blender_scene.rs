@@ -3,8 +3,6 @@
 //!
 //! Opens a window where there is a display; `--screenshot FILE` and `--headless` do without.
 
-mod stage;
-
 use bevy::asset::handle_internal_asset_events;
 use bevy::gltf::GltfPlugin;
 use bevy::prelude::*;

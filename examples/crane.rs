@@ -6,7 +6,6 @@
 
 #[path = "crane/mod.rs"]
 mod rooms;
-mod stage;
 
 use bevy::prelude::*;
 use stage::{PictureAt, Stage};

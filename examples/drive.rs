@@ -8,7 +8,6 @@
 
 #[path = "drive/mod.rs"]
 mod rooms;
-mod stage;
 
 use bevy::prelude::*;
 use stage::{PictureAt, Stage};

@@ -7,7 +7,6 @@
 
 #[path = "flag/mod.rs"]
 mod rooms;
-mod stage;
 
 use bevy::prelude::*;
 use stage::{PictureAt, Stage};

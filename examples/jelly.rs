@@ -5,7 +5,6 @@
 
 #[path = "jelly/mod.rs"]
 mod rooms;
-mod stage;
 
 use bevy::prelude::*;
 use stage::{PictureAt, Stage};

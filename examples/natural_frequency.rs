@@ -2,8 +2,6 @@
 //!
 //! Opens a window where there is a display; `--screenshot FILE` and `--headless` do without.
 
-mod stage;
-
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;

@@ -4,8 +4,6 @@
 //! At its far end every row has a damper that swallows the wave whole, so nothing comes back.
 //! Opens a window where there is a display; `--screenshot FILE` and `--headless` do without.
 
-mod stage;
-
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;

@@ -8,7 +8,6 @@
 
 #[path = "rope_bridge/mod.rs"]
 mod rooms;
-mod stage;
 
 use bevy::prelude::*;
 use stage::{PictureAt, Stage};

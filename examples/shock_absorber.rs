@@ -5,8 +5,6 @@
 //! Opens a window where there is a display; `--screenshot FILE` and `--headless` do without, and
 //! `--plot FILE` writes force over velocity as a PNG.
 
-mod stage;
-
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;

@@ -3,8 +3,6 @@
 //! Opens a window where there is a display, otherwise renders frames to PNG where any Vulkan adapter
 //! exists, otherwise prints the read-outs; `--headless`, `--screenshot FILE` and `--frames FOLDER` choose.
 
-mod stage;
-
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;

@@ -2,10 +2,10 @@
 
 use super::frame::Frame;
 use super::{RELEASE, WIND};
-use crate::stage::{Paint, Rope, Shape};
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
+use stage::{Paint, Rope, Shape};
 
 /// Where the arm turns, and how far the cup is from there, m.
 pub const HINGE: Vec3 = Vec3::new(0.0, 0.62, 0.0);

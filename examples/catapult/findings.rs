@@ -3,10 +3,10 @@
 use super::arm::{Arm, INERTIA, LENGTH, MASS, PAD, REST, STIFFNESS, Skein, Winch};
 use super::shot::{Ball, Brick, RADIUS, WALL, WEIGHT};
 use super::{RELEASE, WIND};
-use crate::stage::{DT, Finding};
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
+use stage::{DT, Finding};
 
 const GRAVITY: f32 = 9.81;
 /// Of the ball's middle above the arm's line, m.

@@ -1,9 +1,9 @@
 //! What stands: beams of wood, which nothing collides with.
 
 use super::arm::{HINGE, LENGTH, PAD};
-use crate::stage::{Paint, Shape, floor};
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
+use stage::{Paint, Shape, floor};
 
 /// The one body that the frame is.
 #[derive(Resource)]

@@ -2,9 +2,9 @@
 
 use super::LOAD;
 use super::arm::{Arm, LENGTH};
-use crate::stage::{Paint, Shape};
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
+use stage::{Paint, Shape};
 
 /// kg and m
 pub const WEIGHT: f32 = 2.0;

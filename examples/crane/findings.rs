@@ -1,10 +1,10 @@
 //! Forces against weights, the winch's work against the height that it gave, and the swing against theory.
 
 use super::load::*;
-use crate::stage::{DT, Finding};
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
+use stage::{DT, Finding};
 use std::f32::consts::TAU;
 
 /// When forces are taken, s: while it stands, while it hangs, and when it stands again.

@@ -1,9 +1,9 @@
 //! What hangs: trolley, cables, hook block, slings and crate; and the programme that drives them.
 
-use crate::stage::{Paint, Rope, Shape};
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
+use stage::{Paint, Rope, Shape};
 
 pub const GRAVITY: f32 = 9.81;
 /// Of the jib above the ground, and of the places where the crate is set down from the middle, m.

@@ -4,10 +4,10 @@ mod findings;
 mod load;
 mod steel;
 
-use crate::stage::{self, Begin, Lasting};
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
+use stage::{self, Begin, Lasting};
 
 pub use findings::check;
 

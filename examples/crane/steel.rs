@@ -1,9 +1,9 @@
 //! What stands: ground, mast and jib, of bars.
 
 use super::load::{JIB, REACH};
-use crate::stage::{Paint, Shape};
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
+use stage::{Paint, Shape};
 
 /// Of the mast from the middle of the picture, m.
 const MAST: f32 = -5.6;

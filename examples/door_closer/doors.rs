@@ -1,9 +1,9 @@
 //! A wall with two doors.
 
-use crate::stage::{Paint, Shape, Track, floor};
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
+use stage::{Paint, Shape, Track, floor};
 use std::f32::consts::TAU;
 
 /// Of a door, kg and m.

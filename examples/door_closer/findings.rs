@@ -2,9 +2,9 @@
 
 use super::doors::{CLOSER, Closer, HANDLE, SIZE, SWING};
 use super::person::PUSHES;
-use crate::stage::{Finding, tracks};
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
+use stage::{Finding, tracks};
 use std::f32::consts::PI;
 
 /// Just before the door meets its frame, rad.

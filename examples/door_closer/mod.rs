@@ -4,9 +4,9 @@ mod doors;
 mod findings;
 mod person;
 
-use crate::stage::{self, Begin};
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
+use stage::{self, Begin};
 
 pub use findings::check;
 

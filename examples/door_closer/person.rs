@@ -1,9 +1,9 @@
 //! Who goes through the doors: a figure without a body, and the force of its hand.
 
 use super::doors::{Door, HANDLE};
-use crate::stage::{Paint, Shape};
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
+use stage::{Paint, Shape};
 use std::f32::consts::PI;
 
 /// Of a step, m.

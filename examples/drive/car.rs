@@ -3,10 +3,10 @@
 //! them is what a bar is that is fixed to both: it twists when one wheel is higher than the other.
 
 use super::tyre::Tyre;
-use crate::stage::{self, Paint, Shape};
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
+use stage::{self, Paint, Shape};
 use std::f32::consts::TAU;
 
 pub const CHASSIS: f32 = 1_200.0;

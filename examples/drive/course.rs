@@ -4,9 +4,9 @@
 //! stops a fast body in front of every edge that it comes near, also of an inner edge of a smooth road. A mesh of triangles
 //! or a row of small pieces stops this car, or throws it.
 
-use crate::stage::{Paint, Shape};
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
+use stage::{Paint, Shape};
 use std::f32::consts::TAU;
 
 /// What the road collides with is the car, and the car with the road.

@@ -2,9 +2,9 @@
 
 use super::car::{Chassis, HALF_BASE};
 use super::course;
-use crate::stage::DT;
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
+use stage::DT;
 use std::f32::consts::TAU;
 
 /// What engine, brakes and front wheels are told.

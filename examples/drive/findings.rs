@@ -5,8 +5,8 @@ use super::course;
 use super::driver::{CIRCLE, CORNER_SPEED, FAST, Leg, SLOW};
 use super::log::{Log, Sample};
 use super::tyre::load_at_rest;
-use crate::stage::{DT, Finding};
 use bevy::prelude::*;
+use stage::{DT, Finding};
 use std::f32::consts::TAU;
 
 /// Mean of something; not a number of nothing.

@@ -2,9 +2,9 @@
 
 use super::car::Chassis;
 use super::driver::Pedals;
-use crate::stage::{Again, DT};
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
+use stage::{Again, DT};
 
 /// How fast keys turn the front wheels, rad/s, and their greatest angle, rad.
 const TURN: f32 = 1.4;

@@ -12,10 +12,10 @@ mod tyre;
 pub use camera::EYE;
 pub use findings::check;
 
-use crate::stage::{self, Begin};
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
+use stage::{self, Begin};
 
 /// Seconds that the script takes.
 pub const SECONDS: f32 = 78.0;

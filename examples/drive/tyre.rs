@@ -11,10 +11,10 @@
 
 use super::car::*;
 use super::driver::Pedals;
-use crate::stage::DT;
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
+use stage::DT;
 
 /// Of the tread against the road, N/m and N s/m.
 const TREAD: f32 = 150e3;

@@ -1,9 +1,9 @@
 //! Points and threads.
 
-use crate::stage::{Paint, Shape, Skin, Vertex, floor};
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
+use stage::{Paint, Shape, Skin, Vertex, floor};
 use std::collections::HashSet;
 
 /// Points along the flag and down it, and from point to point, m.

@@ -2,10 +2,10 @@
 
 use super::cloth::{MASS, Point, Thread};
 use super::{GUST, SECONDS};
-use crate::stage::{DT, Finding};
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
+use stage::{DT, Finding};
 
 const GRAVITY: f32 = 9.81;
 /// The mean is taken between these, s, before the gust and after it.

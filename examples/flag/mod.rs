@@ -5,10 +5,10 @@ mod findings;
 mod tear;
 mod wind;
 
-use crate::stage::{Begin, fresh};
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
+use stage::{Begin, fresh};
 
 pub use findings::check;
 

@@ -2,9 +2,9 @@
 
 use super::cloth::{Flag, Point, Thread, edges_of, triangles};
 use super::findings::Seen;
-use crate::stage::Skin;
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
+use stage::Skin;
 use std::collections::HashSet;
 
 /// Further than this from the pole, or lower, m, nothing is kept.

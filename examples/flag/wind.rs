@@ -3,9 +3,9 @@
 use super::GUST;
 use super::cloth::{Flag, MASS, Point};
 use super::findings::Seen;
-use crate::stage::DT;
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
+use stage::DT;
 
 /// kg/m³
 const AIR: f32 = 1.2;

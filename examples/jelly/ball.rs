@@ -2,9 +2,9 @@
 
 use super::BALL;
 use super::lattice::Point;
-use crate::stage::{Paint, Shape};
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
+use stage::{Paint, Shape};
 
 /// kg and m
 pub const WEIGHT: f32 = 3.0;

@@ -4,11 +4,11 @@ use super::ball::{self, Ball, WEIGHT};
 use super::lattice::{Jelly, Link, MASS, Point, RADIUS};
 use super::statics::rest;
 use super::{BALL, SECONDS};
-use crate::stage::{DT, Finding};
 use bevy::math::DVec3;
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
+use stage::{DT, Finding};
 
 const GRAVITY: f32 = 9.81;
 /// The first free fall ends after this, s.

@@ -1,10 +1,10 @@
 //! Points and springs.
 
 use super::skin::skin;
-use crate::stage::{Paint, Shape};
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
+use stage::{Paint, Shape};
 use std::f32::consts::FRAC_PI_4;
 
 /// Points along an edge, and from point to point, m.

@@ -6,10 +6,10 @@ mod lattice;
 mod skin;
 mod statics;
 
-use crate::stage::{Begin, fresh};
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
+use stage::{Begin, fresh};
 
 pub use findings::check;
 

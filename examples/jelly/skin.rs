@@ -1,8 +1,8 @@
 //! A surface about the lattice: as far from the points' hull as the balls reach that they are to what they touch.
 
 use super::lattice::{PITCH, RADIUS, SIDE, all, index};
-use crate::stage::{Paint, Skin, Vertex};
 use bevy::prelude::*;
+use stage::{Paint, Skin, Vertex};
 use std::collections::HashMap;
 
 /// Parts of a cell's edge.

@@ -1,9 +1,9 @@
 //! The bridge: planks on two ropes that are tied to their corners, and a rope for each hand, which hangs above them.
 
-use crate::stage::{Paint, Rope, Shape};
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
+use stage::{Paint, Rope, Shape};
 
 pub const GRAVITY: f32 = 9.81;
 pub const PLANKS: usize = 20;

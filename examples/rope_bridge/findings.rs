@@ -2,10 +2,10 @@
 
 use super::bridge::*;
 use super::walker::{FOOT, HALF, MASS, QUARTER, ROUND, Walker};
-use crate::stage::{DT, Finding};
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
+use stage::{DT, Finding};
 
 /// Where the walker stands, with the seconds over which means are taken.
 const MIDDLE: [f32; 2] = [20.0, 22.0];

@@ -6,10 +6,10 @@ mod walker;
 
 pub use findings::check;
 
-use crate::stage::{self, Begin, Lasting};
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
+use stage::{self, Begin, Lasting};
 
 /// Seconds of one way over the bridge, with all its stops.
 pub const SECONDS: f32 = walker::ROUND;

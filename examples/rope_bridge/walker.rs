@@ -2,10 +2,10 @@
 //! so its weight is given to the planks as a force at its feet.
 
 use super::bridge::{EDGE, GRAVITY, GROUND, Plank, SIZE};
-use crate::stage::{DT, Paint, Shape};
 use bevy::prelude::*;
 use bevy_rapier3d::control::CharacterLength;
 use bevy_rapier3d::prelude::*;
+use stage::{DT, Paint, Shape};
 use std::f32::consts::PI;
 
 /// kg

@@ -4,7 +4,6 @@
 //! A scene is a [`Stage`]: a `setup` that adds systems (spawn in [`Begin`], which runs again whenever the scene
 //! starts again; give bodies a [`Shape`], and elements to be measured a [`Track`]), and a `check` that returns
 //! [`Finding`]s. `main` returns `stage::run(&Stage { .. })`, whose exit code says whether all findings are good.
-#![allow(dead_code, unused_imports, reason = "no example uses everything")]
 
 mod again;
 mod check;
@@ -14,7 +13,7 @@ mod keys;
 mod living;
 mod look;
 mod means;
-mod offscreen;
+pub mod offscreen;
 mod orbit;
 mod plain;
 mod plot;
