@@ -46,7 +46,7 @@ impl Excited {
         time: f64,
         [least, all]: [u32; 2],
     ) -> u32 {
-        if all < WORTH.max(4 * least) {
+        if all < WORTH.max(least.saturating_mul(4)) {
             motion.run(time, all);
             return all;
         }
@@ -60,7 +60,7 @@ impl Excited {
         motion.save(0);
         motion.run(time, count);
         // Beyond, all of them at once are no dearer.
-        while 4 * count <= all {
+        while count.saturating_mul(4) <= all {
             motion.save(1);
             motion.load(0);
             motion.run(time, 2 * count);

@@ -256,6 +256,11 @@ impl Network {
         self.trial = moved;
     }
 
+    /// Has the next iterations start from nothing.
+    pub(super) fn forget_solution(&mut self) {
+        self.acceleration = Twists::default();
+    }
+
     /// What iterations of the next solve start from, if it goes by iterations.
     pub(super) fn start(&self) -> Option<&Twists> {
         (!self.system.is_dense()).then_some(&self.acceleration)

@@ -86,7 +86,7 @@ impl<'a> NonlinearPair<'a> {
     }
 
     /// Whether a step resolves the stiffness wherever the present energy can take the motion: going to and
-    /// fro between the two predicted_travel of stepping would heap up the sway of the one.
+    /// fro between the two ways of stepping would heap up the sway of the one.
     fn is_resolved_in_reach(&self, step: f64) -> bool {
         let (law, pair, rest) = (self.law, self.pair, self.rest_length());
         let weight = pair.inverse_mass * step * step;

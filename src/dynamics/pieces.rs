@@ -169,7 +169,7 @@ impl Pieces {
                 (f64::min as fn(f64, f64) -> f64, -1.0)
             };
             let mut way = reach.way.map(|length| beside(length, kink));
-            if way[0] == way[1] {
+            if way == [kink; 2] {
                 way = [kink, kink + beyond * BESIDE * reach.change];
             }
             let mut tangent = Tangent::chord(&spring, way);
@@ -320,6 +320,21 @@ mod tests {
             let stored = way.map(|length| law.elastic(length, 1.0).energy);
             let missed = pieces.work(way) - (stored[1] - stored[0]);
             assert!(missed.abs() < 1e-9, "{way:?}: {missed}");
+        }
+    }
+
+    #[test]
+    fn at_rest_it_gives_what_a_bent_law_gives_there() {
+        let mut recipe = recipe([f64::NEG_INFINITY, f64::INFINITY]);
+        recipe.spring = SpringForce::Polynomial {
+            pull: [100.0, 0.0, 1e4],
+            push: [50.0, 0.0, 0.0],
+        };
+        let law = Law::new(recipe);
+        for length in [0.9, 1.1, 1.2] {
+            let pieces = Pieces::of(&law, 1.0, reach([length; 2], 0.0));
+            let (given, wanted) = (pieces.tension(length, 0.0), law.elastic(length, 1.0).force);
+            assert!((given - wanted).abs() < 1e-9, "{length}: {given}, {wanted}");
         }
     }
 

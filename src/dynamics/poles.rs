@@ -1,10 +1,11 @@
 //! Poles placed exactly: the numbers that make one drift–kick–drift step of a damped oscillator
 //! decay and turn at precisely the true rate, whatever the step.
 
+use crate::functions::{cos, exp, exp_m1, sin, tanh};
+
 /// Phase per step (radians) up to which the frequency is exact. Not far beyond it the sampled motion
 /// cannot be told from a slower one, so the phase stays there and only the energy is exact: stepped
 /// velocities are then smaller than true ones, and drifts no longer than the motion they belong to.
-use crate::functions::{cos, exp, exp_m1, sin, tanh};
 pub(crate) const RESOLVED_PHASE: f64 = 2.5;
 
 /// Decay exponent per step that is added to motion of unresolved phase. The engine rounds positions to

@@ -286,7 +286,7 @@ impl Controller {
             let plan = Plan::Extrapolated(count).sound(motion, time);
             take(motion, time, plan)
         } else {
-            self.excited.run(motion, time, [asked, count])
+            self.excited.run(motion, time, [asked.min(count), count])
         };
         Outcome {
             microsteps,

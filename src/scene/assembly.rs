@@ -206,6 +206,7 @@ impl Assembly {
         if !self.component.is_finite() {
             self.state = State::Powerless;
             self.component.forget_points();
+            self.component.forget_solutions();
         }
         if carried && !self.component.is_warm {
             self.start.clone_from_slice(self.component.start_bodies());

@@ -133,10 +133,16 @@ impl ElementRow {
         self.flags.intersects(FOUND) || self.trouble.has_news()
     }
 
-    /// Whether it is too stiff to be followed, and that was not said before.
+    /// Whether its own vibration is too fast for the micro-steps that it may have.
+    #[inline(always)]
+    fn is_unresolved(&self, readout: &SpringReadout) -> bool {
+        self.solved.unresolved && readout.omega_dt > UNRESOLVED * readout.microsteps as f32
+    }
+
+    /// Whether it is, and that was not said before.
     #[inline(always)]
     fn is_unresolved_news(&self, readout: &SpringReadout) -> bool {
-        self.solved.unresolved && readout.capped && !self.has(ElementFlags::TOLD_UNRESOLVED)
+        self.is_unresolved(readout) && !self.has(ElementFlags::TOLD_UNRESOLVED)
     }
 
     /// Tells what was found in this tick: faults, captured rest lengths, coefficients that were worked out.
@@ -213,9 +219,7 @@ impl ElementRow {
             readout.omega_dt = single((elastic.stiffness * self.inverse_mass).sqrt() * time);
             readout.effective_mass = self.inverse_mass.recip() as f32;
             readout.note(&self.solved);
-            if self.solved.unresolved {
-                readout.capped |= readout.omega_dt > UNRESOLVED * readout.microsteps as f32;
-            }
+            readout.capped |= self.is_unresolved(&readout);
         }
         readout
     }

@@ -88,6 +88,7 @@ impl Plugin for CoiloverVisualPlugin {
                 PostUpdate,
                 (
                     parts::take_skins,
+                    parts::hide_disabled,
                     parts::build,
                     lay::recall,
                     place::place,

@@ -1,15 +1,18 @@
 //! The drawn children of an element: spawned when its looks appear or change, gone with them.
 
 use super::coil::Coil;
-use super::layout::{Layout, Part};
+use super::layout::{Layout, Part, SHORT};
 use super::place::{Line, Lines, Placement};
 use super::round_wire::RoundWireMaterial;
 use super::shapes::{CoilMeshes, Finish, Shapes};
 use super::skin::SpringSkin;
 use super::telescope::Telescope;
+use super::twist::{Twist, Winding};
 use bevy::asset::{Assets, Handle};
 use bevy::color::Color;
 use bevy::ecs::entity::EntityHashSet;
+use bevy::ecs::entity_disabling::Disabled;
+use bevy::ecs::query::Allow;
 use bevy::ecs::system::SystemParam;
 use bevy::mesh::{Mesh, Mesh3d};
 use bevy::pbr::{MeshMaterial3d, StandardMaterial};
@@ -113,6 +116,7 @@ pub(super) fn build(
     changed_telescopes: Query<Entity, Changed<Telescope>>,
     mut no_coil: RemovedComponents<Coil>,
     mut no_telescope: RemovedComponents<Telescope>,
+    mut enabled: RemovedComponents<Disabled>,
     mut looks: Query<(Line, Option<&Coil>, Option<&Telescope>, &mut Placement)>,
     lines: Lines,
     mut waiting: Local<EntityHashSet>,
@@ -127,6 +131,8 @@ pub(super) fn build(
     }
     waiting.extend(no_coil.read());
     waiting.extend(no_telescope.read());
+    // Its looks can have changed meanwhile.
+    waiting.extend(enabled.read().filter(|element| looks.contains(*element)));
     waiting.retain(|&element| {
         let Ok((line, coil, telescope, mut placement)) = looks.get_mut(element) else {
             // Despawned, and its children with it.
@@ -135,7 +141,9 @@ pub(super) fn build(
         // Lengths may follow from how far apart the ends are, so they must be there.
         let length = lines.ends(&line).map(|ends| ends.from.distance(ends.to));
         let bare = coil.is_none() && telescope.is_none();
-        let Some(length) = length.filter(|l| l.is_finite()).or(bare.then_some(0.0)) else {
+        // Ends that coincide say nothing of sizes, unless these are known.
+        let tells = |length: &f32| length.is_finite() && (*length > SHORT || placement.is_drawn());
+        let Some(length) = length.filter(tells).or(bare.then_some(0.0)) else {
             return true;
         };
         workshop.clear(element);
@@ -155,6 +163,24 @@ pub(super) fn build(
         false
     });
 }
+
+/// Removes what was drawn of elements that were disabled: parts are entities of their own, and would stay as they were.
+pub(super) fn hide_disabled(
+    disabled: Query<&Children, (Added<Disabled>, HasParts, Allow<Disabled>)>,
+    parts: Query<Option<&Part>, Or<(With<Part>, With<Winding>)>>,
+    mut commands: Commands,
+) {
+    for child in disabled.iter().flatten() {
+        if let Ok(part) = parts.get(*child)
+            && !matches!(part, Some(Part::Custom(_)))
+        {
+            commands.entity(*child).despawn();
+        }
+    }
+}
+
+/// An element that has parts.
+type HasParts = Or<(With<Placement>, With<Twist>)>;
 
 /// Takes up what users bring along for an element.
 pub(super) fn take_skins(

@@ -91,6 +91,11 @@ impl Placement {
         self.recall();
     }
 
+    /// Whether it has been drawn before, so that its sizes are known.
+    pub(super) fn is_drawn(&self) -> bool {
+        self.first.is_some()
+    }
+
     /// Length when first drawn, m: this one, if that is now.
     pub(super) fn first(&mut self, length: f32) -> f32 {
         *self.first.get_or_insert(length.max(SHORT))

@@ -4,7 +4,7 @@ use super::coil::Coil;
 use super::helix::{Handedness, Helix, HelixEnds, HelixMeshBuilder};
 use super::round_wire::{RoundWire, RoundWireMaterial};
 use bevy::asset::{Assets, Handle};
-use bevy::color::{Color, ColorToPacked, LinearRgba};
+use bevy::color::{Color, LinearRgba};
 use bevy::mesh::{Mesh, MeshBuilder, Meshable};
 use bevy::pbr::StandardMaterial;
 use bevy::platform::collections::HashMap;
@@ -21,7 +21,8 @@ pub(super) type CoilMeshes = Arc<[Handle<Mesh>; DETAIL.len()]>;
 
 /// Everything of a coil but its length and paint.
 type CoilKey = ([u32; 3], HelixEnds, Handedness);
-type Packed = [u8; 4];
+/// A colour, bit by bit: colours brighter than white are not cut off.
+type Packed = [u32; 4];
 
 /// How a surface takes light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -45,6 +46,11 @@ impl Finish {
             metallic,
             perceptual_roughness,
             reflectance,
+            alpha_mode: if color.alpha() < 1.0 {
+                AlphaMode::Blend
+            } else {
+                AlphaMode::Opaque
+            },
             ..default()
         }
     }
@@ -80,6 +86,10 @@ fn key(coil: &Coil) -> CoilKey {
     (sizes, coil.ends, coil.handedness)
 }
 
+fn packed(color: Color) -> Packed {
+    LinearRgba::from(color).to_f32_array().map(f32::to_bits)
+}
+
 /// A coil as it is drawn: one metre high, so that the scale along its axis is its length.
 fn unit(coil: &Coil) -> Helix {
     coil.helix(1.0)
@@ -112,7 +122,7 @@ impl Shapes {
         materials: &mut Assets<RoundWireMaterial>,
     ) -> Handle<RoundWireMaterial> {
         self.wires
-            .entry((key(coil), LinearRgba::from(coil.color).to_u8_array()))
+            .entry((key(coil), packed(coil.color)))
             .or_insert_with(|| {
                 materials.add(RoundWireMaterial {
                     base: Finish::Enamel.material(coil.color),
@@ -128,8 +138,9 @@ impl Shapes {
         finish: Finish,
         materials: &mut Assets<StandardMaterial>,
     ) -> Handle<StandardMaterial> {
+        self.forget_unused();
         self.paints
-            .entry((LinearRgba::from(color).to_u8_array(), finish))
+            .entry((packed(color), finish))
             .or_insert_with(|| materials.add(finish.material(color)))
             .clone()
     }
@@ -163,5 +174,26 @@ impl Shapes {
         self.wires.retain(|_, material| is_used(material));
         self.paints.retain(|_, material| is_used(material));
         self.room = KEPT.max(2 * (self.coils.len() + self.wires.len() + self.paints.len()));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn paints_are_as_bright_and_as_clear_as_asked_and_old_ones_go() {
+        let (mut shapes, mut materials) = (Shapes::default(), Assets::default());
+        let mut paint = |color| shapes.paint(color, Finish::Enamel, &mut materials);
+        let glowing = paint(Color::linear_rgb(10.0, 2.0, 2.0));
+        assert_ne!(glowing, paint(Color::linear_rgb(1.0, 1.0, 1.0)));
+        let clear = paint(Color::srgba(1.0, 0.0, 0.0, 0.3));
+        for step in 0..1000 {
+            paint(Color::srgb(step as f32 / 1000.0, 0.0, 0.0));
+        }
+        let mode = |paint| materials.get(paint).map(|material| material.alpha_mode);
+        assert_eq!(mode(&clear), Some(AlphaMode::Blend));
+        assert_eq!(mode(&glowing), Some(AlphaMode::Opaque));
+        assert!(shapes.paints.len() <= KEPT + 2, "{}", shapes.paints.len());
     }
 }

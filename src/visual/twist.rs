@@ -7,6 +7,7 @@ use super::views::{Cameras, Views};
 use crate::element::{TorsionDamper, TorsionSpring, TorsionSpringDamper};
 use crate::readout::SpringReadout;
 use bevy::asset::{Assets, Handle};
+use bevy::ecs::entity_disabling::Disabled;
 use bevy::ecs::query::QueryData;
 use bevy::ecs::system::SystemParam;
 use bevy::math::{Affine3A, Mat3A, Vec3A};
@@ -169,6 +170,7 @@ impl Spirals {
 pub(super) fn wind(
     changed: Query<Entity, Changed<TorsionCoil>>,
     mut removed: RemovedComponents<TorsionCoil>,
+    mut enabled: RemovedComponents<Disabled>,
     mut elements: Query<(Turn, Option<&TorsionCoil>, &mut Twist, Option<&Children>)>,
     windings: Query<(), With<Winding>>,
     turns: Turns,
@@ -181,6 +183,8 @@ pub(super) fn wind(
 ) {
     waiting.extend(&changed);
     waiting.extend(removed.read());
+    // Its looks can have changed meanwhile.
+    waiting.extend(enabled.read().filter(|element| elements.contains(*element)));
     waiting.sort_unstable();
     waiting.dedup();
     waiting.retain(|&element| {

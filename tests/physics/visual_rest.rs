@@ -122,26 +122,79 @@ fn without_an_end_a_coil_stays_and_with_it_back_is_right_again() {
 }
 
 #[test]
-fn what_was_disabled_for_a_while_is_right_when_it_is_enabled() {
-    for of_part in [false, true] {
-        let mut rest = Rest::new();
-        let whose = if of_part { rest.coil } else { rest.element };
-        rest.insert(whose, Disabled);
-        rest.lab.tick();
-        if !of_part {
-            *rest.lab.get_mut::<GlobalTransform>(rest.coil) = GlobalTransform::IDENTITY;
-        }
-        rest.lab.get_mut::<Transform>(rest.b).translation.y = 1.5;
-        rest.lab.run(0.2);
-        if !of_part {
-            rest.lab.get_mut::<Transform>(rest.b).translation.y = 1.0;
-            rest.lab.tick();
-        }
-        rest.remove::<Disabled>(whose);
-        rest.lab.tick();
-        let top = if of_part { 1.5 } else { 1.0 };
-        assert!(rest.goes(Vec3::ZERO, top * Vec3::Y), "of part: {of_part}");
-    }
+fn a_part_that_was_disabled_for_a_while_is_right_when_it_is_enabled() {
+    let mut rest = Rest::new();
+    rest.insert(rest.coil, Disabled);
+    rest.lab.tick();
+    rest.lab.get_mut::<Transform>(rest.b).translation.y = 1.5;
+    rest.lab.run(0.2);
+    rest.remove::<Disabled>(rest.coil);
+    rest.lab.tick();
+    assert!(rest.goes(Vec3::ZERO, 1.5 * Vec3::Y));
+}
+
+#[test]
+fn a_disabled_element_is_not_drawn_and_has_its_new_looks_once_it_is_enabled() {
+    let mut rest = Rest::new();
+    let old = rest.lab.get::<Mesh3d>(rest.coil).clone();
+    rest.insert(rest.element, Disabled);
+    rest.lab.tick();
+    assert_eq!(parts(&rest.lab, rest.element).len(), 0);
+    rest.lab.get_mut::<Coil>(rest.element).turns = 3.0;
+    rest.lab.get_mut::<Transform>(rest.b).translation.y = 1.5;
+    rest.lab.run(0.2);
+    rest.remove::<Disabled>(rest.element);
+    rest.lab.tick();
+    rest.coil = rest.lab.get::<Children>(rest.element)[0];
+    assert!(rest.goes(Vec3::ZERO, 1.5 * Vec3::Y));
+    assert_ne!(*rest.lab.get::<Mesh3d>(rest.coil), old);
+
+    rest.insert(rest.element, Disabled);
+    rest.lab.tick();
+    rest.remove::<Coil>(rest.element);
+    rest.lab.run(0.1);
+    rest.remove::<Disabled>(rest.element);
+    rest.lab.tick();
+    assert_eq!(parts(&rest.lab, rest.element).len(), 0);
+    // One that comes disabled, as from a pool.
+    let look = (Spring::new(rest.a, rest.b), Coil::default(), Disabled);
+    let pooled = rest.lab.spawn(look);
+    rest.lab.run(0.1);
+    assert_eq!(parts(&rest.lab, pooled).len(), 0);
+    rest.remove::<Disabled>(pooled);
+    rest.lab.tick();
+    assert_eq!(parts(&rest.lab, pooled).len(), 1);
+}
+
+#[test]
+fn a_disabled_spiral_is_not_drawn_until_it_is_enabled() {
+    let mut lab = lab();
+    let (a, b) = (lab.point(Vec3::ZERO), lab.point(Vec3::Y));
+    let spring = TorsionSpring::new(a, b, Vec3::Z);
+    let element = lab.spawn((spring, TorsionCoil::default()));
+    lab.run(0.2);
+    let all = parts(&lab, element).len();
+    assert!(all > 0);
+    lab.app.world_mut().entity_mut(element).insert(Disabled);
+    lab.tick();
+    assert_eq!(parts(&lab, element).len(), 0);
+    lab.app.world_mut().entity_mut(element).remove::<Disabled>();
+    lab.run(0.1);
+    assert_eq!(parts(&lab, element).len(), all);
+}
+
+#[test]
+fn sizes_wait_until_the_ends_are_apart() {
+    let mut lab = lab();
+    let (a, b) = (lab.point(Vec3::ZERO), lab.point(Vec3::ZERO));
+    let element = lab.spawn((Damper::new(a, b), Telescope::fitted()));
+    lab.run(0.1);
+    assert_eq!(parts(&lab, element).len(), 0);
+    lab.get_mut::<Transform>(b).translation.y = 1.0;
+    lab.run(0.1);
+    let widths = parts(&lab, element).into_iter().map(|part| part.scale().x);
+    let widest = widths.fold(0.0, f32::max);
+    assert!((0.03..0.1).contains(&widest), "{widest}");
 }
 
 #[test]

@@ -83,7 +83,7 @@ pub(crate) struct Stride {
 
 impl Lanes {
     /// Takes one in. It has a rest length above zero, its step is resolved and no strong damper in it: see
-    /// `Pair::is_plain`.
+    /// `plain_poles`.
     #[inline(always)]
     pub(crate) fn take_in(
         &mut self,

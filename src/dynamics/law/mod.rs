@@ -224,7 +224,8 @@ impl Law {
         let within = x.clamp(self.at_limits[0], self.at_limits[1]);
         let mut spring = self.bare(within);
         if within != x {
-            spring.force = spring.force.clamp(self.limits[0], self.limits[1]);
+            // The force there is the limit but for rounding, and slack is no force at all.
+            spring.force = self.limits[usize::from(x > within)];
             spring.energy += spring.force * (x - within);
             spring.stiffness = 0.0;
         }

@@ -141,3 +141,30 @@ fn ropes_never_push_and_buffers_never_pull() {
         }
     }
 }
+
+#[test]
+fn a_slack_rope_does_not_damp_whatever_its_preload() {
+    for stiffness in [100.0, 700.0, 1300.0] {
+        for preload in (1..50).map(|p| 10.0 * f64::from(p)) {
+            let force = [stiffness, 0.0, 0.0];
+            let rope = Law::new(Recipe {
+                spring: SpringForce::Polynomial {
+                    pull: force,
+                    push: force,
+                },
+                drag: DragLaw::Linear(50.0),
+                preload,
+                limits: [0.0, f64::INFINITY],
+                most: f64::INFINITY,
+                travel: [f64::NEG_INFINITY, f64::INFINITY],
+                stop: Stop::default(),
+            });
+            let slack = 1.0 - preload / stiffness - 0.2;
+            let told = (
+                rope.elastic(slack, 1.0).force,
+                rope.drag(slack, 1.0, 1.0).force,
+            );
+            assert_eq!(told, (0.0, 0.0), "{stiffness} N/m, {preload} N");
+        }
+    }
+}

@@ -46,6 +46,11 @@ impl Points {
         &self.solver.solution
     }
 
+    /// Has them start from nothing.
+    pub(in crate::dynamics) fn forget_solution(&mut self) {
+        self.solver.solution.clear();
+    }
+
     /// Has iterations start there, if that is a place.
     pub(in crate::dynamics) fn start_from(&mut self, solution: &[DVec3]) {
         if solution.iter().all(|x| x.is_finite()) {

@@ -1,5 +1,6 @@
 //! A network of points from step to step, its bodies and elements left aside.
 
+use super::kinks::Kinks;
 use super::{Caution, Component};
 use crate::dynamics::body::Body;
 use crate::dynamics::points::Points;
@@ -20,9 +21,17 @@ impl Component {
     /// Forgets all that it knows of the steps so far: the next one is of something else.
     pub(crate) fn forget(&mut self) {
         self.forget_points();
+        self.forget_solutions();
+        self.memory.kinks = Kinks::default();
         self.memory.bound.forget();
         self.memory.controller = Controller::default();
         self.memory.caution = Caution::default();
+    }
+
+    /// Has iterations start from nothing: from what is no number they would come to none.
+    pub(crate) fn forget_solutions(&mut self) {
+        self.memory.points.forget_solution();
+        self.memory.network.forget_solution();
     }
 
     /// After a step that was [warm](Self::is_warm) to its end: what came of it.

@@ -2,11 +2,9 @@
 
 use super::{Lone, Route, Way};
 use crate::backend::Engine;
-use crate::scene::push::Given;
 use crate::scene::rows::{BodyFlags, BodyRow, ElementRow};
 use crate::scene::sleep::omega_of;
 use crate::scene::step::Step;
-use bevy::math::Vec3;
 use std::sync::atomic::Ordering;
 
 impl Lone {
@@ -41,13 +39,10 @@ impl Lone {
             }
             for (end, body) in ends {
                 let body = &mut bodies[body];
-                body.give_alone(
-                    &way.given[end],
-                    way.second_substep,
-                    restless,
-                    step.tick,
-                    engine,
-                );
+                let push = way.given[end].push(restless, way.second_substep);
+                body.give(&push, step.tick, engine);
+                body.flags.remove(BodyFlags::NOTED);
+                body.flags.insert(BodyFlags::IS_ALONE);
             }
             delivered = true;
         }
@@ -55,33 +50,5 @@ impl Lone {
             step.delivered.store(true, Ordering::Relaxed);
         }
         touch_changed
-    }
-}
-
-impl BodyRow {
-    /// Gives the body what its only element pushes it with over the coming step; `restless`: it has to be kept awake.
-    #[inline(always)]
-    fn give_alone(
-        &mut self,
-        given: &Given,
-        second_substep: bool,
-        restless: bool,
-        tick: u32,
-        engine: &mut impl Engine,
-    ) {
-        let force = if given.force.is_finite() {
-            given.force
-        } else {
-            Vec3::ZERO
-        };
-        let given = Given { force, ..*given };
-        let push = given.push(restless, second_substep);
-        engine.give(self.id, &push, &self.user());
-        self.share_force = force;
-        self.given = tick;
-        let flags = &mut self.flags;
-        flags.remove(BodyFlags::SHARES_TORQUE | BodyFlags::NOTED);
-        flags.insert(BodyFlags::IS_ALONE | BodyFlags::FRESH | BodyFlags::CARRIES_SHARE);
-        flags.set(BodyFlags::SECOND_SUBSTEP, second_substep);
     }
 }
