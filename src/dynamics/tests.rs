@@ -356,3 +356,32 @@ fn damped_chain_of_a_thousand_to_one_masses_settles_at_any_stiffness() {
         );
     }
 }
+
+/// So many that they are solved by iterations, which start where the last ones ended.
+#[test]
+fn a_network_goes_on_after_a_step_that_was_no_number() {
+    let chain = || {
+        let at = |i: usize| DVec3::X * (i + 1) as f64;
+        let mut ends = vec![fixed(DVec3::ZERO)];
+        ends.extend((0..40).map(|i| held(i, DVec3::ZERO)));
+        Component {
+            bodies: (0..40).map(|i| point(1.0, at(i), DVec3::NEG_Y)).collect(),
+            elements: ends
+                .windows(2)
+                .map(|pair| element(pair[0], pair[1], 2e4, 1.0, 1.0))
+                .collect(),
+            ..default()
+        }
+    };
+    let mut component = chain();
+    component.advance(DT, accuracy(1, false));
+    assert!(component.is_finite());
+    component.bodies[7].velocity = DVec3::NAN;
+    component.advance(DT, accuracy(1, false));
+    assert!(!component.is_finite());
+    component.bodies = chain().bodies;
+    component.elements = chain().elements;
+    component.forget();
+    component.advance(DT, accuracy(1, false));
+    assert!(component.is_finite());
+}

@@ -71,3 +71,26 @@ fn the_tolerance_is_kept_with_few_kicks() {
         assert!(kicks < most, "{errors:?} at {tolerance}: {kicks} kicks");
     }
 }
+
+#[test]
+fn any_number_of_microsteps_keeps_below_the_cap() {
+    for microsteps in [300, 1 << 30, u32::MAX] {
+        let mut model = Model {
+            errors: (1.0, 1.0),
+            now: 0.0,
+            slots: [0.0; 3],
+            kicks: 0,
+        };
+        let accuracy = Accuracy {
+            microsteps,
+            resolve: 0,
+            extrapolate: false,
+            tolerance: None,
+            max_microsteps: 256,
+            max_iterations: 200,
+        };
+        let outcome = Controller::default().drive(&mut model, 1.0 / 60.0, accuracy);
+        assert_eq!((model.kicks, outcome.microsteps), (256, 256));
+        assert!(outcome.capped);
+    }
+}
