@@ -67,12 +67,9 @@ fn held(index: usize, arm: DVec3) -> End {
 
 fn accuracy(microsteps: u32, extrapolate: bool) -> Accuracy {
     Accuracy {
-        microsteps,
         resolve: 1,
         extrapolate,
-        tolerance: None,
-        max_microsteps: 256,
-        max_iterations: 200,
+        ..Accuracy::exactly(microsteps)
     }
 }
 

@@ -21,6 +21,19 @@ pub(crate) struct Accuracy {
 }
 
 impl Accuracy {
+    /// So many micro-steps and no more, as tests ask for them.
+    #[cfg(test)]
+    pub(crate) fn exactly(microsteps: u32) -> Self {
+        Self {
+            microsteps,
+            resolve: 0,
+            extrapolate: false,
+            tolerance: None,
+            max_microsteps: 256,
+            max_iterations: 200,
+        }
+    }
+
     /// So many micro-steps, or as many as the cap lets, and whether it keeps a step from those.
     pub(super) fn cap(&self, asked: u32) -> (u32, bool) {
         let count = asked.min(self.most());

@@ -93,12 +93,9 @@ fn seconds() -> f64 {
 #[test]
 fn the_solver_alone_keeps_the_energy_of_a_box_on_four_springs() {
     let accuracy = |microsteps, extrapolate| Accuracy {
-        microsteps,
         resolve: 1024,
         extrapolate,
-        tolerance: None,
-        max_microsteps: 256,
-        max_iterations: 200,
+        ..Accuracy::exactly(microsteps)
     };
     for (title, accuracy, rounded, bar) in [
         ("by default", accuracy(1, false), false, 1e-4),

@@ -48,7 +48,7 @@ impl Scene {
             for row in &mut self.elements {
                 if row.is_seen(bodies, stepped) {
                     row.tell(springs, commands);
-                    if row.is_unresolved_news(&row.read_out(time)) {
+                    if row.solved.unresolved && row.is_unresolved_news(&row.read_out(time)) {
                         row.flags.insert(ElementFlags::TOLD_UNRESOLVED);
                         unresolved.push(row.entity);
                     }

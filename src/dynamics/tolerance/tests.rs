@@ -8,6 +8,17 @@ struct Model {
     kicks: u32,
 }
 
+impl Model {
+    fn new(errors: (f64, f64)) -> Self {
+        Self {
+            errors,
+            now: 0.0,
+            slots: [0.0; 3],
+            kicks: 0,
+        }
+    }
+}
+
 impl Motion for Model {
     fn save(&mut self, slot: usize) {
         self.slots[slot] = self.now;
@@ -48,12 +59,7 @@ fn the_tolerance_is_kept_with_few_kicks() {
         ((1.0, 1e-2), 1e-3, 9.0),
         ((1.0, 1.0), 1e-4, 60.0),
     ] {
-        let mut model = Model {
-            errors,
-            now: 0.0,
-            slots: [0.0; 3],
-            kicks: 0,
-        };
+        let mut model = Model::new(errors);
         let mut controller = Controller::default();
         let accuracy = Accuracy {
             microsteps: 1,
@@ -75,20 +81,8 @@ fn the_tolerance_is_kept_with_few_kicks() {
 #[test]
 fn any_number_of_microsteps_keeps_below_the_cap() {
     for microsteps in [300, 1 << 30, u32::MAX] {
-        let mut model = Model {
-            errors: (1.0, 1.0),
-            now: 0.0,
-            slots: [0.0; 3],
-            kicks: 0,
-        };
-        let accuracy = Accuracy {
-            microsteps,
-            resolve: 0,
-            extrapolate: false,
-            tolerance: None,
-            max_microsteps: 256,
-            max_iterations: 200,
-        };
+        let mut model = Model::new((1.0, 1.0));
+        let accuracy = Accuracy::exactly(microsteps);
         let outcome = Controller::default().drive(&mut model, 1.0 / 60.0, accuracy);
         assert_eq!((model.kicks, outcome.microsteps), (256, 256));
         assert!(outcome.capped);

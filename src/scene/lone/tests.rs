@@ -29,14 +29,7 @@ fn step(microsteps: u32) -> Step {
     Step {
         plan,
         schedule: plan.schedule(plan.substeps),
-        accuracy: Accuracy {
-            microsteps,
-            resolve: 0,
-            extrapolate: false,
-            tolerance: None,
-            max_microsteps: 256,
-            max_iterations: 200,
-        },
+        accuracy: Accuracy::exactly(microsteps),
         most_substeps: 64,
         alike: None,
         quiet: false,
