@@ -10,8 +10,10 @@ use bevy::math::{Quat, Vec3};
 pub(crate) enum Along {
     /// From anchor to anchor.
     Distance,
-    /// The x axis of the first frame.
+    /// The x axis of the first frame, both bodies pushed at the second anchor.
     Slide,
+    /// The x axis of the first frame, each body pushed at its own anchor.
+    Apart,
     /// About the x axis of the first frame.
     Twist,
 }

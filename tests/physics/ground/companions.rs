@@ -118,6 +118,52 @@ fn along_an_axis_the_ends_may_be_apart_across_it() {
     }
 }
 
+#[test]
+fn along_an_axis_of_the_world_nothing_turns_what_is_held_by_its_centre() {
+    let weight = 5.0 * GRAVITY as f32;
+    for (k, c, seconds) in [
+        (0.0, 50.0, 0.8),
+        (0.0, 500.0, 0.8),
+        (0.0, 1e4, 0.8),
+        (1e3, 1.0, 5.0),
+        (1e4, 10.0, 5.0),
+        (1e6, 100.0, 5.0),
+        (1e3, 1e4, 5.0),
+    ] {
+        let mut scene = Stand::new(CoiloverPlugin::default(), Engine::default());
+        scene.ground();
+        let mut cube = |at: Vec3, mass: f32| {
+            let mass = ColliderMassProperties::Mass(mass);
+            let body = (Collider::cuboid(0.25, 0.25, 0.25), mass);
+            scene.body(Transform::from_translation(at), body)
+        };
+        let lying = cube(Vec3::new(0.0, 0.25, 0.0), 20.0);
+        // Far beside it: what pushes one where the other is turns it fast.
+        let hung = cube(Vec3::new(0.6, 2.0, 0.0), 5.0);
+        let element = scene.coil([hung, lying], [Vec3::ZERO; 2], [k, c], Some(1.75));
+        let axis = SpringAxis::World(Vec3::NEG_Y);
+        scene.lab.app.world_mut().entity_mut(element).insert(axis);
+        let (mut spin, mut speed) = (0.0_f32, 0.0_f32);
+        for _ in 0..scene.lab.ticks(seconds) {
+            scene.lab.tick();
+            let now = scene.lab.get::<Velocity>(hung);
+            spin = spin.max(now.angular.length());
+            speed = speed.max(now.linear.length());
+        }
+        let last = scene.lab.velocity(hung).y;
+        println!("{k} N/m, {c} N s/m: up to {speed} m/s, {spin} rad/s, {last} m/s at last");
+        assert!(spin < 1e-3, "{k}, {c}: {spin}");
+        if k == 0.0 {
+            let wanted = -weight / c;
+            assert!((last / wanted - 1.0).abs() < 0.05, "{c}: {last}");
+        } else {
+            // A load that is let go comes to g/ω.
+            let most = GRAVITY as f32 * (5.0 / k).sqrt();
+            assert!(speed < 1.02 * most, "{k}, {c}: {speed} of {most}");
+        }
+    }
+}
+
 /// A box of 5 kg on the ground, and a hand above it that a spring goes to.
 fn hand(k: f32, rest: f32, companion: impl Bundle) -> (Stand, [Entity; 3]) {
     let mut scene = Stand::new(CoiloverPlugin::default(), Engine::default());

@@ -9,12 +9,19 @@ use crate::backend::rapier::body::{handle, joint_handle, joint_id};
 use crate::scene::held::{Along, SoftJoint, SoftJoints};
 use bevy_rapier3d::rapier::dynamics::{
     GenericJoint, GenericJointBuilder, ImpulseJoint, ImpulseJointSet, JointAxesMask, JointAxis,
-    MotorModel,
+    MotorModel, SpringCoefficients,
 };
 use bevy_rapier3d::rapier::math::Pose;
 
 /// Marks the joints that are ours alone.
 const OURS: u128 = u128::from_be_bytes(*b"bevy_coilover\0\0\0");
+
+/// How softly an axis is held that is to be free, Hz: not at all, but for numbers that Rapier divides by. Rapier pushes the
+/// first body where the second one is, but for what lies along axes that are held. Pinned by `ground::companions`.
+const LOOSE: SpringCoefficients<f32> = SpringCoefficients {
+    natural_frequency: 1e-9,
+    damping_ratio: 1.0,
+};
 
 /// Whether elements have made a joint.
 pub(crate) fn is_ours(joint: &ImpulseJoint) -> bool {
@@ -44,7 +51,7 @@ impl SoftJoints for ImpulseJointSet {
 impl SoftJoint {
     fn axis(&self) -> JointAxis {
         match self.along {
-            Along::Distance | Along::Slide => JointAxis::LinX,
+            Along::Distance | Along::Slide | Along::Apart => JointAxis::LinX,
             Along::Twist => JointAxis::AngX,
         }
     }
@@ -52,14 +59,18 @@ impl SoftJoint {
     fn data(&self) -> GenericJoint {
         let axis = self.axis();
         let frame = |end: usize| Pose::from_parts(self.anchors[end], self.rotations[end]);
-        let coupled = match self.along {
-            Along::Distance => JointAxesMask::LIN_AXES,
-            Along::Slide | Along::Twist => JointAxesMask::empty(),
+        let none = JointAxesMask::empty();
+        let across = JointAxesMask::LIN_Y | JointAxesMask::LIN_Z;
+        let (coupled, held) = match self.along {
+            Along::Distance => (JointAxesMask::LIN_AXES, none),
+            Along::Slide | Along::Twist => (none, none),
+            Along::Apart => (none, across),
         };
         let ordered = ordered_damping(self.stiffness, self.damping, self.substep);
         // As Rapier reckons it: what its damper gives at a speed of 1.
         let acting = self.substep * self.stiffness + ordered;
-        let mut joint = GenericJointBuilder::new(JointAxesMask::empty())
+        let mut joint = GenericJointBuilder::new(held)
+            .softness(LOOSE)
             .coupled_axes(coupled)
             .local_frame1(frame(0))
             .local_frame2(frame(1))

@@ -171,16 +171,8 @@ impl Order {
                 frame.rotations[0] = x_to(axis).as_quat();
             }
             Guide::World(axis) => {
-                frame.along = Along::Slide;
-                let [a, b] = self.facings;
-                // Rapier pushes both bodies at the second anchor, so that one is on a body that can be turned.
-                if self.line.holds[1].body.is_none() {
-                    frame.bodies.swap(0, 1);
-                    frame.anchors.swap(0, 1);
-                    frame.rotations[0] = x_to(b.inverse() * -axis).as_quat();
-                } else {
-                    frame.rotations[0] = x_to(a.inverse() * axis).as_quat();
-                }
+                frame.along = Along::Apart;
+                frame.rotations[0] = x_to(self.facings[0].inverse() * axis).as_quat();
             }
             Guide::Twist(_) => {
                 frame.along = Along::Twist;
@@ -192,16 +184,5 @@ impl Order {
             }
         }
         frame
-    }
-
-    /// What Rapier's joint along an axis of the world turns body A too much by, N m: it pushes it where body B is.
-    pub(crate) fn excess_torque(&self) -> Option<(usize, DVec3)> {
-        let Guide::World(axis) = self.element.guide else {
-            return None;
-        };
-        let [a, b] = &self.line.holds;
-        let (index, _) = (a.body?, b.body?);
-        let force = self.pieces.tension(self.line.distance(), 0.0) * axis;
-        Some((index, (b.position - a.position).cross(force)))
     }
 }

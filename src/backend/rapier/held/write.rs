@@ -5,7 +5,7 @@ use super::stand_in::{holder, remove};
 use crate::backend::rapier::body::{Bodies, handle};
 use crate::backend::rapier::held::linkage::Holding;
 use crate::backend::rapier::held::plan::Plan;
-use crate::backend::{self, Push, Sight, Wrench};
+use crate::backend::{self, Push, Sight};
 use crate::dynamics::soft::Fineness;
 use crate::scene::group::Groups;
 use crate::scene::held::{Inside, Wanted};
@@ -180,7 +180,7 @@ impl Solver {
                     raise(&mut row.rare.raised, body, chosen - own);
                 }
             }
-            take_back_excess(plan, &members, bodies, step.tick, &mut engine.world());
+            take_back_shares(&members, bodies, step.tick, &mut engine.world());
             groups.at(plan.group).inside = true;
             step.delivered.store(true, Ordering::Relaxed);
         }
@@ -212,30 +212,18 @@ impl Solver {
     }
 }
 
-/// Takes back by what Rapier's joints along axes of the world turn bodies too much.
-fn take_back_excess(
-    plan: &Plan,
+/// Takes back what bodies have from steps that were solved here.
+fn take_back_shares(
     members: &Members,
     bodies: &mut [BodyRow],
     tick: u32,
     engine: &mut impl backend::Engine,
 ) {
-    let excess = plan.orders.iter().filter_map(|o| o.excess_torque());
-    for (slot, b) in members.bodies.iter().enumerate() {
+    for b in members.bodies {
         let row = &mut bodies[*b as usize];
-        let too_much = excess.clone().filter(|(of, _)| *of == slot);
-        let torque = -too_much.map(|(_, torque)| torque.as_vec3()).sum::<Vec3>();
-        if torque != Vec3::ZERO || row.has(BodyFlags::CARRIES_SHARE) {
-            let push = Push {
-                share: Wrench {
-                    force: Vec3::ZERO,
-                    torque,
-                },
-                ..Push::default()
-            };
-            row.give(&push, tick, engine);
-            let carries = torque != Vec3::ZERO;
-            row.flags.set(BodyFlags::CARRIES_SHARE, carries);
+        if row.has(BodyFlags::CARRIES_SHARE) {
+            row.give(&Push::default(), tick, engine);
+            row.flags.remove(BodyFlags::CARRIES_SHARE);
         }
     }
 }
