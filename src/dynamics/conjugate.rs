@@ -28,7 +28,9 @@ pub(super) fn solve(
     mut residual: f64,
     budget: u32,
 ) -> bool {
-    let target = TOLERANCE * TOLERANCE * right;
+    // Without a right side the solution is zero, which nothing is small against but the first guess.
+    let against = if right > 0.0 { right } else { residual };
+    let target = TOLERANCE * TOLERANCE * against;
     system.turn(0.0);
     let mut iterations = 0;
     while residual > target && iterations < budget {
@@ -39,4 +41,60 @@ pub(super) fn solve(
         iterations += 1;
     }
     residual <= target * ROUNDING
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Three equations that do not know of each other, without a preconditioner.
+    #[derive(Default)]
+    struct Diagonal {
+        x: [f64; 3],
+        residual: [f64; 3],
+        search: [f64; 3],
+        applied: u32,
+    }
+
+    impl Diagonal {
+        const MATRIX: [f64; 3] = [1.0, 4.0, 9.0];
+
+        fn image(&self, at: usize) -> f64 {
+            Self::MATRIX[at] * self.search[at]
+        }
+    }
+
+    impl Iterated for Diagonal {
+        fn apply(&mut self) -> f64 {
+            self.applied += 1;
+            (0..3).map(|at| self.search[at] * self.image(at)).sum()
+        }
+
+        fn advance(&mut self, by: f64) -> f64 {
+            for at in 0..3 {
+                self.x[at] += by * self.search[at];
+                self.residual[at] -= by * self.image(at);
+            }
+            self.residual.iter().map(|r| r * r).sum()
+        }
+
+        fn turn(&mut self, keep: f64) {
+            for at in 0..3 {
+                self.search[at] = self.residual[at] + keep * self.search[at];
+            }
+        }
+    }
+
+    #[test]
+    fn nothing_to_solve_for_is_found_from_any_first_guess() {
+        let mut system = Diagonal {
+            x: [3.0, -2.0, 0.7],
+            ..Diagonal::default()
+        };
+        system.residual = std::array::from_fn(|at| -Diagonal::MATRIX[at] * system.x[at]);
+        let residual = system.advance(0.0);
+        assert!(solve(&mut system, 0.0, residual, 200));
+        assert!(system.applied <= 4, "{} times", system.applied);
+        assert!(system.x.iter().all(|x| x.abs() < 1e-9), "{:?}", system.x);
+    }
 }

@@ -9,7 +9,7 @@ use super::law::Law;
 use super::line;
 use super::nonlinear_pair::NonlinearPair;
 use super::poles::{Poles, RESOLVED_PHASE};
-use super::resolution::EXTRAPOLATION_LIMIT;
+use super::resolution::{EXTRAPOLATION_LIMIT, RESOLVED};
 use crate::functions::exp;
 use bevy::math::DVec3;
 
@@ -376,17 +376,18 @@ fn is_watched(damping: f64, stiffness_number: f64) -> bool {
 }
 
 /// The poles of an element whose micro-steps of so long are kicks along the line and nothing else: then it can go several at
-/// once in [`super::lanes`]. Its rest length is above zero.
+/// once in [`super::lanes`]. Its rest length is above zero. It takes no more micro-steps to be resolved, where it may.
 #[inline(always)]
 pub(crate) fn plain_poles(
     [stiffness, damping]: [f64; 2],
     inverse_mass: f64,
-    step: f64,
+    (step, may_resolve): (f64, bool),
     memo: &mut Memo,
 ) -> Option<Poles> {
     let damping = damping * inverse_mass * step;
     let stiffness = stiffness_number(stiffness, inverse_mass, step);
-    (!is_watched(damping, stiffness)).then(|| memo.poles(stiffness, damping / 2.0))
+    let finer = may_resolve && stiffness > RESOLVED;
+    (!finer && !is_watched(damping, stiffness)).then(|| memo.poles(stiffness, damping / 2.0))
 }
 
 fn is_resolved(z: f64) -> bool {

@@ -182,9 +182,14 @@ impl Pieces {
         let shares = sides.map(|tangent| reach.share(&tangent, [0.0, f64::INFINITY]));
         let share = shares[0].min(shares[1]);
         if free {
-            // Damping of its own, which neither side's range cuts off.
+            // Damping of its own, which neither side's range cuts off. It has what the spring leaves of the limit.
             let tangent = Tangent::linear(0.0, share * damping, kink);
-            self.push(reach.piece(tangent, [least, greatest]));
+            let [from, to] = reach.way.map(|length| {
+                let force = share * spring(length).force;
+                force.max(least).min(greatest)
+            });
+            let left = [least - from.min(to), greatest - from.max(to)];
+            self.push(reach.piece(tangent, left));
         }
         let middle = (share * spring(kink).force).max(least).min(greatest);
         let [below, mut above] = sides.map(|tangent| tangent.times(share));
@@ -335,6 +340,24 @@ mod tests {
             let pieces = Pieces::of(&law, 1.0, reach([length; 2], 0.0));
             let (given, wanted) = (pieces.tension(length, 0.0), law.elastic(length, 1.0).force);
             assert!((given - wanted).abs() < 1e-9, "{length}: {given}, {wanted}");
+        }
+    }
+
+    #[test]
+    fn a_limit_holds_for_spring_and_damper_together_where_a_spring_is_stiffer_one_way() {
+        let mut recipe = recipe([-100.0, 100.0]);
+        recipe.most = 100.0;
+        recipe.drag = DragLaw::Linear(50.0);
+        recipe.spring = SpringForce::Polynomial {
+            pull: [300.0, 0.0, 0.0],
+            push: [500.0, 0.0, 0.0],
+        };
+        let law = Law::new(recipe);
+        for (way, rate) in [([1.3, 1.33], 4.0), ([0.7, 0.67], -4.0), ([1.5, 1.5], 4.0)] {
+            let pieces = Pieces::of(&law, 1.0, reach(way, rate));
+            let tension = pieces.tension(way[1], rate);
+            let wanted = 100.0_f64.copysign(rate);
+            assert!((tension - wanted).abs() < 1e-9, "{way:?}: {tension}");
         }
     }
 

@@ -156,8 +156,10 @@ const GROWTH: f64 = 2.0;
 #[derive(Clone, Copy, Debug, Default)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Controller {
-    /// Error constants, m/s: plain, and of the combination where that is valid.
+    /// Error constants, m/s: plain, and of the combination where that is valid,
     known: Option<(f64, Option<f64>)>,
+    /// in steps of so long, s.
+    step: f64,
     /// Steps until the next probe.
     age: u32,
     /// Probes in a row that found little to do.
@@ -198,6 +200,7 @@ impl Controller {
         let most = accuracy.most();
         // How fine it has to be is found out.
         let (least, cut) = accuracy.cap(motion.least(time, 0).count);
+        self.scale_to(time);
         let mut outcome = match self.known.filter(|_| self.age > 0) {
             Some(known) => {
                 self.age -= 1;
@@ -215,6 +218,17 @@ impl Controller {
         };
         outcome.capped |= cut;
         outcome
+    }
+
+    /// Has its constants hold for steps of another length: they rise with the power of it that they fall with of the count.
+    fn scale_to(&mut self, time: f64) {
+        let ratio = time / std::mem::replace(&mut self.step, time);
+        if let Some((plain, fine)) = self.known.as_mut().filter(|_| ratio != 1.0) {
+            *plain *= ratio.powi(2);
+            if let Some(fine) = fine {
+                *fine *= ratio.powi(4);
+            }
+        }
     }
 
     /// Takes the step with three counts and learns from it.

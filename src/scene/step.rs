@@ -10,6 +10,10 @@ use crate::settings::CoiloverSettings;
 use bevy::math::{DQuat, DVec3};
 use std::sync::atomic::AtomicBool;
 
+/// Distance that a path may begin apart from where the last one ended and still go on from there, as a share of its coordinates
+/// and of a metre at least: so much may come of the engine's f32. Pinned by `carried`.
+const LEAP: f64 = 1e-6;
+
 /// A context about to step.
 pub(crate) struct Step {
     pub plan: StepPlan,
@@ -92,6 +96,14 @@ impl Step {
                 }
             };
             row.rare.places[end].is_some_and(|last| last != now)
+        })
+    }
+
+    /// Whether an end that goes along a path from here begins elsewhere than the last step's path ended.
+    pub(crate) fn has_leapt(row: &ElementRow, end: usize, from: DVec3) -> bool {
+        row.rare.places[end].is_some_and(|last| {
+            let size = last.abs().max(from.abs()).max_element().max(1.0);
+            from.distance(last) > LEAP * size
         })
     }
 

@@ -266,7 +266,7 @@ impl Assembly {
             warm.perturbed |= has_moved;
             *disturbed |= has_moved;
             let [from, to] = step.path(&row.rare.held[*end], sight);
-            if has_moved && from == to {
+            if has_moved && (from == to || Step::has_leapt(row, *end, from)) {
                 // It has leapt: what work that was is to be found.
                 return None;
             }

@@ -116,6 +116,35 @@ fn a_network_left_alone_moves_as_one_that_is_read_anew_bit_for_bit() {
     }
 }
 
+#[test]
+fn a_hand_that_moves_and_is_put_elsewhere_does_the_same_work_on_a_net_left_alone() {
+    let pulled = || {
+        let mut net = Net::new(60.0, 0.4);
+        let hand = net.lab.spawn((
+            RigidBody::KinematicVelocityBased,
+            Transform::from_xyz(5.0, -1.0, 0.0),
+            Velocity::linear(Vec3::new(0.5, 0.0, 0.2)),
+        ));
+        let pull = SpringDamper::new(net.balls[9], hand).with_stiffness(60.0);
+        net.springs.push(net.lab.spawn(pull));
+        (net, hand)
+    };
+    let [(mut alone, hand), (mut touched, same)] = [pulled(), pulled()];
+    for tick in 0..90 {
+        if tick == 40 {
+            for (net, hand) in [(&mut alone, hand), (&mut touched, same)] {
+                net.lab.get_mut::<Transform>(hand).translation.y -= 0.8;
+            }
+        }
+        let spring = touched.springs[tick % 20];
+        touched.lab.get_mut::<SpringDamper>(spring).stiffness = 60.0;
+        for net in [&mut alone, &mut touched] {
+            net.lab.tick();
+        }
+        assert!(alone.state() == touched.state(), "tick {tick}");
+    }
+}
+
 impl Net {
     /// Something happens to a net whose springs and balls nobody need know about.
     fn surprise(&mut self, dice: &mut Dice) {

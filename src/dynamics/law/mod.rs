@@ -22,6 +22,9 @@ pub(crate) trait Function: Send + Sync + Debug {
     fn integral(&self, x: f64) -> f64;
 }
 
+/// Stretch beyond which a law's limit is not looked for, m. Pinned by `a_spring_that_is_beyond_its_limit_everywhere_has_the_limit`.
+const FARTHEST: f64 = 1e9;
+
 /// Tension (N) of a spring for a stretch (m), before clamps.
 #[derive(Clone, Debug)]
 pub(crate) enum SpringForce {
@@ -51,7 +54,8 @@ pub(crate) struct Law {
     pub drag: DragLaw,
     /// Constant tension that is added, N.
     preload: f64,
-    /// Least and greatest tension of the spring, and the stretches from where on they hold.
+    /// Least and greatest tension of the spring, and the stretches from where on they hold: infinite where that is nowhere, or
+    /// everywhere.
     limits: [f64; 2],
     at_limits: [f64; 2],
     /// Least and greatest length before the stops, m.
@@ -174,15 +178,12 @@ impl Law {
             reference: 0.0,
             most: recipe.most,
         };
-        law.at_limits = [
-            law.stretch_for(law.limits[0]).unwrap_or(f64::NEG_INFINITY),
-            law.stretch_for(law.limits[1]).unwrap_or(f64::INFINITY),
-        ];
+        law.at_limits = law.limits.map(|limit| law.stretch_for(limit));
         if law.at_limits[0] > law.at_limits[1] {
             law.at_limits[1] = law.at_limits[0];
         }
-        let free = law.stretch_for(0.0).unwrap_or(0.0);
-        law.reference = law.spring_at(free).energy;
+        let free = Some(law.stretch_for(0.0)).filter(|x| x.is_finite());
+        law.reference = law.spring_at(free.unwrap_or(0.0)).energy;
         law
     }
 
@@ -194,17 +195,21 @@ impl Law {
         bare
     }
 
-    /// The stretch at which the rising force reaches a value, if it does.
-    fn stretch_for(&self, force: f64) -> Option<f64> {
+    /// The stretch at which the rising force reaches a value: −∞ where it is above it at every stretch, ∞ where it is below.
+    fn stretch_for(&self, force: f64) -> f64 {
         if !force.is_finite() {
-            return None;
+            return force;
         }
         let short = |x: f64| self.bare(x).force < force;
         let mut reach = 1e-3;
         while short(reach) || !(short(-reach) || self.bare(-reach).force == force) {
             reach *= 2.0;
-            if reach > 1e9 {
-                return None;
+            if reach > FARTHEST {
+                return if short(reach) {
+                    f64::INFINITY
+                } else {
+                    f64::NEG_INFINITY
+                };
             }
         }
         let (mut low, mut high) = (-reach, reach);
@@ -216,20 +221,28 @@ impl Law {
                 high = middle;
             }
         }
-        Some(high)
+        high
     }
 
     /// The spring alone, clamped, its energy counted from the first point of the bare one's.
     fn spring_at(&self, x: f64) -> Elastic {
         let within = x.clamp(self.at_limits[0], self.at_limits[1]);
-        let mut spring = self.bare(within);
-        if within != x {
-            // The force there is the limit but for rounding, and slack is no force at all.
-            spring.force = self.limits[usize::from(x > within)];
-            spring.energy += spring.force * (x - within);
-            spring.stiffness = 0.0;
+        if within == x {
+            return self.bare(x);
         }
-        spring
+        // The force there is the limit but for rounding, and slack is no force at all.
+        let force = self.limits[usize::from(x > within)];
+        // Beyond its limit everywhere, it has no stretch from where on that holds: it stores as any constant force does.
+        let (edge, stored) = if within.is_finite() {
+            (within, self.bare(within).energy)
+        } else {
+            (0.0, 0.0)
+        };
+        Elastic {
+            force,
+            stiffness: 0.0,
+            energy: stored + force * (x - edge),
+        }
     }
 
     /// What the spring alone would have without its limits, where they cut its force to `cut`.

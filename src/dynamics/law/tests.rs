@@ -143,6 +143,36 @@ fn ropes_never_push_and_buffers_never_pull() {
 }
 
 #[test]
+fn a_spring_that_is_beyond_its_limit_everywhere_has_the_limit() {
+    let endless = f64::INFINITY;
+    for (preload, limits, held) in [
+        // A gas strut whose force is limited to less than its preload,
+        (-400.0, [-300.0, 300.0], -300.0),
+        (400.0, [-300.0, 300.0], 300.0),
+        // and what may only pull, or only push, and has nothing but a preload the other way.
+        (-50.0, [0.0, endless], 0.0),
+        (50.0, [-endless, 0.0], 0.0),
+    ] {
+        let law = Law::new(Recipe {
+            preload,
+            limits,
+            most: 300.0,
+            ..recipe([0.0; 3], [0.0; 3])
+        });
+        for length in [0.2, 1.0, 1.7] {
+            let now = law.elastic(length, 1.0);
+            assert_eq!((now.force, now.stiffness), (held, 0.0), "{law:?}");
+            let total = now.force + law.drag(length, 1.0, held.signum()).force;
+            assert_eq!(total, held, "{law:?}: no damper adds to it");
+            // Its energy is the work that it does.
+            let work = law.elastic(length + 0.1, 1.0).energy - now.energy;
+            assert!((work - 0.1 * held).abs() < 1e-9, "{law:?}: {work} J");
+        }
+        assert!(!law.is_bent(), "it has no kink");
+    }
+}
+
+#[test]
 fn a_slack_rope_does_not_damp_whatever_its_preload() {
     for stiffness in [100.0, 700.0, 1300.0] {
         for preload in (1..50).map(|p| 10.0 * f64::from(p)) {

@@ -1,6 +1,9 @@
 use super::*;
 
-/// A motion whose error is C/n² + D/n⁴ per step.
+/// A timestep, s.
+const STEP: f64 = 1.0 / 240.0;
+
+/// A motion whose error is C/n² + D/n⁴ per second in steps of [`STEP`].
 struct Model {
     errors: (f64, f64),
     now: f64,
@@ -33,7 +36,7 @@ impl Motion for Model {
         }
     }
     fn run(&mut self, time: f64, count: u32) {
-        let n = f64::from(count);
+        let n = f64::from(count) * STEP / time;
         self.now += time * (self.errors.0 / n.powi(2) + self.errors.1 / n.powi(4));
         self.kicks += count;
     }
@@ -51,6 +54,37 @@ impl Motion for Model {
     }
 }
 
+/// That tolerance, in m/s, of one micro-step at least.
+fn accuracy(tolerance: f64) -> Accuracy {
+    Accuracy {
+        microsteps: 1,
+        resolve: 1,
+        extrapolate: false,
+        tolerance: Some(tolerance),
+        max_microsteps: 256,
+        max_iterations: 1,
+    }
+}
+
+#[test]
+fn the_tolerance_is_kept_when_the_timestep_changes() {
+    for errors in [(1.0, 1e-2), (1.0, 1.0)] {
+        let mut model = Model::new(errors);
+        let mut controller = Controller::default();
+        let tolerance = 0.02;
+        for time in [STEP; 60].into_iter().chain([8.0 * STEP; 20]) {
+            let before = model.now;
+            controller.drive(&mut model, time, accuracy(tolerance));
+            let added = (model.now - before).abs();
+            // Its constants are those of a probe, which sees both errors at once.
+            assert!(
+                added <= 1.1 * tolerance * time,
+                "{errors:?}: {added} in {time} s"
+            );
+        }
+    }
+}
+
 #[test]
 fn the_tolerance_is_kept_with_few_kicks() {
     for (errors, tolerance, most) in [
@@ -61,16 +95,8 @@ fn the_tolerance_is_kept_with_few_kicks() {
     ] {
         let mut model = Model::new(errors);
         let mut controller = Controller::default();
-        let accuracy = Accuracy {
-            microsteps: 1,
-            resolve: 1,
-            extrapolate: false,
-            tolerance: Some(tolerance),
-            max_microsteps: 256,
-            max_iterations: 1,
-        };
         for _ in 0..240 {
-            controller.drive(&mut model, 1.0 / 240.0, accuracy);
+            controller.drive(&mut model, STEP, accuracy(tolerance));
         }
         assert!(model.now.abs() <= tolerance, "{errors:?}: {}", model.now);
         let kicks = f64::from(model.kicks) / 240.0;

@@ -45,6 +45,8 @@ pub(super) struct Pace {
     pub(super) stride: Stride,
     /// A micro-step, s.
     micro: f64,
+    /// An element that so many do not resolve may take more.
+    may_resolve: bool,
     solved: Solved,
 }
 
@@ -284,6 +286,7 @@ impl Step {
                 fastest: self.plan.fastest,
             },
             micro: self.plan.time / f64::from(count),
+            may_resolve: self.accuracy.resolve > 0,
             solved: Solved {
                 method: Method::ClosedForm,
                 ..Outcome::plain(&self.accuracy).into()
@@ -307,7 +310,12 @@ pub(super) fn plain(
     let rest_length = rest_length.filter(|rest| row.law.is_none() && *rest > 0.0)?;
     let [stiffness, damping, rest_length] = [stiffness, damping, rest_length].map(f64::from);
     let both = [stiffness, damping];
-    let poles = plain_poles(both, inverse_mass, pace.micro, &mut row.memo)?;
+    let poles = plain_poles(
+        both,
+        inverse_mass,
+        (pace.micro, pace.may_resolve),
+        &mut row.memo,
+    )?;
     Some(([stiffness, rest_length], poles))
 }
 

@@ -102,6 +102,23 @@ fn bits(given: &Given) -> [[u32; 3]; 2] {
 }
 
 #[test]
+fn what_more_microsteps_would_resolve_is_not_for_a_lane_where_it_may_take_them() {
+    for (resolve, omega_dt, fits) in [(0, 2.2, true), (64, 2.2, false), (64, 1.9, true)] {
+        let mut step = step(1);
+        step.accuracy.resolve = resolve;
+        let pace: Pace = step.pace().expect("a plain step");
+        let (mut row, ..) = Dice(1).element(0);
+        row.numbers = Numbers {
+            stiffness: (60.0_f32 * omega_dt).powi(2),
+            damping: 0.0,
+            rest_length: Some(1.0),
+        };
+        let taken = plain(&mut row, 1.0, &pace).is_some();
+        assert_eq!(taken, fits, "ω·dt {omega_dt}, up to {resolve} micro-steps");
+    }
+}
+
+#[test]
 fn each_goes_as_it_would_alone_bit_for_bit() {
     let mut dice = Dice(1);
     let (mut odd, mut compared) = (0, 0);
