@@ -7,7 +7,7 @@ use bevy::reflect::serde::{ReflectDeserializer, ReflectSerializer};
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::RigidBody;
 use bevy_world_serialization::serde::WorldDeserializer;
-use bevy_world_serialization::{DynamicWorld, DynamicWorldBuilder};
+use bevy_world_serialization::{DynamicWorld, DynamicWorldBuilder, WorldAsset};
 use serde::de::DeserializeSeed;
 use serde_json::json;
 
@@ -183,6 +183,27 @@ fn a_scene_file_ties_its_springs_in_another_world() {
     let (pair, readout, fault) = pairs.single(app.world()).expect("one");
     assert_eq!([pair.body_a, pair.body_b], [a, b]);
     assert!(!fault && readout.force() > 2.0, "{readout:?}");
+}
+
+/// As Bevy spawns what it has loaded from a glTF file.
+#[test]
+fn every_component_can_be_in_a_scene_that_is_spawned() {
+    let mut app = app();
+    app.add_plugins((CoiloverPlugin::default(), CoiloverVisualPlugin));
+    let registry = app.world().resource::<AppTypeRegistry>().clone();
+    let mut scene = World::new();
+    for value in all() {
+        let registry = registry.read();
+        let known = registry.get_with_type_path(value.reflect_type_path());
+        let component = known.and_then(|known| known.data::<ReflectComponent>());
+        let mut entity = scene.spawn_empty();
+        let component = component.expect("a component");
+        component.insert(&mut entity, &*value, &registry);
+    }
+    scene.spawn((TorsionSpring::default(), TorsionCoil::default()));
+    let scene = WorldAsset::new(scene);
+    let spawned = scene.write_to_world_with(app.world_mut(), &mut default(), &registry);
+    assert!(spawned.is_ok(), "{spawned:?}");
 }
 
 #[test]

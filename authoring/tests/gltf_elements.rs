@@ -1,6 +1,7 @@
 //! Do springs from glTF files have every number, and do page and schema say so?
 
 use crate::harness::*;
+use bevy::ecs::entity_disabling::Disabled;
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use serde_json::{Value, json};
@@ -38,6 +39,9 @@ pub fn rig(extension: &Value) -> String {
 fn everything() -> Vec<(Value, Box<dyn Fn(EntityRef) -> bool>)> {
     fn has<C: Component + PartialEq>(wanted: C) -> Box<dyn Fn(EntityRef) -> bool> {
         Box::new(move |entity| entity.get::<C>() == Some(&wanted))
+    }
+    fn is_disabled(wanted: bool) -> Box<dyn Fn(EntityRef) -> bool> {
+        Box::new(move |entity| entity.contains::<Disabled>() == wanted)
     }
     let beside = |companion: Value| {
         let mut all = json!({ "springDamper": { "a": 0, "b": 1, "stiffness": 100, "damping": 2, "restLength": 1 } });
@@ -113,6 +117,13 @@ fn everything() -> Vec<(Value, Box<dyn Fn(EntityRef) -> bool>)> {
             has(SpringTravel::new(0.0, f32::INFINITY, 900.0)),
         ),
         (
+            // Along an axis a length has a sign, and no least one is zero.
+            beside(
+                json!({ "springTravel": { "stopStiffness": 900 }, "springAxis": { "World": [0, 1, 0] } }),
+            ),
+            has(SpringTravel::new(f32::NEG_INFINITY, f32::INFINITY, 900.0)),
+        ),
+        (
             beside(json!({ "springAxis": { "World": [0, 1, 0] } })),
             has(SpringAxis::World(Vec3::Y)),
         ),
@@ -157,6 +168,8 @@ fn everything() -> Vec<(Value, Box<dyn Fn(EntityRef) -> bool>)> {
                 ..Telescope::new(0.05, 0.02)
             }),
         ),
+        (beside(json!({ "disabled": true })), is_disabled(true)),
+        (beside(json!({ "disabled": false })), is_disabled(false)),
         (
             beside(json!({ "showSpringGizmos": true })),
             has(ShowSpringGizmos(true)),

@@ -200,3 +200,58 @@ fn an_angular_spring_pulls_the_frames_together_not_the_bodies() {
     assert_eq!(stage.count::<TorsionSpringDamper>(), 1);
     assert!(stage.faults().is_empty(), "{:?}", stage.faults());
 }
+
+/// A body of 2 kg a metre below a hook that it may touch: without a limit that holds, there is nothing for a joint to do.
+fn hanging(name: &str, limits: Value) -> (Folder, Stage, Entity) {
+    let joint = json!({ "connectedNode": 1, "joint": 0, "enableCollision": true });
+    let motion = json!({ "mass": 2, "inertiaDiagonal": [0.1, 0.1, 0.1] });
+    let nodes = json!([
+        physics("Hook", [0.0, 2.0, 0.0], json!({ "joint": joint })),
+        physics("Body", [0.0, 1.0, 0.0], json!({ "motion": motion })),
+    ]);
+    let kinds = json!({ "physicsJoints": [{ "limits": limits }] });
+    play(name, nodes, json!({ "KHR_physics_rigid_bodies": kinds }))
+}
+
+#[test]
+fn a_rigid_limit_whose_min_cannot_be_held_holds_its_max() {
+    let limit = json!({ "linearAxes": [0, 1, 2], "min": 0.5, "max": 1.5 });
+    let (_folder, mut stage, root) = hanging("min_max", json!([limit]));
+    run(&mut stage.app, 3.0);
+    assert_eq!(stage.count::<ImpulseJoint>(), 1);
+    let y = stage.place(stage.node(root, "Body")).translation.y;
+    assert!((y - 0.5).abs() < 5e-3, "{y}");
+}
+
+#[test]
+fn what_holds_nothing_is_no_joint() {
+    let limit = json!({ "linearAxes": [0, 1, 2], "min": 0.5 });
+    let (_folder, mut stage, root) = hanging("min_alone", json!([limit]));
+    run(&mut stage.app, 1.0);
+    assert_eq!(stage.count::<ImpulseJoint>(), 0);
+    let y = stage.place(stage.node(root, "Body")).translation.y;
+    assert!(y < -2.0, "{y}");
+}
+
+#[test]
+fn of_two_cones_about_different_axes_the_first_holds_and_nothing_panics() {
+    let (_folder, mut stage, root) = hanging(
+        "cones",
+        json!([
+            { "linearAxes": [0, 1, 2], "max": 0 },
+            { "angularAxes": [0, 1], "max": 0.3 },
+            { "angularAxes": [1, 2], "max": 0.1 },
+        ]),
+    );
+    let body = stage.node(root, "Body");
+    let mut spin = *stage.get::<Velocity>(body);
+    spin.angular = Vec3::X * 5.0;
+    stage.app.world_mut().entity_mut(body).insert(spin);
+    let mut most = 0.0_f32;
+    for _ in 0..120 {
+        run(&mut stage.app, DT);
+        let axis = stage.place(body).rotation * Vec3::Z;
+        most = most.max(axis.angle_between(Vec3::Z));
+    }
+    assert!((0.2..0.6).contains(&most), "{most} rad");
+}

@@ -7,6 +7,8 @@ mod data;
 mod gltf_elements;
 mod gltf_export;
 mod gltf_joints;
+mod gltf_left_out;
+mod gltf_out;
 mod gltf_physics;
 mod gltf_sample;
 mod gltf_samples;

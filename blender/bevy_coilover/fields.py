@@ -199,6 +199,7 @@ COMPANIONS = (
             Field("color", "Paint", (0.01, 0.0116, 0.0152, 1.0), "Linear colour of the tube", kind="color"),
         ),
     ),
+    Companion("disabled", "Disabled", "It does not act until the game enables it"),
     Companion("showSpringGizmos", "Debug Lines", "Bevy draws ends, rest length and forces as lines"),
 )
 

@@ -3,11 +3,12 @@
 use super::element::KINDS;
 use super::json::{Object, Variant, numbers};
 use crate::element::*;
+use bevy::ecs::entity_disabling::Disabled;
 use bevy::prelude::*;
 use serde_json::Value;
 
 /// Companions' keys.
-const KEYS: [&str; 14] = [
+const KEYS: [&str; 15] = [
     "anchors",
     "springLaw",
     "dampingLaw",
@@ -19,6 +20,7 @@ const KEYS: [&str; 14] = [
     "breakable",
     "springTuning",
     "holdPose",
+    "disabled",
     "coil",
     "telescope",
     "showSpringGizmos",
@@ -55,7 +57,9 @@ pub(super) fn insert(object: &Object, kind: &str, entity: &mut EntityWorldMut) {
         entity.insert(action);
     }
     if let Some(travel) = object.object("springTravel") {
-        entity.insert(spring_travel(&travel, kind));
+        // About or along an axis, lengths have a sign, and none is the least.
+        let signed = kind.starts_with("torsion") || object.has("springAxis");
+        entity.insert(spring_travel(&travel, signed));
     }
     if let Some(axis) = object
         .variant("springAxis")
@@ -99,6 +103,9 @@ pub(super) fn insert(object: &Object, kind: &str, entity: &mut EntityWorldMut) {
             share: pose.number("share").unwrap_or(1.0),
             mass: pose.number("mass"),
         });
+    }
+    if object.flag("disabled") == Some(true) {
+        entity.insert(Disabled);
     }
     #[cfg(feature = "visual")]
     super::looks::insert(object, entity);
@@ -224,7 +231,7 @@ fn table(data: &Object) -> ForceTable {
     ForceTable { points }
 }
 
-fn spring_travel(travel: &Object, kind: &str) -> SpringTravel {
+fn spring_travel(travel: &Object, signed: bool) -> SpringTravel {
     let fields = [
         "minLength",
         "maxLength",
@@ -237,11 +244,7 @@ fn spring_travel(travel: &Object, kind: &str) -> SpringTravel {
     if !travel.has("stopStiffness") {
         travel.tell("stopStiffness", "is missing, so there is no stop");
     }
-    let none = if kind.starts_with("torsion") {
-        f32::NEG_INFINITY
-    } else {
-        0.0
-    };
+    let none = if signed { f32::NEG_INFINITY } else { 0.0 };
     SpringTravel {
         min_length: of("minLength").unwrap_or(none),
         max_length: of("maxLength").unwrap_or(f32::INFINITY),

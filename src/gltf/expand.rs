@@ -1,9 +1,9 @@
 //! What a scene carries becomes Rapier's bodies, colliders and joints, once the scene stands at its place.
 
 use super::carry::{LoadedBody, LoadedCollider, LoadedJoint};
+use super::place::{above, place};
 use super::{joints, mass};
 use bevy::ecs::entity::{EntityHashMap, EntityHashSet};
-use bevy::ecs::system::RunSystemOnce;
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
 use bevy_rapier3d::rapier::prelude::{MassProperties as RapierMass, Pose, SharedShape};
@@ -16,7 +16,7 @@ pub(super) fn any_loaded(
 }
 
 /// Subdivisions of round shapes that are scaled unevenly, as Rapier has by default.
-const SUBDIVISIONS: u32 = 10;
+pub(super) const SUBDIVISIONS: u32 = 10;
 
 /// Sizes of colliders (m) and their distances from the origin, beyond which Rapier's collision detection panics.
 const LARGEST: f32 = 1e6;
@@ -83,24 +83,10 @@ fn take<C: Component>(world: &mut World) -> Vec<(Entity, C)> {
 
 /// The body that an entity is or stands below.
 pub(super) fn owner(world: &World, entity: Entity) -> Option<Entity> {
-    let mut current = entity;
-    loop {
-        let here = world.get_entity(current).ok()?;
-        if here.contains::<LoadedBody>() || here.contains::<RigidBody>() {
-            return Some(current);
-        }
-        current = here.get::<ChildOf>()?.parent();
-    }
-}
-
-/// Where an entity stands in the world, if it is anywhere.
-pub(super) fn place(world: &mut World, entity: Entity) -> Option<Transform> {
-    let global = world
-        .run_system_once(move |helper: TransformHelper| helper.compute_global_transform(entity))
-        .ok()?
-        .ok()?;
-    let place = global.compute_transform();
-    place.is_finite().then_some(place)
+    let mut up = std::iter::once(entity).chain(above(world, entity));
+    up.find(|entity| {
+        world.get::<LoadedBody>(*entity).is_some() || world.get::<RigidBody>(*entity).is_some()
+    })
 }
 
 /// Puts a body where nothing above it moves or turns: bevy_rapier3d 0.36 writes wrong places into bodies below what is turned.
@@ -108,15 +94,9 @@ pub(super) fn place(world: &mut World, entity: Entity) -> Option<Transform> {
 /// One below another of the file goes to where the uppermost of these hangs: to the file, each goes its own way. If what is
 /// above is turned, an entity between them undoes that.
 fn stand_free(world: &mut World, body: Entity, at: Transform, moving: &EntityHashSet) {
-    let above = |world: &World, entity| world.get::<ChildOf>(entity).map(ChildOf::parent);
-    let (mut top, mut current) = (body, body);
-    while let Some(parent) = above(world, current) {
-        if moving.contains(&parent) {
-            top = parent;
-        }
-        current = parent;
-    }
-    let Some(parent) = above(world, top) else {
+    let moving_above = above(world, body).filter(|entity| moving.contains(entity));
+    let top = moving_above.last().unwrap_or(body);
+    let Some(parent) = above(world, top).next() else {
         return;
     };
     let Some(place) = place(world, parent) else {

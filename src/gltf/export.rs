@@ -1,10 +1,11 @@
 //! Out again: bodies, colliders, joints and elements of a world as a glTF file.
 
-use super::export_element::element;
-use super::export_physics::{Geometry, Parts, filter, joint, material, motion};
-use super::mass::steady;
+use super::export_element::{element, ends};
+use super::export_filters::Filters;
+use super::export_physics::{Geometry, Parts, material, motion, own_scale};
+use super::left_out::LeftOut;
 use super::number::{Fields, numbers, vector};
-use crate::element::*;
+use super::place::{above, place};
 use base64::Engine as _;
 use bevy::ecs::entity::{EntityHashMap, EntityHashSet};
 use bevy::prelude::*;
@@ -16,7 +17,7 @@ use serde_json::{Value, json};
 pub struct ExportedGltf {
     /// The file's text: a `.gltf` with its buffers inside.
     pub text: String,
-    /// What could not be written, one sentence each, with the entity.
+    /// What could not be written, or comes back as something else: one sentence each, with the entity and the component.
     pub left_out: Vec<String>,
 }
 
@@ -24,8 +25,9 @@ pub struct ExportedGltf {
 /// `KHR_physics_rigid_bodies`, elements as `BEVY_coilover`, with the nodes that they stand on. What is drawn is not
 /// written.
 ///
-/// Numbers read back as the same numbers of single precision. Each root's place is that in the world. `docs/gltf.md` says
-/// what the format cannot hold; [`ExportedGltf::left_out`] says it of this world.
+/// Numbers read back as the same numbers of single precision. Each root's place is that in the world; one that stands below
+/// another root stays there. Physics need not have made a step. `docs/gltf.md` says what the format cannot hold;
+/// [`ExportedGltf::left_out`] says it of this world.
 ///
 /// ```
 /// # use bevy::prelude::*;
@@ -39,17 +41,20 @@ pub struct ExportedGltf {
 /// # }
 /// ```
 pub fn export_gltf(world: &World, roots: impl IntoIterator<Item = Entity>) -> ExportedGltf {
-    let mut roots: Vec<_> = roots.into_iter().collect();
+    let mut asked: Vec<_> = roots.into_iter().collect();
     let mut seen = EntityHashSet::default();
-    roots.retain(|root| world.get_entity(*root).is_ok() && seen.insert(*root));
-    let kept = kept(world, &roots);
+    asked.retain(|root| world.get_entity(*root).is_ok() && seen.insert(*root));
+    let kept = kept(world, &asked);
+    // A node has one place in a file: what stands below another root is written there.
+    let stands_alone = |root: &Entity| !above(world, *root).any(|above| seen.contains(&above));
+    let roots: Vec<_> = asked.into_iter().filter(stands_alone).collect();
     let mut writer = Writer {
         world,
         index: EntityHashMap::default(),
         order: Vec::new(),
         nodes: Vec::new(),
         shared: Parts::default(),
-        left_out: Vec::new(),
+        left_out: LeftOut::default(),
     };
     for root in &roots {
         writer.number(*root, &kept);
@@ -57,7 +62,7 @@ pub fn export_gltf(world: &World, roots: impl IntoIterator<Item = Entity>) -> Ex
     writer.write(&roots)
 }
 
-/// What there is to write: entities that say something, ends, and all that they stand below.
+/// What there is to write: roots, entities that say something, ends, and all that they stand below.
 fn kept(world: &World, roots: &[Entity]) -> EntityHashSet {
     let mut below = Vec::new();
     let mut seen = EntityHashSet::default();
@@ -68,7 +73,7 @@ fn kept(world: &World, roots: &[Entity]) -> EntityHashSet {
             open.extend(world.get::<Children>(entity).into_iter().flatten());
         }
     }
-    let mut kept = EntityHashSet::from_iter(roots.iter().copied());
+    let mut kept = EntityHashSet::default();
     let mut keep = |mut entity: Entity| {
         while seen.contains(&entity) && kept.insert(entity) {
             match world.get::<ChildOf>(entity) {
@@ -77,6 +82,7 @@ fn kept(world: &World, roots: &[Entity]) -> EntityHashSet {
             }
         }
     };
+    roots.iter().copied().for_each(&mut keep);
     for entity in below {
         let here = world.entity(entity);
         let ends = ends(here);
@@ -88,33 +94,15 @@ fn kept(world: &World, roots: &[Entity]) -> EntityHashSet {
     kept
 }
 
-/// The ends of an element.
-fn ends(entity: EntityRef) -> Option<[Entity; 2]> {
-    macro_rules! ends {
-        ($($element:ty),*) => {
-            $(if let Some(element) = entity.get::<$element>() {
-                return Some([element.body_a, element.body_b]);
-            })*
-        };
-    }
-    ends!(
-        Spring,
-        Damper,
-        SpringDamper,
-        TorsionSpring,
-        TorsionDamper,
-        TorsionSpringDamper
-    );
-    None
-}
-
-struct Writer<'w> {
-    world: &'w World,
-    index: EntityHashMap<usize>,
+/// Writes a file, node by node.
+pub(super) struct Writer<'w> {
+    pub(super) world: &'w World,
+    /// Of the node of an entity.
+    pub(super) index: EntityHashMap<usize>,
     order: Vec<Entity>,
-    nodes: Vec<Value>,
-    shared: Parts,
-    left_out: Vec<String>,
+    pub(super) nodes: Vec<Value>,
+    pub(super) shared: Parts,
+    pub(super) left_out: LeftOut,
 }
 
 impl Writer<'_> {
@@ -135,10 +123,14 @@ impl Writer<'_> {
 
     fn write(mut self, roots: &[Entity]) -> ExportedGltf {
         let order = std::mem::take(&mut self.order);
+        let colliders = order.iter().map(|entity| self.world.entity(*entity));
+        let colliders = colliders.filter(|here| here.contains::<Collider>());
+        self.shared.filters = Filters::of(colliders.map(groups));
         for entity in &order {
             let node = self.node(*entity, roots.contains(entity));
             self.nodes.push(node);
         }
+        self.nodes.append(&mut self.shared.more_nodes);
         self.joints(&order);
         let nodes: Vec<_> = roots.iter().map(|root| self.index[root]).collect();
         let mut extensions = Fields::default();
@@ -155,7 +147,7 @@ impl Writer<'_> {
         };
         let physics = Fields::default()
             .with("physicsMaterials", list(shared.materials))
-            .with("collisionFilters", list(shared.filters))
+            .with("collisionFilters", list(shared.filters.values()))
             .with("physicsJoints", list(shared.joints));
         if !physics.is_empty() {
             extensions.add(super::physics::NAME, physics.value());
@@ -199,7 +191,7 @@ impl Writer<'_> {
             );
         ExportedGltf {
             text: file.value().to_string(),
-            left_out: self.left_out,
+            left_out: self.left_out.sentences(),
         }
     }
 
@@ -209,14 +201,19 @@ impl Writer<'_> {
         if let Some(name) = here.get::<Name>() {
             node.add("name", name.as_str().into());
         }
-        let global = here.get::<GlobalTransform>().filter(|_| {
-            // A root that stands below something else is where it is in the world.
-            is_root && here.contains::<ChildOf>()
-        });
-        let place = global
-            .map(GlobalTransform::compute_transform)
-            .or(here.get::<Transform>().copied())
-            .unwrap_or_default();
+        // A root that stands below something else is where it is in the world.
+        let moved = is_root && here.contains::<ChildOf>();
+        let place = if moved {
+            place(self.world, entity)
+        } else {
+            here.get::<Transform>().copied()
+        };
+        let mut place = place.unwrap_or_default();
+        if !place.is_finite() {
+            self.left_out
+                .tell(here, "its Transform is not finite; left out");
+            place = Transform::default();
+        }
         if place.translation != Vec3::ZERO {
             node.add("translation", vector(place.translation));
         }
@@ -226,129 +223,90 @@ impl Writer<'_> {
         if place.scale != Vec3::ONE {
             node.add("scale", vector(place.scale));
         }
+        let (physics, below) = self.physics(here);
         let children = here.get::<Children>().into_iter().flatten();
-        let children: Vec<_> = children
-            .filter_map(|child| self.index.get(child).copied())
-            .collect();
+        let children = children.filter_map(|child| self.index.get(child).copied());
+        let children: Vec<_> = children.chain(below).collect();
         if !children.is_empty() {
             node.add("children", json!(children));
         }
         let mut extensions = Fields::default();
-        let physics = self.physics(entity);
         if !physics.is_empty() {
             extensions.add(super::physics::NAME, physics.value());
         }
         let index = |end: Entity| self.index.get(&end).copied();
-        if let Some(element) = element(here, index, &mut self.left_out) {
+        if let Some(element) = element(here, self.world, index, &mut self.left_out) {
             extensions.add(super::element::NAME, element);
         }
+        self.left_out.tell_unwritten(here);
         if !extensions.is_empty() {
             node.add("extensions", extensions.value());
         }
         node.value()
     }
 
-    /// Motion and collider of an entity.
-    fn physics(&mut self, entity: Entity) -> Fields {
-        let here = self.world.entity(entity);
+    /// Motion and collider of an entity, and the node below it that has the collider where this is scaled by itself.
+    fn physics(&mut self, here: EntityRef) -> (Fields, Option<usize>) {
         let mut physics = Fields::default();
         if let Some(motion) = motion(here, self.world, &mut self.left_out) {
             physics.add("motion", motion);
         }
-        let Some(collider) = here.get::<Collider>() else {
-            return physics;
+        let Some((key, collider, symmetric)) = self.collider(here) else {
+            return (physics, None);
         };
-        let geometry = match self.shared.geometry(collider) {
-            Ok(Geometry::Shape(shape)) => json!({ "shape": shape }),
-            Ok(Geometry::Mesh { mesh, hull }) => {
-                // A node of its own, outside the scene, so that nothing more is drawn.
-                let node = self.index.len() + self.shared.mesh_nodes.len();
-                self.shared.mesh_nodes.push(json!({ "mesh": mesh }));
-                json!({ "node": node, "convexHull": hull })
-            }
+        let Some(scale) = own_scale(here, self.world, symmetric) else {
+            physics.add(key, collider);
+            return (physics, None);
+        };
+        let collider = Fields::default().with(key, collider).value();
+        let extensions = Fields::default().with(super::physics::NAME, collider);
+        let node = Fields::default()
+            .with("scale", vector(scale))
+            .with("extensions", extensions.value());
+        (physics, Some(self.add_node(node.value())))
+    }
+
+    /// A collider's key and what it says, and whether its shape is its own mirror image.
+    fn collider(&mut self, here: EntityRef) -> Option<(&'static str, Value, bool)> {
+        let geometry = match self.shared.geometry(here.get::<Collider>()?) {
+            Ok(geometry) => geometry,
             Err(what) => {
-                self.left_out.push(format!("{entity}: its collider {what}"));
-                return physics;
+                self.left_out
+                    .tell(here, format_args!("its collider {what}"));
+                return None;
+            }
+        };
+        let symmetric = matches!(geometry, Geometry::Shape(_));
+        let geometry = match geometry {
+            Geometry::Shape(shape) => json!({ "shape": shape }),
+            Geometry::Mesh { mesh, hull } => {
+                // On a node of its own, outside the scene, so that nothing more is drawn.
+                let node = self.add_node(json!({ "mesh": mesh }));
+                json!({ "node": node, "convexHull": hull })
             }
         };
         let mut fields = Fields::default().with("geometry", geometry);
-        if let Some(groups) = here.get::<CollisionGroups>() {
-            fields.add("collisionFilter", json!(self.shared.filter(filter(groups))));
+        if let Some(filter) = self.shared.filters.index(groups(here)) {
+            fields.add("collisionFilter", json!(filter));
         }
         if here.contains::<Sensor>() {
-            physics.add("trigger", fields.value());
-            return physics;
+            return Some(("trigger", fields.value(), symmetric));
         }
         if let Some(material) = material(here) {
             fields.add("physicsMaterial", json!(self.shared.material(material)));
         }
-        physics.add("collider", fields.value());
-        physics
+        Some(("collider", fields.value(), symmetric))
     }
 
-    /// Joints, each as two nodes below its bodies; after all others, so that their indices are known.
-    fn joints(&mut self, order: &[Entity]) {
-        let meshes = std::mem::take(&mut self.shared.mesh_nodes);
-        self.nodes.extend(meshes);
-        for entity in self.joint_entities(order) {
-            let Some(ImpulseJoint { parent, data }) = self.world.get(entity) else {
-                continue;
-            };
-            let owner = super::expand::owner(self.world, entity);
-            let bodies = [Some(*parent), owner];
-            let [Some(a), Some(b)] = bodies.map(|body| self.index.get(&body?).copied()) else {
-                let what = format!("{entity}: a body of its joint is not among what is exported");
-                self.left_out.push(what);
-                continue;
-            };
-            let raw = data.as_ref().raw;
-            let kind = joint(&raw, entity, &mut self.left_out);
-            let kind = self.shared.joint(kind);
-            let mut frame =
-                |body: usize, entity: Option<Entity>, frame: (Vec3, Quat), extensions: Value| {
-                    let scale = entity
-                        .and_then(|entity| self.world.get::<GlobalTransform>(entity))
-                        .map_or(Vec3::ONE, |place| steady(place.compute_transform().scale));
-                    let node = Fields::default()
-                        .with("translation", vector(frame.0 / scale))
-                        .with("rotation", numbers(frame.1.to_array()))
-                        .with("extensions", extensions);
-                    let index = self.nodes.len();
-                    self.nodes.push(node.value());
-                    let body = &mut self.nodes[body];
-                    let mut children = body["children"].as_array().cloned().unwrap_or_default();
-                    children.push(json!(index));
-                    body["children"] = children.into();
-                    index
-                };
-            let frames = [raw.local_frame1, raw.local_frame2].map(|f| (f.translation, f.rotation));
-            let other = frame(b, owner, frames[1], Value::Null);
-            let joint = json!({ "joint": {
-                "connectedNode": other, "joint": kind, "enableCollision": raw.contacts_enabled,
-            } });
-            frame(
-                a,
-                Some(*parent),
-                frames[0],
-                json!({ super::physics::NAME: joint }),
-            );
-        }
+    /// The index of a node that is no entity's; it comes after those of all entities.
+    fn add_node(&mut self, node: Value) -> usize {
+        self.shared.more_nodes.push(node);
+        self.index.len() + self.shared.more_nodes.len() - 1
     }
+}
 
-    /// What holds a joint: anything on or below what is exported.
-    fn joint_entities(&self, order: &[Entity]) -> Vec<Entity> {
-        let mut found = Vec::new();
-        let mut seen = EntityHashSet::default();
-        let mut open: Vec<_> = order.iter().rev().copied().collect();
-        while let Some(entity) = open.pop() {
-            if !seen.insert(entity) {
-                continue;
-            }
-            if self.world.get::<ImpulseJoint>(entity).is_some() {
-                found.push(entity);
-            }
-            open.extend(self.world.get::<Children>(entity).into_iter().flatten());
-        }
-        found
-    }
+/// Groups of a collider: in Rapier, one without any is in all, and touches all.
+fn groups(collider: EntityRef) -> CollisionGroups {
+    let groups = collider.get::<CollisionGroups>();
+    groups.copied().unwrap_or_default()
 }

@@ -1,74 +1,115 @@
 //! An element as `BEVY_coilover` writes it: the way back from [`element`](super::element).
 
+use super::left_out::LeftOut;
 use super::number::{Fields, number, numbers, vector};
+use super::place::matrix;
 use crate::element::*;
+use crate::input::lists::with_elements;
+use bevy::ecs::entity_disabling::Disabled;
 use bevy::prelude::*;
 use serde_json::{Value, json};
+
+/// The ends of an element.
+pub(super) fn ends(entity: EntityRef) -> Option<[Entity; 2]> {
+    macro_rules! ends {
+        ($($element:ident),*) => {
+            $(if let Some(element) = entity.get::<$element>() {
+                return Some([element.body_a, element.body_b]);
+            })*
+        };
+    }
+    with_elements!(ends);
+    None
+}
 
 /// What an element says, if the entity is one. `node` knows the index of an end's node.
 pub(super) fn element(
     entity: EntityRef,
+    world: &World,
     node: impl Fn(Entity) -> Option<usize>,
-    left_out: &mut Vec<String>,
+    left_out: &mut LeftOut,
 ) -> Option<Value> {
-    let mut all = Fields::default();
+    let [a, b] = ends(entity)?;
     let mut end = |entity_of: Entity, name: &str| {
         let index = node(entity_of);
         if index.is_none() {
-            left_out.push(format!(
-                "{}: its {name} is not among what is exported",
-                entity.id()
-            ));
+            let what = format_args!("its {name} is not among what is exported");
+            left_out.tell(entity, what);
         }
         index.map_or(Value::Null, |index| json!(index))
     };
-    let mut ends = |a: Entity, b: Entity| {
-        Fields::default()
-            .with("a", end(a, "body_a"))
-            .with("b", end(b, "body_b"))
-    };
+    let ends = Fields::default()
+        .with("a", end(a, "body_a"))
+        .with("b", end(b, "body_b"));
+    let mut all = Fields::default();
     if let Some(s) = entity.get::<Spring>() {
-        let fields = ends(s.body_a, s.body_b)
+        let fields = ends
             .with("stiffness", number(s.stiffness))
             .with("restLength", optional(s.rest_length));
         all.add("spring", fields.value());
     } else if let Some(d) = entity.get::<Damper>() {
-        let fields = ends(d.body_a, d.body_b).with("damping", number(d.damping));
+        let fields = ends.with("damping", number(d.damping));
         all.add("damper", fields.value());
     } else if let Some(p) = entity.get::<SpringDamper>() {
-        let fields = ends(p.body_a, p.body_b)
+        let fields = ends
             .with("stiffness", number(p.stiffness))
             .with("damping", number(p.damping))
             .with("restLength", optional(p.rest_length));
         all.add("springDamper", fields.value());
     } else if let Some(s) = entity.get::<TorsionSpring>() {
-        let fields = ends(s.body_a, s.body_b)
+        let fields = ends
             .with("axis", vector(s.axis))
             .with("stiffness", number(s.stiffness))
             .with("restAngle", optional(s.rest_angle));
         all.add("torsionSpring", fields.value());
     } else if let Some(d) = entity.get::<TorsionDamper>() {
-        let fields = ends(d.body_a, d.body_b)
+        let fields = ends
             .with("axis", vector(d.axis))
             .with("damping", number(d.damping));
         all.add("torsionDamper", fields.value());
     } else {
         let p = entity.get::<TorsionSpringDamper>()?;
-        let fields = ends(p.body_a, p.body_b)
+        let fields = ends
             .with("axis", vector(p.axis))
             .with("stiffness", number(p.stiffness))
             .with("damping", number(p.damping))
             .with("restAngle", optional(p.rest_angle));
         all.add("torsionSpringDamper", fields.value());
     }
+    if let Some(anchors) = anchors(entity, [a, b], world, left_out) {
+        let anchors = json!({ "a": vector(anchors.a), "b": vector(anchors.b) });
+        all.add("anchors", anchors);
+    }
     companions(entity, &mut all);
+    if entity.contains::<Disabled>() {
+        all.add("disabled", true.into());
+    }
     if entity.contains::<CustomSpringLaw>() || entity.contains::<CustomDampingLaw>() {
-        left_out.push(format!(
-            "{}: its law is a function, which no file can hold",
-            entity.id()
-        ));
+        left_out.tell(entity, "its law is a function, which no file can hold");
     }
     Some(all.value())
+}
+
+/// Where an element is held. Points of the world, which the next step would take as points of the ends, are so taken here.
+fn anchors(
+    entity: EntityRef,
+    ends: [Entity; 2],
+    world: &World,
+    left_out: &mut LeftOut,
+) -> Option<Anchors> {
+    let given = entity.get::<Anchors>().copied();
+    let Some(points) = entity.get::<WorldAnchors>() else {
+        return given;
+    };
+    let local = |end: Entity, point: Vec3| {
+        let end = matrix(world, end)?.affine();
+        Some(end.inverse().transform_point3(point))
+    };
+    let found = local(ends[0], points.a).zip(local(ends[1], points.b));
+    if found.is_none() {
+        left_out.tell(entity, "WorldAnchors are not written: an end is nowhere");
+    }
+    found.map(|(a, b)| Anchors::new(a, b)).or(given)
 }
 
 fn optional(x: Option<f32>) -> Value {
@@ -76,10 +117,6 @@ fn optional(x: Option<f32>) -> Value {
 }
 
 fn companions(entity: EntityRef, all: &mut Fields) {
-    if let Some(anchors) = entity.get::<Anchors>() {
-        let anchors = json!({ "a": vector(anchors.a), "b": vector(anchors.b) });
-        all.add("anchors", anchors);
-    }
     if let Some(law) = entity.get::<SpringLaw>() {
         all.add("springLaw", spring_law(law));
     }

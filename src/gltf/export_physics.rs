@@ -1,10 +1,13 @@
-//! Rapier's bodies, colliders and joints as `KHR_physics_rigid_bodies` writes them.
+//! Rapier's bodies and colliders as `KHR_physics_rigid_bodies` writes them.
 
+use super::export_filters::Filters;
+use super::export_mass::mass;
+use super::left_out::LeftOut;
 use super::mass::steady;
 use super::number::{Fields, number, numbers, vector};
+use super::place::place;
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
-use bevy_rapier3d::rapier::dynamics::{GenericJoint as RawJoint, MotorModel};
 use serde_json::{Value, json};
 
 /// What nodes share in a file.
@@ -12,14 +15,14 @@ use serde_json::{Value, json};
 pub(super) struct Parts {
     pub(super) shapes: Vec<Value>,
     pub(super) materials: Vec<Value>,
-    pub(super) filters: Vec<Value>,
+    pub(super) filters: Filters,
     pub(super) joints: Vec<Value>,
     pub(super) meshes: Vec<Value>,
     pub(super) accessors: Vec<Value>,
     pub(super) views: Vec<Value>,
     pub(super) buffer: Vec<u8>,
-    /// Nodes that only hold the mesh of a collider.
-    pub(super) mesh_nodes: Vec<Value>,
+    /// Nodes beside those of entities: meshes of colliders, and colliders that are scaled by themselves.
+    pub(super) more_nodes: Vec<Value>,
 }
 
 /// Where a collider's geometry is in the file.
@@ -29,7 +32,7 @@ pub(super) enum Geometry {
 }
 
 /// The index of a value in a list, which gets it if it has not.
-fn place(list: &mut Vec<Value>, value: Value) -> usize {
+fn index(list: &mut Vec<Value>, value: Value) -> usize {
     list.iter().position(|v| *v == value).unwrap_or_else(|| {
         list.push(value);
         list.len() - 1
@@ -38,15 +41,11 @@ fn place(list: &mut Vec<Value>, value: Value) -> usize {
 
 impl Parts {
     pub(super) fn material(&mut self, value: Value) -> usize {
-        place(&mut self.materials, value)
-    }
-
-    pub(super) fn filter(&mut self, value: Value) -> usize {
-        place(&mut self.filters, value)
+        index(&mut self.materials, value)
     }
 
     pub(super) fn joint(&mut self, value: Value) -> usize {
-        place(&mut self.joints, value)
+        index(&mut self.joints, value)
     }
 
     /// A collider's shape, before its entity's scale; what it is, if the format has it not.
@@ -90,7 +89,7 @@ impl Parts {
             }
             _ => return Err("has a shape that glTF has not"),
         };
-        Ok(Geometry::Shape(place(&mut self.shapes, shape)))
+        Ok(Geometry::Shape(index(&mut self.shapes, shape)))
     }
 
     fn mesh(&mut self, vertices: &[Vec3], triangles: &[[u32; 3]]) -> usize {
@@ -125,7 +124,7 @@ impl Parts {
 }
 
 /// How a body moves; nothing for one that is fixed.
-pub(super) fn motion(body: EntityRef, world: &World, left_out: &mut Vec<String>) -> Option<Value> {
+pub(super) fn motion(body: EntityRef, world: &World, left_out: &mut LeftOut) -> Option<Value> {
     let kind = *body.get::<RigidBody>()?;
     let mut motion = Fields::default();
     match kind {
@@ -135,42 +134,34 @@ pub(super) fn motion(body: EntityRef, world: &World, left_out: &mut Vec<String>)
             motion.add("isKinematic", true.into());
         }
     }
-    let place = body
-        .get::<GlobalTransform>()
-        .map(GlobalTransform::compute_transform)
-        .unwrap_or_default();
-    if let Some(properties) = properties(body, world) {
-        let locked = body
-            .get::<LockedAxes>()
-            .copied()
-            .unwrap_or(LockedAxes::empty());
-        if !(locked - LockedAxes::TRANSLATION_LOCKED - LockedAxes::ROTATION_LOCKED).is_empty()
-            || (locked.intersects(LockedAxes::TRANSLATION_LOCKED)
-                && !locked.contains(LockedAxes::TRANSLATION_LOCKED))
-            || (locked.intersects(LockedAxes::ROTATION_LOCKED)
-                && !locked.contains(LockedAxes::ROTATION_LOCKED))
-        {
-            left_out.push(format!(
-                "{}: single locked axes are of the world, and glTF has only those of the body",
-                body.id()
-            ));
-        }
-        let endless = locked.contains(LockedAxes::TRANSLATION_LOCKED);
-        motion.add("mass", number(if endless { 0.0 } else { properties.mass }));
-        if properties.local_center_of_mass != Vec3::ZERO {
-            motion.add(
-                "centerOfMass",
-                vector(properties.local_center_of_mass / steady(place.scale)),
-            );
-        }
-        if locked.contains(LockedAxes::ROTATION_LOCKED) {
-            motion.add("inertiaDiagonal", vector(Vec3::ZERO));
-        } else {
-            motion.add("inertiaDiagonal", vector(properties.principal_inertia));
-            let frame = properties.principal_inertia_local_frame;
-            if frame != Quat::IDENTITY {
-                motion.add("inertiaOrientation", numbers(frame.to_array()));
-            }
+    let place = place(world, body.id()).unwrap_or_default();
+    let locked = body
+        .get::<LockedAxes>()
+        .copied()
+        .unwrap_or(LockedAxes::empty());
+    let some_of = |all: LockedAxes| locked.intersects(all) && !locked.contains(all);
+    if some_of(LockedAxes::TRANSLATION_LOCKED) || some_of(LockedAxes::ROTATION_LOCKED) {
+        left_out.tell(
+            body,
+            "single LockedAxes are of the world, and glTF has only those of the body",
+        );
+    }
+    let properties = mass(world, body);
+    let endless = locked.contains(LockedAxes::TRANSLATION_LOCKED);
+    motion.add("mass", number(if endless { 0.0 } else { properties.mass }));
+    if properties.local_center_of_mass != Vec3::ZERO {
+        motion.add(
+            "centerOfMass",
+            vector(properties.local_center_of_mass / steady(place.scale)),
+        );
+    }
+    if locked.contains(LockedAxes::ROTATION_LOCKED) {
+        motion.add("inertiaDiagonal", vector(Vec3::ZERO));
+    } else {
+        motion.add("inertiaDiagonal", vector(properties.principal_inertia));
+        let frame = properties.principal_inertia_local_frame;
+        if frame != Quat::IDENTITY {
+            motion.add("inertiaOrientation", numbers(frame.to_array()));
         }
     }
     if let Some(velocity) = body.get::<Velocity>() {
@@ -190,28 +181,6 @@ pub(super) fn motion(body: EntityRef, world: &World, left_out: &mut Vec<String>)
     Some(motion.value())
 }
 
-/// Mass properties of a whole body: as the user gave them if nothing else weighs, else as the engine has them.
-fn properties(body: EntityRef, world: &World) -> Option<MassProperties> {
-    let handle = body.get::<RapierRigidBodyHandle>();
-    let context = body.get::<RapierContextEntityLink>();
-    let engine = handle.zip(context).and_then(|(handle, context)| {
-        let set = world.get::<RapierRigidBodySet>(context.0)?;
-        let raw = set.bodies.get(handle.0)?.mass_properties().local_mprops;
-        Some(MassProperties::from_rapier(raw))
-    });
-    let given = match body.get::<AdditionalMassProperties>() {
-        Some(AdditionalMassProperties::MassProperties(given)) => Some(*given),
-        _ => None,
-    };
-    match (given, engine) {
-        (Some(given), Some(engine)) if (engine.mass - given.mass).abs() > 1e-4 * given.mass => {
-            Some(engine)
-        }
-        (Some(given), _) => Some(given),
-        (None, engine) => engine,
-    }
-}
-
 /// Friction and restitution of a collider, if it has any of its own.
 pub(super) fn material(collider: EntityRef) -> Option<Value> {
     let (friction, restitution) = (collider.get::<Friction>(), collider.get::<Restitution>());
@@ -224,106 +193,27 @@ pub(super) fn material(collider: EntityRef) -> Option<Value> {
         CoefficientCombineRule::Multiply => "multiply",
         _ => "average",
     };
-    let mut fields = Fields::default();
-    if let Some(friction) = friction {
-        fields.add("staticFriction", number(friction.coefficient));
-        fields.add("dynamicFriction", number(friction.coefficient));
-        fields.add("frictionCombine", rule(friction.combine_rule).into());
-    }
-    if let Some(restitution) = restitution {
-        fields.add("restitution", number(restitution.coefficient));
-        fields.add("restitutionCombine", rule(restitution.combine_rule).into());
-    }
+    // What is not given is as Rapier takes it; a reader would take other numbers.
+    let friction = friction.copied().unwrap_or_default();
+    let restitution = restitution.copied().unwrap_or_default();
+    let fields = Fields::default()
+        .with("staticFriction", number(friction.coefficient))
+        .with("dynamicFriction", number(friction.coefficient))
+        .with("frictionCombine", rule(friction.combine_rule).into())
+        .with("restitution", number(restitution.coefficient))
+        .with("restitutionCombine", rule(restitution.combine_rule).into());
     Some(fields.value())
 }
 
-/// Groups as systems that have the number of their bit for a name.
-pub(super) fn filter(groups: &CollisionGroups) -> Value {
-    let names = |group: Group| -> Vec<String> {
-        let bits = (0..32).filter(|bit| group.bits() & (1 << bit) != 0);
-        bits.map(|bit| bit.to_string()).collect()
+/// What a collider is scaled by beside the scale of its node, if anything. A symmetric shape is not mirrored.
+pub(super) fn own_scale(collider: EntityRef, world: &World, symmetric: bool) -> Option<Vec3> {
+    let scale = match collider.get::<ColliderScale>()? {
+        ColliderScale::Relative(scale) => *scale,
+        ColliderScale::Absolute(scale) => {
+            *scale / place(world, collider.id()).unwrap_or_default().scale
+        }
     };
-    json!({
-        "collisionSystems": names(groups.memberships),
-        "collideWithSystems": names(groups.filters),
-    })
-}
-
-/// Limits and drives of a joint.
-pub(super) fn joint(joint: &RawJoint, entity: Entity, left_out: &mut Vec<String>) -> Value {
-    let bits = |mask: u8, first: usize| -> Vec<usize> {
-        (0..3).filter(|i| mask & (1 << (first + i)) != 0).collect()
-    };
-    let locked = joint.locked_axes.bits();
-    let coupled = joint.coupled_axes.bits() & !locked;
-    let limited = joint.limit_axes.bits() & !locked;
-    let mut limits = Vec::new();
-    let mut drives = Vec::new();
-    for (first, key, kind) in [(0, "linearAxes", "linear"), (3, "angularAxes", "angular")] {
-        let all = bits(locked, first);
-        if !all.is_empty() {
-            limits.push(json!({ key: all, "min": 0, "max": 0 }));
-        }
-        let ends = |i: usize, axes: Vec<usize>| {
-            let limit = &joint.limits[first + i];
-            let given = |x: f32| {
-                if x.abs() < f32::MAX {
-                    number(x)
-                } else {
-                    Value::Null
-                }
-            };
-            Fields::default()
-                .with(key, json!(axes))
-                .with("min", given(limit.min))
-                .with("max", given(limit.max))
-                .value()
-        };
-        let group = bits(coupled, first);
-        if let Some(i) = group.first()
-            && limited & (1 << (first + i)) != 0
-        {
-            limits.push(ends(*i, group.clone()));
-        }
-        for i in bits(limited & !coupled, first) {
-            limits.push(ends(i, vec![i]));
-        }
-        for i in bits(joint.motor_axes.bits() & !locked, first) {
-            let motor = &joint.motors[first + i];
-            let mode = match motor.model {
-                MotorModel::AccelerationBased => "acceleration",
-                MotorModel::ForceBased => "force",
-            };
-            let fields = Fields::default()
-                .with("type", kind.into())
-                .with("mode", mode.into())
-                .with("axis", json!(i))
-                .with("positionTarget", number(motor.target_pos))
-                .with("velocityTarget", number(motor.target_vel))
-                .with("stiffness", number(motor.stiffness))
-                .with("damping", number(motor.damping))
-                .with(
-                    "maxForce",
-                    if motor.max_force < f32::MAX {
-                        number(motor.max_force)
-                    } else {
-                        Value::Null
-                    },
-                );
-            drives.push(fields.value());
-            if coupled & (1 << (first + i)) != 0 {
-                left_out.push(format!(
-                    "{entity}: a motor of coupled axes is written as one of a single axis"
-                ));
-            }
-        }
-    }
-    let mut all = Fields::default();
-    if !limits.is_empty() {
-        all.add("limits", limits.into());
-    }
-    if !drives.is_empty() {
-        all.add("drives", drives.into());
-    }
-    all.value()
+    let scale = steady(if symmetric { scale.abs() } else { scale });
+    // A node that is scaled to nothing has no collider in the file, whatever stands below it.
+    (scale.is_finite() && scale != Vec3::ONE).then_some(scale)
 }

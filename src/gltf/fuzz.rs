@@ -125,6 +125,7 @@ fn scene() -> Value {
     tuned["springLaw"] =
         json!({ "Polynomial": { "pull": { "linear": 3 }, "push": { "cubic": 2 } } });
     tuned["holdPose"] = json!({ "load": "B", "share": 0.5 });
+    tuned["disabled"] = json!(false);
     let twist = element(
         "torsionSpringDamper",
         ends(json!({ "axis": [0, 1, 0], "restAngle": 0.3 })),

@@ -1,8 +1,9 @@
 //! Joints: what is rigid becomes a joint of Rapier's, what is soft or driven becomes elements of ours.
 
 use super::carry::LoadedJoint;
-use super::expand::{owner, place};
+use super::expand::owner;
 use super::physics_joint::{Drive, Limit};
+use super::place::place;
 use super::soft::{self, Frames};
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
@@ -65,10 +66,12 @@ pub(super) fn add(world: &mut World, node: Entity, joint: &LoadedJoint) {
             if let Err(reason) = soft::add_limit(world, &frames, limit, stiffness) {
                 told(reason);
             }
-        } else if let Err(reason) = hold(&mut rigid, limit) {
-            told(reason);
         } else {
-            acts = true;
+            let (holds, lacks) = hold(&mut rigid, limit);
+            acts |= holds;
+            if let Some(reason) = lacks {
+                told(reason);
+            }
         }
     }
     for drive in &joint.kind.drives {
@@ -103,53 +106,58 @@ fn anchor(world: &mut World, node: Entity) -> Entity {
     found
 }
 
-/// A limit that does not give.
-fn hold(joint: &mut GenericJoint, limit: &Limit) -> Result<(), &'static str> {
+/// A limit that does not give: whether anything of it holds, and what of it does not.
+fn hold(joint: &mut GenericJoint, limit: &Limit) -> (bool, Option<&'static str>) {
     let axes: Vec<_> = (0..3).filter(|i| limit.axes[*i]).collect();
-    let mask = |joint: &mut GenericJoint| {
-        for i in &axes {
-            joint.lock_axes(JointAxesMask::from_bits_truncate(
-                1 << axis(limit.linear, *i) as u8,
-            ));
-        }
-    };
+    let mut mask = JointAxesMask::empty();
+    for i in &axes {
+        mask |= JointAxesMask::from(axis(limit.linear, *i));
+    }
     if limit.min.is_none() && limit.max.is_none() {
-        return Ok(());
+        return (false, None);
     }
     if let [only] = axes[..] {
         if (limit.min, limit.max) == (Some(0.0), Some(0.0)) {
-            mask(joint);
-            return Ok(());
+            joint.lock_axes(mask);
+            return (true, None);
         }
         let ends = [
             limit.min.unwrap_or(-f32::MAX),
             limit.max.unwrap_or(f32::MAX),
         ];
         joint.set_limits(axis(limit.linear, only), ends);
-        return Ok(());
+        return (true, None);
     }
     // A distance, or the angle of a cone: never negative.
     let min = limit.min.unwrap_or(0.0).max(0.0);
     let Some(max) = limit.max else {
-        return Err("a rigid limit with only a min on two or three axes is not honoured");
+        let lacks = "a rigid limit with only a min on two or three axes is not honoured";
+        return (false, Some(lacks));
     };
     if max <= 0.0 {
-        mask(joint);
-        return Ok(());
+        joint.lock_axes(mask);
+        return (true, None);
     }
     if !limit.linear && axes.len() == 3 {
-        return Err("a rigid limit of the whole rotation is not honoured, but for max = 0");
+        let lacks = "a rigid limit of the whole rotation is not honoured, but for max = 0";
+        return (false, Some(lacks));
     }
-    let mut coupled = joint.raw.coupled_axes;
-    for i in &axes {
-        coupled |= JointAxesMask::from_bits_truncate(1 << axis(limit.linear, *i) as u8);
+    let kind = if limit.linear {
+        JointAxesMask::LIN_AXES
+    } else {
+        JointAxesMask::ANG_AXES
+    };
+    let coupled = joint.raw.coupled_axes;
+    if coupled.intersects(kind) && coupled & kind != mask {
+        // Rapier takes the axes of both together, and panics where these are three angles.
+        let lacks =
+            "a second rigid limit on two or three axes, not those of the first, is left out";
+        return (false, Some(lacks));
     }
-    joint.set_coupled_axes(coupled);
+    joint.set_coupled_axes(coupled | mask);
     joint.set_limits(axis(limit.linear, axes[0]), [0.0, max]);
-    if min > 0.0 {
-        return Err("the min of a rigid limit on two or three axes is not honoured; its max is");
-    }
-    Ok(())
+    let lacks = "the min of a rigid limit on two or three axes is not honoured; its max is";
+    (true, (min > 0.0).then_some(lacks))
 }
 
 /// A drive as a motor of Rapier's.

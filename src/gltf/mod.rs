@@ -3,7 +3,8 @@
 //! [`handler`] takes part in Bevy's loader: [`physics`] and [`element`] (with [`companions`] and [`looks`]) read the JSON
 //! through [`json`], which tells what is wrong. Elements go into the scene as components; what Rapier is to have is carried
 //! by the components of [`carry`], and [`expand`] gives it to Rapier once the scene stands in the world: [`shapes`],
-//! [`mass`], [`filters`], [`joints`], and [`soft`] for what gives in a joint. [`export`] is the way back.
+//! [`mass`], [`filters`], [`joints`], and [`soft`] for what gives in a joint. [`export`] is the way back; [`left_out`] tells
+//! what does not go with it.
 
 mod carry;
 mod companions;
@@ -11,6 +12,9 @@ mod element;
 mod expand;
 mod export;
 mod export_element;
+mod export_filters;
+mod export_joints;
+mod export_mass;
 mod export_physics;
 mod filters;
 #[cfg(test)]
@@ -18,17 +22,20 @@ mod fuzz;
 mod handler;
 mod joints;
 mod json;
+mod left_out;
 #[cfg(feature = "visual")]
 mod looks;
 mod mass;
 mod number;
 mod physics;
 mod physics_joint;
+mod place;
 mod shapes;
 mod soft;
 
 pub use export::{ExportedGltf, export_gltf};
 
+use bevy::ecs::entity_disabling::Disabled;
 use bevy::gltf::extensions::GltfExtensionHandlers;
 use bevy::prelude::*;
 use bevy::transform::TransformSystems;
@@ -53,6 +60,7 @@ impl Plugin for CoiloverGltfPlugin {
         // A scene with a type that is not registered does not spawn.
         crate::plugin::register_elements(app);
         app.register_type::<crate::SpringReadout>()
+            .register_type::<Disabled>()
             .register_type::<carry::LoadedBody>()
             .register_type::<carry::LoadedCollider>()
             .register_type::<carry::LoadedJoint>();

@@ -13,7 +13,7 @@ use serde::ser::SerializeMap;
 use serde::{Deserializer, Serialize, Serializer};
 use std::fmt;
 
-/// Where a limit stands for none; JSON has no infinity.
+/// Where a limit stands for none, with its sign; JSON has no infinity.
 const NO_LIMIT: f32 = f32::MAX;
 
 /// What can stand in a preset beside the element itself, and where it goes.
@@ -93,14 +93,15 @@ pub(crate) fn apply(text: &str, snapshot: &Snapshot) -> Result<Snapshot, String>
     }
 }
 
-/// With one number for no limit in the place of another.
+/// With one number for no limit in the place of another, above and below.
 fn limits(mut snapshot: Snapshot, from: f32, to: f32) -> Snapshot {
     let change = |value: &mut f32| {
-        if *value == from {
-            *value = to;
+        if value.abs() == from {
+            *value = to.copysign(*value);
         }
     };
     if let Some(travel) = &mut snapshot.travel {
+        change(&mut travel.min_length);
         change(&mut travel.max_length);
     }
     if let Some(limit) = &mut snapshot.breakable {

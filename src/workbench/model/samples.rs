@@ -102,6 +102,21 @@ fn a_preset_is_read_as_it_was_written() {
     }
 }
 
+#[test]
+fn a_stop_at_the_longer_end_alone_is_read_as_it_was_written() {
+    let (_, plain) = samples().remove(0);
+    let slide = Snapshot {
+        travel: Some(SpringTravel::new(f32::NEG_INFINITY, 0.2, 1e6)),
+        axis: Some(SpringAxis::BodyA(Vec3::Y)),
+        ..plain
+    };
+    for written in [preset::json, preset::ron] {
+        let text = written(&slide).expect("a preset");
+        let read = preset::apply(&text, &Snapshot::new(slide.part));
+        assert_eq!(read.as_ref(), Ok(&slide), "{text}");
+    }
+}
+
 /// As a person reads it, and as a scene file has it.
 #[test]
 fn ron_is_as_in_a_scene_file() {
