@@ -41,7 +41,7 @@ pub struct MouseSpring {
     /// The dynamic body that is pulled.
     #[entities]
     pub body: Entity,
-    /// Where it is held, in its own frame, m.
+    /// Where it is held, in its own frame, m; a frame that is scaled scales it.
     pub point: Vec3,
     /// Where that point is pulled to, in the world, m.
     pub target: Vec3,
@@ -117,15 +117,24 @@ pub(crate) fn hold(
         Has<SpringFault>,
     )>,
     released: Query<(Entity, &Grip), Without<MouseSpring>>,
-    bodies: Query<(&RapierRigidBodyHandle, &RapierContextEntityLink), With<RigidBody>>,
+    bodies: Query<
+        (
+            &RapierRigidBodyHandle,
+            &RapierContextEntityLink,
+            Option<&GlobalTransform>,
+        ),
+        With<RigidBody>,
+    >,
     sets: Query<&RapierRigidBodySet>,
     mut commands: Commands,
 ) {
     let body_of = |entity| {
-        let (handle, context) = bodies.get(entity).ok()?;
+        let (handle, context, frame) = bodies.get(entity).ok()?;
         let body = sets.get(context.0).ok()?.bodies.get(handle.0)?;
+        // The engine's body has no scale: what is said of it is in metres of the world.
+        let scale = frame.map_or(Vec3::ONE, GlobalTransform::scale);
         // A new one has no mass before its first step.
-        (body.is_dynamic() && body.mass() > 0.0).then_some(body)
+        (body.is_dynamic() && body.mass() > 0.0).then_some((body, scale))
     };
     for (entity, grip) in &released {
         release(entity, grip, &mut commands);
@@ -144,9 +153,11 @@ pub(crate) fn hold(
             }
             None => {}
         }
-        if let Some(body) = body {
+        if let Some((body, scale)) = body {
             at.translation = spring.target;
-            let springs = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| along(axis, entity, spring, body));
+            let mass = |axis| mass_at(body, scale * spring.point, axis);
+            let springs =
+                [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| along(axis, entity, spring, mass(axis)));
             let of = *spring;
             // Where the game has let go in the same tick there is nothing to hold by.
             commands
@@ -172,15 +183,10 @@ pub(crate) fn forget(gone: compat::Removed<MouseSpring>, mut commands: Commands)
     commands.entity(gone.entity).try_remove::<SpringFault>();
 }
 
-/// The spring along an axis.
-fn along(
-    axis: Vec3,
-    entity: Entity,
-    spring: &MouseSpring,
-    body: &RapierBody,
-) -> impl Bundle + use<> {
+/// The spring along an axis, for a mass there, kg.
+fn along(axis: Vec3, entity: Entity, spring: &MouseSpring, mass: f32) -> impl Bundle + use<> {
     let tuning = SpringTuning::frequency(spring.frequency, 1.0);
-    let (stiffness, damping) = tuning.coefficients(mass_at(body, spring.point, axis), 0.0);
+    let (stiffness, damping) = tuning.coefficients(mass, 0.0);
     (
         SpringDamper::new(entity, spring.body)
             .with_stiffness(stiffness)
@@ -192,8 +198,8 @@ fn along(
     )
 }
 
-/// Effective mass of a body at a point of it along an axis of the world, kg, whatever holds it: the inverse of
-/// 1/m + (r × n) · I⁻¹ (r × n).
+/// Effective mass of a body at a point of it (in its frame, scale taken in) along an axis of the world, kg, whatever holds
+/// it: the inverse of 1/m + (r × n) · I⁻¹ (r × n).
 fn mass_at(body: &RapierBody, point: Vec3, axis: Vec3) -> f32 {
     let properties = &body.mass_properties().local_mprops;
     let rotation = body.position().rotation;

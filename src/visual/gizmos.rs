@@ -1,7 +1,7 @@
 //! Lines for debugging: ends, rest length, forces.
 
 use super::place::{Ends, Line, Lines};
-use crate::element::{Spring, SpringDamper};
+use crate::element::{Spring, SpringAxis, SpringDamper};
 use crate::readout::SpringReadout;
 use bevy::gizmos::AppGizmoBuilder;
 use bevy::gizmos::config::{GizmoConfigGroup, GizmoConfigStore};
@@ -10,7 +10,8 @@ use bevy::math::Vec3A;
 use bevy::prelude::*;
 
 /// The gizmo group that draws elements as lines, for debugging: crosses at the ends, the rest length
-/// beside the line, and the forces on both ends as arrows, red for tension and blue for compression.
+/// beside the line, and the forces on both ends as arrows, red for tension and blue for compression. Rest length and
+/// forces lie along the line between the ends, or along the element's [`SpringAxis`](crate::SpringAxis).
 ///
 /// Nothing is drawn until `all` is set or an element has [`ShowSpringGizmos`]. Needs Bevy's `GizmoPlugin`,
 /// which `DefaultPlugins` has with the feature `bevy_gizmos_render`.
@@ -81,23 +82,25 @@ fn draw(
         &SpringReadout,
         Option<&Spring>,
         Option<&SpringDamper>,
+        Option<&SpringAxis>,
         Option<&ShowSpringGizmos>,
     )>,
     lines: Lines,
     mut gizmos: Gizmos<SpringGizmos>,
 ) {
     let SpringGizmos { all, scale, cross } = gizmos.config_ext.clone();
-    for (line, readout, spring, pair, show) in &elements {
+    for (line, readout, spring, pair, axis, show) in &elements {
         if !show.map_or(all, |s| s.0) {
             continue;
         }
-        let Some(Ends { from, to, .. }) = lines.ends(&line) else {
+        let Some(ends) = lines.ends(&line) else {
             continue;
         };
+        let Ends { from, to, .. } = ends;
         if !(from.is_finite() && to.is_finite()) {
             continue;
         }
-        let direction = (to - from).normalize_or(Vec3A::Y);
+        let direction = direction(&ends, axis);
         for end in [from, to] {
             gizmos.cross(Isometry3d::from_translation(end), cross, END);
         }
@@ -122,4 +125,14 @@ fn draw(
         gizmos.arrow(from.into(), (from + pull).into(), color);
         gizmos.arrow(to.into(), (to - pull).into(), color);
     }
+}
+
+/// Which way an element acts, at unit length.
+fn direction(ends: &Ends, axis: Option<&SpringAxis>) -> Vec3A {
+    let along = match axis {
+        None => ends.to - ends.from,
+        Some(SpringAxis::World(axis)) => Vec3A::from(*axis),
+        Some(SpringAxis::BodyA(axis)) => ends.turn() * Vec3A::from(*axis),
+    };
+    along.normalize_or(Vec3A::Y)
 }

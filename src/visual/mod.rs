@@ -1,6 +1,6 @@
 //! What one sees: coils and telescopes between the ends.
 //!
-//! [`parts`] spawns and removes the drawn children of an element. Every frame [`place`] finds where the
+//! [`parts`] spawns and removes the drawn children of an element with [`made`]. Every frame [`place`] finds where the
 //! ends are, which way [`heading`] turns what is between them and how finely [`views`] finds that worth
 //! drawing, and [`lay`] lays the parts there as [`layout`] says. [`helix`] is the
 //! coil's mesh, [`round_wire`] the material that keeps its wire round when it is stretched, and [`shapes`]
@@ -14,6 +14,7 @@ mod heading;
 mod helix;
 mod lay;
 mod layout;
+mod made;
 mod parts;
 mod place;
 mod round_wire;
@@ -102,6 +103,10 @@ impl Plugin for CoiloverVisualPlugin {
                 (twist::wind, twist::turn, twist::lay)
                     .chain()
                     .in_set(CoiloverVisualSystems),
+            )
+            .add_systems(
+                PostUpdate,
+                parts::hand_on_layers.in_set(CoiloverVisualSystems),
             );
     }
 }

@@ -2,13 +2,15 @@
 
 use super::coil::Coil;
 use super::layout::{Layout, Part, SHORT};
+use super::made::{Made, Maker};
 use super::place::{Line, Lines, Placement};
 use super::round_wire::RoundWireMaterial;
 use super::shapes::{CoilMeshes, Finish, Shapes};
 use super::skin::SpringSkin;
 use super::telescope::Telescope;
-use super::twist::{Twist, Winding};
+use super::twist::Twist;
 use bevy::asset::{Assets, Handle};
+use bevy::camera::visibility::RenderLayers;
 use bevy::color::Color;
 use bevy::ecs::entity::EntityHashSet;
 use bevy::ecs::entity_disabling::Disabled;
@@ -25,50 +27,29 @@ pub(super) struct Levels(pub CoilMeshes);
 /// What is needed to make parts.
 #[derive(SystemParam)]
 pub(super) struct Workshop<'w, 's> {
-    children: Query<'w, 's, &'static Children>,
-    parts: Query<'w, 's, &'static Part>,
+    maker: Maker<'w, 's, Part>,
     shapes: ResMut<'w, Shapes>,
     meshes: ResMut<'w, Assets<Mesh>>,
     materials: ResMut<'w, Assets<StandardMaterial>>,
     wires: ResMut<'w, Assets<RoundWireMaterial>>,
-    commands: Commands<'w, 's>,
 }
 
 pub(super) const STEEL: Color = Color::srgb(0.78, 0.79, 0.82);
 const RUBBER: Color = Color::srgb(0.05, 0.05, 0.05);
 
 impl Workshop<'_, '_> {
-    /// Removes what was made for an element.
-    fn clear(&mut self, element: Entity) {
-        let children = self.children.get(element);
-        for child in children.map(|c| &**c).unwrap_or_default() {
-            let part = self.parts.get(*child);
-            if part.is_ok_and(|p| !matches!(p, Part::Custom(_))) {
-                self.commands.entity(*child).despawn();
-            }
-        }
-    }
-
     fn coil(&mut self, element: Entity, coil: &Coil) {
         let levels = self.shapes.coil(coil, &mut self.meshes);
         let wire = self.shapes.wire(coil, &mut self.wires);
-        self.commands.spawn((
-            Part::Coil,
-            Mesh3d(levels[0].clone()),
-            Levels(levels),
-            MeshMaterial3d(wire),
-            ChildOf(element),
-        ));
+        let mesh = Mesh3d(levels[0].clone());
+        let looks = (mesh, Levels(levels), MeshMaterial3d(wire));
+        self.maker.make(element, Part::Coil, looks);
     }
 
     fn solid(&mut self, element: Entity, part: Part, mesh: Handle<Mesh>, paint: (Color, Finish)) {
         let material = self.shapes.paint(paint.0, paint.1, &mut self.materials);
-        self.commands.spawn((
-            part,
-            Mesh3d(mesh),
-            MeshMaterial3d(material),
-            ChildOf(element),
-        ));
+        let looks = (Mesh3d(mesh), MeshMaterial3d(material));
+        self.maker.make(element, part, looks);
     }
 
     fn telescope(&mut self, element: Entity, telescope: &Telescope, with_seats: bool) {
@@ -146,7 +127,7 @@ pub(super) fn build(
         let Some(length) = length.filter(tells).or(bare.then_some(0.0)) else {
             return true;
         };
-        workshop.clear(element);
+        workshop.maker.clear(element);
         let first = placement.first(length);
         let (coil, telescope) = (coil.map(|c| c.at(first)), telescope.map(|t| t.at(first)));
         let coil = sound(element, "Coil", coil.as_ref(), |c| {
@@ -166,27 +147,38 @@ pub(super) fn build(
 
 /// Removes what was drawn of elements that were disabled: parts are entities of their own, and would stay as they were.
 pub(super) fn hide_disabled(
-    disabled: Query<&Children, (Added<Disabled>, HasParts, Allow<Disabled>)>,
-    parts: Query<Option<&Part>, Or<(With<Part>, With<Winding>)>>,
-    mut commands: Commands,
+    disabled: Query<Entity, (Added<Disabled>, HasParts, Allow<Disabled>)>,
+    mut maker: Maker<Made>,
 ) {
-    for child in disabled.iter().flatten() {
-        if let Ok(part) = parts.get(*child)
-            && !matches!(part, Some(Part::Custom(_)))
-        {
-            commands.entity(*child).despawn();
-        }
+    for element in &disabled {
+        maker.clear(element);
+    }
+}
+
+/// Hands on the render layers of an element, where they have changed or are gone.
+pub(super) fn hand_on_layers(
+    changed: Query<Entity, (Changed<RenderLayers>, HasParts)>,
+    mut removed: RemovedComponents<RenderLayers>,
+    mut maker: Maker<Made>,
+) {
+    for element in changed.iter().chain(removed.read()) {
+        maker.put_on_layers(element);
     }
 }
 
 /// An element that has parts.
 type HasParts = Or<(With<Placement>, With<Twist>)>;
 
-/// Takes up what users bring along for an element.
+/// Takes up what users bring along for an element, and lets go of what is a skin no more.
 pub(super) fn take_skins(
     skins: Query<(Entity, &SpringSkin, Option<&ChildOf>), Changed<SpringSkin>>,
+    mut removed: RemovedComponents<SpringSkin>,
+    bare: Query<(), (With<Part>, Without<SpringSkin>, Allow<Disabled>)>,
     mut commands: Commands,
 ) {
+    for entity in removed.read().filter(|entity| bare.contains(*entity)) {
+        let_go(entity, &mut commands);
+    }
     for (entity, skin, parent) in &skins {
         let Some(parent) = parent else {
             log::warn!("{entity}: SpringSkin: it must be a child of an element; it is not placed");
@@ -197,7 +189,7 @@ pub(super) fn take_skins(
                 "{entity}: SpringSkin: length is {}, and must be finite and positive; it is not placed",
                 skin.length
             );
-            commands.entity(entity).remove::<Part>();
+            let_go(entity, &mut commands);
             continue;
         }
         commands.entity(entity).insert(Part::Custom(skin.length));
@@ -211,4 +203,13 @@ pub(super) fn take_skins(
             .entry::<Placement>()
             .and_modify(|mut placement| placement.recall());
     }
+}
+
+/// Has what was laid between the ends go to the place that its own `Transform` says.
+fn let_go(skin: Entity, commands: &mut Commands) {
+    let mut skin = commands.entity(skin);
+    // It was passed over as long as it was laid here, and would stay where it is until it is changed.
+    skin.remove::<Part>()
+        .entry::<Transform>()
+        .and_modify(|mut place| place.set_changed());
 }

@@ -6,7 +6,7 @@ use super::views::{Cameras, Views, level};
 use crate::element::{Anchors, Damper, Spring, SpringDamper, WorldAnchors};
 use bevy::ecs::query::QueryData;
 use bevy::ecs::system::SystemParam;
-use bevy::math::Vec3A;
+use bevy::math::{Mat3A, Vec3A};
 use bevy::prelude::*;
 
 /// An element out of everyone's sight is placed every so many frames only. It may still throw a shadow
@@ -70,6 +70,12 @@ pub(super) struct Ends {
 }
 
 impl Ends {
+    /// How end A is turned.
+    #[inline]
+    pub fn turn(&self) -> Mat3A {
+        upright(self.x, self.y)
+    }
+
     /// Whether they are the same, found out without a jump.
     #[inline]
     fn are(&self, other: &Self) -> bool {
@@ -142,7 +148,7 @@ impl Placement {
         }
         self.ends = ends;
         self.length = length;
-        let upright = upright(ends.x, ends.y);
+        let upright = ends.turn();
         if length > SHORT {
             self.axis = between / length;
             self.heading.turn_to(upright.transpose() * self.axis);

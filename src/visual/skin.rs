@@ -6,7 +6,9 @@ use bevy::prelude::*;
 ///
 /// The mesh has to stand on its origin: its foot at y = 0, its top at y = [`length`](Self::length). Bevy's cylinder, say,
 /// has its middle there unless it is made with `CylinderAnchor::Bottom`. The element gets the `Transform` and `Visibility`
-/// that a parent of drawn entities needs.
+/// that a parent of drawn entities needs. Render layers stay yours: those of the element are not handed on to it.
+///
+/// Once this component is removed, the child stands where its own `Transform` says.
 ///
 /// A mesh scaled like that flattens or fattens its wire; [`Coil`](crate::Coil) does not.
 ///

@@ -1,5 +1,6 @@
 //! Spirals of torsion elements: their parts are spawned, turned with the bodies, and wound up.
 
+use super::made::Maker;
 use super::shapes::{Finish, Shapes};
 use super::spiral;
 use super::torsion_coil::TorsionCoil;
@@ -27,6 +28,8 @@ const KEPT: usize = 256;
 
 /// Where the spiral of an element is.
 #[derive(Component, Clone, Copy, Debug, Default)]
+// Worked out anew wherever a copy stands; a scene does not know it.
+#[component(clone_behavior = Ignore)]
 pub struct Twist {
     /// In metres; `None` while it is not drawn.
     coil: Option<TorsionCoil>,
@@ -171,15 +174,14 @@ pub(super) fn wind(
     changed: Query<Entity, Changed<TorsionCoil>>,
     mut removed: RemovedComponents<TorsionCoil>,
     mut enabled: RemovedComponents<Disabled>,
-    mut elements: Query<(Turn, Option<&TorsionCoil>, &mut Twist, Option<&Children>)>,
-    windings: Query<(), With<Winding>>,
+    mut elements: Query<(Turn, Option<&TorsionCoil>, &mut Twist)>,
     turns: Turns,
     mut waiting: Local<Vec<Entity>>,
     mut shapes: ResMut<Shapes>,
     mut spirals: ResMut<Spirals>,
     mut meshes: ResMut<Assets<Mesh>>,
     mut materials: ResMut<Assets<StandardMaterial>>,
-    mut commands: Commands,
+    mut maker: Maker<Winding>,
 ) {
     waiting.extend(&changed);
     waiting.extend(removed.read());
@@ -188,7 +190,7 @@ pub(super) fn wind(
     waiting.sort_unstable();
     waiting.dedup();
     waiting.retain(|&element| {
-        let Ok((turn, coil, mut twist, children)) = elements.get_mut(element) else {
+        let Ok((turn, coil, mut twist)) = elements.get_mut(element) else {
             return false;
         };
         // Sizes may follow from where the bodies are, so they must be there.
@@ -200,11 +202,7 @@ pub(super) fn wind(
         if coil.is_some_and(|coil| coil.center.is_finite()) && size.is_none() {
             return true;
         }
-        for child in children.into_iter().flatten() {
-            if windings.contains(*child) {
-                commands.entity(*child).despawn();
-            }
-        }
+        maker.clear(element);
         twist.from = None;
         twist.coil = None;
         let Some(coil) = coil else {
@@ -222,14 +220,11 @@ pub(super) fn wind(
         let round = shapes.cylinder(&mut meshes);
         let paint = shapes.paint(coil.color, Finish::Enamel, &mut materials);
         let steel = shapes.paint(super::parts::STEEL, Finish::Steel, &mut materials);
-        let mut part = |part, mesh, paint| {
-            let looks = (part, Mesh3d(mesh), MeshMaterial3d(paint), ChildOf(element));
-            commands.spawn(looks).id()
-        };
-        part(Winding::Arbor, round.clone(), steel.clone());
-        part(Winding::Pin, round, steel);
-        let strip = part(Winding::Strip, strip, paint);
-        commands.entity(strip).insert(Wound(0));
+        let steel = (Mesh3d(round), MeshMaterial3d(steel));
+        maker.make(element, Winding::Arbor, steel.clone());
+        maker.make(element, Winding::Pin, steel);
+        let strip = (Wound(0), Mesh3d(strip), MeshMaterial3d(paint));
+        maker.make(element, Winding::Strip, strip);
         false
     });
 }

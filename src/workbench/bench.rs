@@ -2,6 +2,7 @@
 
 use super::model::facts::Subject;
 use super::model::history::{Edit, History};
+use super::model::like::is_like;
 use super::model::preset;
 use super::model::record::{Record, Sample};
 use super::model::rows::Rows;
@@ -91,7 +92,7 @@ impl Bench {
         let Some(subject) = &self.subject else {
             return;
         };
-        if subject.now == after {
+        if is_like(&subject.now, &after) {
             return;
         }
         let (entity, before) = (subject.entity, subject.now.clone());
@@ -157,7 +158,7 @@ impl Bench {
         // A drag makes one change a frame; while the game is paused they would pile up.
         if let Some((last, _, until)) = self.pending.last_mut()
             && *last == entity
-            && *until == from
+            && is_like(&*until, &from)
         {
             *until = to;
         } else {
@@ -183,5 +184,45 @@ impl Bench {
         let readout = self.subject.as_ref()?.facts.readout;
         let time = self.record.span().map_or(0.0, |[_, last]| last);
         Some(Sample { time, readout })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::workbench::model::verdict::tests::scene;
+
+    #[test]
+    fn edits_of_an_element_with_a_nan_do_not_pile_up_while_the_game_is_paused() {
+        let (mut now, facts) = scene();
+        if let Some(stiffness) = now.part.stiffness_mut() {
+            *stiffness = f32::NAN;
+        }
+        let subject = Subject {
+            entity: Entity::PLACEHOLDER,
+            title: String::new(),
+            now: now.clone(),
+            facts,
+        };
+        let mut bench = Bench {
+            subject: Some(subject),
+            ..Bench::default()
+        };
+        // What the view does in a frame in which nobody touches anything.
+        bench.edit("a number", now.clone());
+        assert_eq!(bench.history.next(), [None, None]);
+        assert!(bench.pending.is_empty());
+        // One drag, over ten frames.
+        for step in 1..=10 {
+            if let Some(damping) = now.part.damping_mut() {
+                *damping = 10.0 * step as f32;
+            }
+            bench.edit("a number", now.clone());
+        }
+        assert_eq!(bench.pending.len(), 1);
+        bench.undo();
+        assert_eq!(bench.history.next(), [None, Some("a number")]);
+        let damping = |bench: &Bench| bench.subject.as_ref()?.now.part.damping();
+        assert_eq!(damping(&bench), Some(5.0));
     }
 }

@@ -12,9 +12,13 @@ use crate::input::curve::Curve;
 use crate::input::parts::{IsElement, Parts};
 use crate::readout::SpringReadout;
 use crate::settings::CoiloverSettings;
+use bevy::ecs::entity_disabling::Disabled;
+use bevy::ecs::query::Allow;
 use bevy::ecs::system::{SystemParam, SystemState};
 use bevy::prelude::*;
-use bevy_rapier3d::prelude::{RapierConfiguration, RigidBody, Sleeping, TimestepMode};
+use bevy_rapier3d::prelude::{
+    RapierConfiguration, RapierContextEntityLink, RigidBody, Sleeping, TimestepMode,
+};
 
 /// Frames in which each number of the list has its turn once.
 const FRAMES: usize = 16;
@@ -22,17 +26,25 @@ const FRAMES: usize = 16;
 /// Seconds between two sortings of the list, and between two looks at names.
 const SORT: f32 = 0.25;
 
-/// What is read of the world.
+/// What is read of a body: what it is, whether it sleeps, and in which world of the engine it is.
+type Body<'a> = (
+    &'a RigidBody,
+    Option<&'a Sleeping>,
+    Option<&'a RapierContextEntityLink>,
+);
+
+/// What is read of the world. The chosen element can be disabled, and is explained then too.
 #[derive(SystemParam)]
 pub(super) struct Look<'w, 's> {
     readouts: Query<'w, 's, (Entity, &'static SpringReadout), IsElement>,
     new: Query<'w, 's, (), (IsElement, Added<SpringReadout>)>,
     renamed: Query<'w, 's, (), Changed<Name>>,
-    names: Query<'w, 's, &'static Name>,
+    names: Query<'w, 's, &'static Name, Allow<Disabled>>,
     laws: Query<'w, 's, (Parts, Beside)>,
     faults: Query<'w, 's, &'static SpringFault>,
-    custom: Query<'w, 's, (Has<CustomSpringLaw>, Has<CustomDampingLaw>)>,
-    bodies: Query<'w, 's, (&'static RigidBody, Option<&'static Sleeping>)>,
+    custom: Query<'w, 's, (Has<CustomSpringLaw>, Has<CustomDampingLaw>), Allow<Disabled>>,
+    disabled: Query<'w, 's, (), With<Disabled>>,
+    bodies: Query<'w, 's, Body<'static>>,
     parents: Query<'w, 's, &'static ChildOf>,
     globals: Query<'w, 's, &'static GlobalTransform>,
     configurations: Query<'w, 's, &'static RapierConfiguration>,
@@ -79,7 +91,7 @@ pub(super) fn gather(world: &mut World, state: &mut SystemState<Look>, mut looke
             let now = bench.with_pending(entity, snapshot);
             Subject {
                 entity,
-                title: look.label(entity),
+                title: look.label(entity, Some(now.part.ends())),
                 facts: look.facts(entity, &now),
                 now,
             }
@@ -99,7 +111,9 @@ impl Look<'_, '_> {
         if due && looked.stale {
             looked.stale = false;
             let new = self.readouts.iter().map(|(entity, readout)| {
-                let mut row = Row::new(entity, self.label(entity));
+                let law = self.laws.get(entity).ok();
+                let ends = law.and_then(|(parts, _)| parts.ends());
+                let mut row = Row::new(entity, self.label(entity, ends));
                 row.read(readout);
                 row
             });
@@ -117,15 +131,10 @@ impl Look<'_, '_> {
     }
 
     /// Its name, or those of its ends.
-    fn label(&self, element: Entity) -> String {
+    fn label(&self, element: Entity, ends: Option<[Entity; 2]>) -> String {
         if let Ok(name) = self.names.get(element) {
             return name.as_str().into();
         }
-        let ends = self
-            .laws
-            .get(element)
-            .ok()
-            .and_then(|(parts, _)| parts.ends());
         let named = ends.map(|ends| ends.map(|end| self.named(end)));
         match named {
             Some([Some(a), Some(b)]) => format!("{a} – {b}"),
@@ -152,11 +161,11 @@ impl Look<'_, '_> {
             None => 1.0 / 60.0,
         };
         let settings = self.settings.as_deref();
-        let gravity = self.configurations.iter().next();
-        let gravity = gravity.map_or(Vec3::ZERO, |configuration| configuration.gravity);
+        let gravity = self.gravity(ends);
         let anchored = [self.end(ends[0], anchors.a), self.end(ends[1], anchors.b)];
         Facts {
             readout: readout.unwrap_or_default(),
+            is_disabled: self.disabled.contains(entity),
             fault: self
                 .faults
                 .get(entity)
@@ -194,6 +203,20 @@ impl Look<'_, '_> {
         Some(slope).filter(|slope| slope.is_finite())
     }
 
+    /// The body that an entity is, or that it is below.
+    fn body(&self, entity: Entity) -> Option<Body<'_>> {
+        let mut up = std::iter::once(entity).chain(self.parents.iter_ancestors(entity));
+        up.find_map(|entity| self.bodies.get(entity).ok())
+    }
+
+    /// Gravity where its bodies are: each world of the engine has its own.
+    fn gravity(&self, ends: [Entity; 2]) -> Vec3 {
+        let context = |end| self.body(end)?.2;
+        let context = ends.into_iter().find_map(context);
+        let configuration = context.and_then(|link| self.configurations.get(link.0).ok());
+        configuration.map_or(Vec3::ZERO, |configuration| configuration.gravity)
+    }
+
     fn end(&self, entity: Entity, anchor: Vec3) -> End {
         let Ok(at) = self.globals.get(entity) else {
             return End {
@@ -201,15 +224,14 @@ impl Look<'_, '_> {
                 ..End::default()
             };
         };
-        let mut up = std::iter::once(entity).chain(self.parents.iter_ancestors(entity));
-        let body = up.find_map(|entity| self.bodies.get(entity).ok());
+        let body = self.body(entity);
         let kind = match body {
             None => EndKind::Point,
-            Some((RigidBody::Dynamic, _)) => EndKind::Dynamic,
-            Some((RigidBody::Fixed, _)) => EndKind::Fixed,
+            Some((RigidBody::Dynamic, ..)) => EndKind::Dynamic,
+            Some((RigidBody::Fixed, ..)) => EndKind::Fixed,
             Some(_) => EndKind::Kinematic,
         };
-        let asleep = body.and_then(|(_, sleeping)| sleeping);
+        let asleep = body.and_then(|(_, sleeping, _)| sleeping);
         let name = self.named(entity);
         End {
             name: name.map_or_else(|| format!("{entity}"), Into::into),

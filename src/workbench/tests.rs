@@ -3,6 +3,7 @@
 mod in_the_scene;
 mod person;
 mod tuning;
+mod what_is_told;
 
 use super::CoiloverWorkbench;
 use super::bench::{Bench, Plots};

@@ -54,6 +54,10 @@ mod user_force;
 #[cfg(feature = "visual")]
 mod visual_data;
 #[cfg(feature = "visual")]
+mod visual_gizmos;
+#[cfg(feature = "visual")]
+mod visual_layers;
+#[cfg(feature = "visual")]
 mod visual_looks;
 #[cfg(feature = "visual")]
 mod visual_rest;

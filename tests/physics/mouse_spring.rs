@@ -216,3 +216,33 @@ fn a_pointer_that_was_wrong_and_lets_go_leaves_no_fault() {
     lab.tick();
     assert!(lab.app.world().get::<SpringFault>(mouse).is_none());
 }
+
+#[test]
+fn a_scaled_body_is_held_for_the_mass_that_it_has_at_the_point_where_that_is() {
+    let mut lab = Lab::weightless();
+    let (mass, inertia) = (2.0, 0.05);
+    let body = lab.spawn(brick(mass, Vec3::splat(inertia), Vec3::ZERO));
+    lab.get_mut::<Transform>(body).scale = Vec3::new(4.0, 1.0, 1.0);
+    // In the world 0.4 m from its centre, along X.
+    let (point, lever) = (Vec3::X * 0.1, Vec3::X * 0.4);
+    lab.spawn(MouseSpring::new(body, point, lever).with_frequency(FREQUENCY));
+    lab.run(0.1);
+    let world = lab.app.world_mut();
+    let mut springs = world.query::<(&SpringDamper, &SpringAxis)>();
+    let mut count = 0;
+    for (spring, axis) in springs.iter(world) {
+        let SpringAxis::World(axis) = *axis else {
+            panic!("{axis:?}");
+        };
+        let turned = lever.cross(axis).length_squared() / inertia;
+        let there = (mass.recip() + turned).recip();
+        let wanted = there * (std::f32::consts::TAU * FREQUENCY).powi(2);
+        let share = spring.stiffness / wanted;
+        assert!(
+            (share - 1.0).abs() < 1e-4,
+            "{axis}: {share} of {wanted} N/m"
+        );
+        count += 1;
+    }
+    assert_eq!(count, 3);
+}

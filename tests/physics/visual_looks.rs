@@ -114,3 +114,46 @@ fn a_coil_on_points_of_the_world_is_drawn_there_before_the_first_step() {
     let foot = parts(&lab, element)[0].transform_point(Vec3::ZERO);
     assert!(foot.distance(Vec3::X) < 1e-4, "{foot}");
 }
+
+#[test]
+fn what_is_a_skin_no_more_goes_back_to_its_own_place_and_stays_its_users() {
+    for is_removed in [true, false] {
+        let mut lab = lab();
+        let (a, b) = (lab.point(Vec3::X), lab.point(Vec3::X * 3.0));
+        let at = Transform::from_xyz(0.0, 5.0, 0.0);
+        let element = lab.spawn((Spring::new(a, b), at, Visibility::default()));
+        let skin = (
+            SpringSkin { length: 1.0 },
+            Transform::from_xyz(0.0, 0.0, 2.0),
+            ChildOf(element),
+        );
+        let skin = lab.spawn(skin);
+        lab.run(0.1);
+        let foot = |lab: &Lab| lab.get::<GlobalTransform>(skin).translation();
+        assert!(foot(&lab).distance(Vec3::X) < 1e-5);
+        if is_removed {
+            lab.app.world_mut().entity_mut(skin).remove::<SpringSkin>();
+        } else {
+            // As good as none, and told.
+            lab.get_mut::<SpringSkin>(skin).length = -1.0;
+        }
+        lab.run(0.1);
+        let own = Vec3::new(0.0, 5.0, 2.0);
+        assert!(foot(&lab).distance(own) < 1e-5, "{}", foot(&lab));
+        // It is no part of the looks that come and go.
+        lab.app
+            .world_mut()
+            .entity_mut(element)
+            .insert(Coil::default());
+        lab.get_mut::<Transform>(a).translation.y = 1.0;
+        lab.run(0.1);
+        lab.app.world_mut().entity_mut(element).remove::<Coil>();
+        lab.run(0.1);
+        assert!(foot(&lab).distance(own) < 1e-5, "{}", foot(&lab));
+        // Given back, it is laid again.
+        let again = SpringSkin { length: 1.0 };
+        lab.app.world_mut().entity_mut(skin).insert(again);
+        lab.run(0.1);
+        assert!(foot(&lab).distance(Vec3::new(1.0, 1.0, 0.0)) < 1e-5);
+    }
+}

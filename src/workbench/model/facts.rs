@@ -43,8 +43,11 @@ pub(crate) struct Stepping {
 #[derive(Clone, Debug)]
 pub(crate) struct Facts {
     pub readout: SpringReadout,
+    /// By Bevy's `Disabled`.
+    pub is_disabled: bool,
     pub fault: Option<String>,
     pub ends: [End; 2],
+    /// In the world of the engine where its bodies are, m/s².
     pub gravity: f32,
     /// Cosine between gravity and the element, from its still end to its load: 1 of what hangs on it, -1 of what stands on
     /// it. None where nothing says which end is the load.
@@ -94,7 +97,7 @@ impl Facts {
         let tension = weight
             .filter(carries)
             .map_or(0.0, |weight| weight - element.preload.unwrap_or_default().0);
-        let least = if element.axis.is_some() {
+        let least = if element.has_sign() {
             f32::NEG_INFINITY
         } else {
             0.0

@@ -4,6 +4,7 @@ pub(crate) mod code;
 pub(crate) mod facts;
 pub(crate) mod figures;
 pub(crate) mod history;
+pub(crate) mod like;
 pub(crate) mod preset;
 mod preset_parts;
 pub(crate) mod record;
@@ -11,4 +12,5 @@ pub(crate) mod rows;
 #[cfg(test)]
 mod samples;
 pub(crate) mod snapshot;
+pub(crate) mod units;
 pub(crate) mod verdict;

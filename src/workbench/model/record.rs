@@ -121,11 +121,21 @@ impl Record {
         out
     }
 
-    /// All of it as a table of comma-separated values.
-    pub fn csv(&self) -> String {
-        let mut out = String::from(
-            "time_s,length_m,rate_m_per_s,spring_force_N,damper_force_N,stored_energy_J,dissipated_energy_J,work_J,omega_dt,\
-             effective_mass_kg,microsteps\n",
+    /// All of it as a table of comma-separated values; that of a torsion element has angles and moments.
+    pub fn csv(&self, is_torsion: bool) -> String {
+        let [motion, mass] = if is_torsion {
+            [
+                "angle_rad,rate_rad_per_s,spring_moment_N_m,damper_moment_N_m",
+                "effective_inertia_kg_m2",
+            ]
+        } else {
+            [
+                "length_m,rate_m_per_s,spring_force_N,damper_force_N",
+                "effective_mass_kg",
+            ]
+        };
+        let mut out = format!(
+            "time_s,{motion},stored_energy_J,dissipated_energy_J,work_J,omega_dt,{mass},microsteps\n"
         );
         for Sample { time, readout } in &self.samples {
             // Writing into a string does not fail.
@@ -216,10 +226,26 @@ mod tests {
 
     #[test]
     fn a_table_has_a_line_for_each_sample() {
-        let csv = record(10, 0.1).csv();
-        let lines: Vec<_> = csv.lines().collect();
-        assert_eq!(lines.len(), 11);
-        let columns = lines[0].split(',').count();
-        assert!(lines.iter().all(|line| line.split(',').count() == columns));
+        for is_torsion in [false, true] {
+            let csv = record(10, 0.1).csv(is_torsion);
+            let lines: Vec<_> = csv.lines().collect();
+            assert_eq!(lines.len(), 11);
+            let columns = lines[0].split(',').count();
+            assert!(lines.iter().all(|line| line.split(',').count() == columns));
+        }
+    }
+
+    #[test]
+    fn a_table_has_the_units_of_what_was_measured() {
+        let head = |is_torsion: bool| {
+            let csv = record(1, 0.1).csv(is_torsion);
+            csv.lines().next().map(String::from)
+        };
+        let linear = "time_s,length_m,rate_m_per_s,spring_force_N,damper_force_N,stored_energy_J,\
+                      dissipated_energy_J,work_J,omega_dt,effective_mass_kg,microsteps";
+        assert_eq!(head(false).as_deref(), Some(linear));
+        let torsion = "time_s,angle_rad,rate_rad_per_s,spring_moment_N_m,damper_moment_N_m,stored_energy_J,\
+                       dissipated_energy_J,work_J,omega_dt,effective_inertia_kg_m2,microsteps";
+        assert_eq!(head(true).as_deref(), Some(torsion));
     }
 }

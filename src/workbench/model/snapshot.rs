@@ -1,7 +1,9 @@
 //! All numbers of one element, as they can be edited.
 
+use super::like::is_like;
 use crate::element::*;
 use bevy::prelude::*;
+use std::fmt::Debug;
 
 /// The component that makes an entity an element.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -154,22 +156,22 @@ impl Part {
 
     /// Takes over which numbers differ between two others.
     fn carry(&mut self, from: &Self, to: &Self) {
-        if from.stiffness() != to.stiffness()
+        if !is_like(&from.stiffness(), &to.stiffness())
             && let (Some(mine), Some(value)) = (self.stiffness_mut(), to.stiffness())
         {
             *mine = value;
         }
-        if from.damping() != to.damping()
+        if !is_like(&from.damping(), &to.damping())
             && let (Some(mine), Some(value)) = (self.damping_mut(), to.damping())
         {
             *mine = value;
         }
-        if from.rest() != to.rest()
+        if !is_like(&from.rest(), &to.rest())
             && let Some(mine) = self.rest_mut()
         {
             *mine = to.rest();
         }
-        if from.twist() != to.twist()
+        if !is_like(&from.twist(), &to.twist())
             && let (Some(mine), Some(value)) = (self.twist_mut(), to.twist())
         {
             *mine = value;
@@ -208,20 +210,23 @@ impl Snapshot {
 
     /// Changes an entity where it is different.
     pub fn write(&self, entity: &mut EntityWorldMut) {
-        fn part<T: Component<Mutability = bevy::ecs::component::Mutable> + PartialEq>(
+        fn part<T: Component<Mutability = bevy::ecs::component::Mutable> + PartialEq + Debug>(
             value: T,
             entity: &mut EntityWorldMut,
         ) {
-            if let Some(mut part) = entity.get_mut::<T>() {
-                part.set_if_neq(value);
+            if let Some(mut part) = entity.get_mut::<T>()
+                && !is_like(&*part, &value)
+            {
+                *part = value;
             }
         }
-        fn beside<T: Component + PartialEq + Clone>(
+        fn beside<T: Component + PartialEq + Debug + Clone>(
             value: &Option<T>,
             entity: &mut EntityWorldMut,
         ) {
+            let before = entity.get::<T>();
             match value {
-                Some(value) if entity.get() != Some(value) => {
+                Some(value) if before.is_none_or(|before| !is_like(before, value)) => {
                     entity.insert(value.clone());
                 }
                 None if entity.contains::<T>() => {
@@ -245,12 +250,17 @@ impl Snapshot {
         self.part.carry(&from.part, &to.part);
         macro_rules! carry {
             ($field:ident) => {
-                if from.$field != to.$field {
+                if !is_like(&from.$field, &to.$field) {
                     self.$field.clone_from(&to.$field);
                 }
             };
         }
         each_companion!(carry);
+    }
+
+    /// Whether its length is an angle or a distance along an axis, which can be below zero.
+    pub fn has_sign(&self) -> bool {
+        self.part.is_torsion() || self.axis.is_some()
     }
 
     /// Whether the force of its spring is the stiffness times the stretch, up to clamps and stops.
@@ -297,13 +307,24 @@ mod tests {
 
     #[test]
     fn what_is_equal_is_not_touched() {
-        let (mut world, entity) = world();
-        world.increment_change_tick();
-        let before = world.change_tick();
-        let snapshot = Snapshot::read(world.entity(entity)).expect("an element");
-        snapshot.write(&mut world.entity_mut(entity));
-        let ticks = world.entity(entity).get_change_ticks::<SpringDamper>();
-        assert!(ticks.is_some_and(|ticks| !ticks.is_changed(before, world.read_change_tick())));
+        for number in [5.0, f32::NAN] {
+            let (mut world, entity) = world();
+            world.entity_mut(entity).insert(Preload(number));
+            if let Some(mut pair) = world.get_mut::<SpringDamper>(entity) {
+                pair.stiffness = number;
+            }
+            let before = world.change_tick();
+            world.increment_change_tick();
+            let snapshot = Snapshot::read(world.entity(entity)).expect("an element");
+            snapshot.write(&mut world.entity_mut(entity));
+            let element = world.entity(entity);
+            let part = element.get_change_ticks::<SpringDamper>();
+            let beside = element.get_change_ticks::<Preload>();
+            for ticks in [part, beside] {
+                let ticks = ticks.expect("it is there");
+                assert!(!ticks.is_changed(before, world.read_change_tick()));
+            }
+        }
     }
 
     #[test]
@@ -321,5 +342,25 @@ mod tests {
         now.carry(&after, &before);
         assert_eq!(now.part.stiffness(), Some(80.0));
         assert_eq!(now.part.rest(), Some(1.5));
+    }
+
+    #[test]
+    fn a_nan_that_the_game_has_mended_does_not_come_back_with_an_edit_of_another_number() {
+        let (world, entity) = world();
+        let mended = Snapshot::read(world.entity(entity)).expect("an element");
+        let mut before = mended.clone();
+        if let Some(stiffness) = before.part.stiffness_mut() {
+            *stiffness = f32::NAN;
+        }
+        before.preload = Some(Preload(f32::NAN));
+        let mut after = before.clone();
+        if let Some(damping) = after.part.damping_mut() {
+            *damping = 3.0;
+        }
+        let mut now = mended.clone();
+        now.carry(&before, &after);
+        assert_eq!(now.part.damping(), Some(3.0));
+        assert_eq!(now.part.stiffness(), mended.part.stiffness());
+        assert_eq!(now.preload, mended.preload);
     }
 }

@@ -35,6 +35,10 @@ fn say(tone: Tone, text: impl Into<String>) -> Sentence {
 
 /// All there is to say about an element.
 pub(crate) fn verdict(now: &Snapshot, facts: &Facts) -> Vec<Sentence> {
+    if facts.is_disabled {
+        let text = "It is disabled, and does not act until the component Disabled is removed.";
+        return vec![say(Tone::Warning, text)];
+    }
     if let Some(fault) = &facts.fault {
         return vec![say(Tone::Bad, fault)];
     }
@@ -241,7 +245,7 @@ fn metres(length: f32) -> String {
 }
 
 #[cfg(test)]
-pub(super) mod tests {
+pub(crate) mod tests {
     use super::*;
     use crate::element::*;
     use crate::readout::SpringReadout;
@@ -266,6 +270,7 @@ pub(super) mod tests {
                 microsteps: 1,
                 ..SpringReadout::default()
             },
+            is_disabled: false,
             fault: None,
             ends: [end(EndKind::Fixed), end(EndKind::Dynamic)],
             gravity: 9.81,
@@ -323,6 +328,16 @@ pub(super) mod tests {
         let sentences = verdict(&now, &facts);
         assert_eq!(sentences.len(), 1);
         assert_eq!(sentences[0].tone, Tone::Bad);
+    }
+
+    #[test]
+    fn that_it_is_disabled_is_all_there_is_to_say() {
+        let (now, mut facts) = scene();
+        facts.is_disabled = true;
+        facts.fault = Some("Spring::stiffness is NaN".into());
+        let sentences = verdict(&now, &facts);
+        assert_eq!(sentences.len(), 1);
+        assert!(sentences[0].text.contains("It is disabled"));
     }
 
     #[test]

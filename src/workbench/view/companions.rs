@@ -3,32 +3,34 @@
 use super::field::{Drag, line, vector};
 use super::laws;
 use crate::element::*;
+use crate::workbench::model::facts::Facts;
 use crate::workbench::model::snapshot::Snapshot;
 use bevy::prelude::Vec3;
 use bevy_egui::egui::{ComboBox, Grid, Ui};
 
 /// Shows all that fit an element.
-pub(super) fn show(ui: &mut Ui, draft: &mut Snapshot, custom: [bool; 2]) {
+pub(super) fn show(ui: &mut Ui, draft: &mut Snapshot, facts: &Facts) {
     let torsion = draft.part.is_torsion();
-    let [force, length] = if torsion {
-        [" N m", " rad"]
-    } else {
-        [" N", " m"]
-    };
+    let units = draft.part.units();
+    let (force, length) = (units.force, units.length);
     // A rest length is what a law starts from, so a sensible one starts at the element's own numbers.
     let stiffness = draft.part.stiffness();
     let damping = draft.part.damping();
-    let rest = draft.part.rest().unwrap_or(1.0);
+    let has_sign = draft.has_sign();
+    // A damper has none, but a length once it has been stepped.
+    let length_now = Some(facts.readout.length).filter(|length| *length != 0.0);
+    let unknown = if has_sign { 0.0 } else { 1.0 };
+    let rest = draft.part.rest().or(length_now).unwrap_or(unknown);
 
-    if custom[0] {
+    if facts.custom[0] {
         ui.label("The spring's force is a function of the game's own.");
     } else if let Some(stiffness) = stiffness {
-        laws::spring(ui, &mut draft.spring_law, stiffness);
+        laws::spring(ui, &mut draft.spring_law, stiffness, units);
     }
-    if custom[1] {
+    if facts.custom[1] {
         ui.label("The damper's force is a function of the game's own.");
     } else if let Some(damping) = damping {
-        laws::damping(ui, &mut draft.damping_law, damping);
+        laws::damping(ui, &mut draft.damping_law, damping, units);
     }
     action(ui, &mut draft.action);
     if optional(ui, "preload", &mut draft.preload, Preload(0.0))
@@ -46,33 +48,24 @@ pub(super) fn show(ui: &mut Ui, draft: &mut Snapshot, custom: [bool; 2]) {
             line(ui, "most", value, force, Drag::Share)
         });
     }
-    let stops = SpringTravel::new(
-        0.5 * rest.abs(),
-        1.5 * rest.abs().max(0.1),
-        10.0 * stiffness.unwrap_or(100.0),
-    );
-    if optional(ui, "stops", &mut draft.travel, stops)
+    let new = stops(rest, has_sign, 10.0 * stiffness.unwrap_or(100.0));
+    if optional(ui, "stops", &mut draft.travel, new)
         && let Some(travel) = &mut draft.travel
     {
         grid(ui, "stops", |ui| {
-            let [min, max] = if torsion || draft.axis.is_some() {
-                [Drag::Even(0.005); 2]
+            let drag = if has_sign {
+                Drag::Even(0.005)
             } else {
-                [Drag::Positive(0.005); 2]
+                Drag::Positive(0.005)
             };
-            line(ui, "least length", &mut travel.min_length, length, min);
-            line(ui, "greatest length", &mut travel.max_length, length, max);
+            line(ui, "least length", &mut travel.min_length, length, drag);
+            line(ui, "greatest length", &mut travel.max_length, length, drag);
             let stop = &mut travel.stop_stiffness;
-            line(ui, "stop stiffness", stop, " N/m", Drag::Share);
-            let progression = &mut travel.progression;
-            line(ui, "progression", progression, " 1/m", Drag::Positive(0.05));
-            line(
-                ui,
-                "stop damping",
-                &mut travel.stop_damping,
-                " N s/m",
-                Drag::Share,
-            );
+            line(ui, "stop stiffness", stop, units.stiffness, Drag::Share);
+            let (progression, drag) = (&mut travel.progression, Drag::Positive(0.05));
+            line(ui, "progression", progression, units.progression, drag);
+            let damping = &mut travel.stop_damping;
+            line(ui, "stop damping", damping, units.damping, Drag::Share);
         });
     }
     let breaks = Breakable::at_force(1_000.0);
@@ -98,6 +91,18 @@ pub(super) fn show(ui: &mut Ui, draft: &mut Snapshot, custom: [bool; 2]) {
     if !torsion {
         axis(ui, &mut draft.axis);
     }
+}
+
+/// The stops that an element without any gets: to either side of its rest length, half of that away.
+fn stops(rest: f32, has_sign: bool, stiffness: f32) -> SpringTravel {
+    let least = if has_sign { f32::NEG_INFINITY } else { 0.0 };
+    let rest = if rest.is_finite() {
+        rest.max(least)
+    } else {
+        0.0
+    };
+    let away = 0.5 * rest.abs().max(0.1);
+    SpringTravel::new((rest - away).max(least), rest + away, stiffness)
 }
 
 /// A companion that is there or not; whether it is.
@@ -189,4 +194,26 @@ fn axis(ui: &mut Ui, axis: &mut Option<SpringAxis>) {
         Kind::World => Some(SpringAxis::World(along)),
         Kind::BodyA => Some(SpringAxis::BodyA(along)),
     };
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn new_stops_are_on_either_side_of_the_rest_length_whatever_its_sign() {
+        let between = |rest: f32, has_sign: bool| {
+            let stops = stops(rest, has_sign, 1.0);
+            (stops.min_length, stops.max_length)
+        };
+        assert_eq!(between(2.0, false), (1.0, 3.0));
+        assert_eq!(between(0.0, false), (0.0, 0.05));
+        assert_eq!(between(2.0, true), (1.0, 3.0));
+        assert_eq!(between(-2.0, true), (-3.0, -1.0));
+        assert_eq!(between(0.0, true), (-0.05, 0.05));
+        // What is wrong with the rest length is told; the stops are sound.
+        for wrong in [f32::NAN, f32::INFINITY, -1.0] {
+            assert_eq!(between(wrong, false), (0.0, 0.05));
+        }
+    }
 }

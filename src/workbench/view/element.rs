@@ -7,6 +7,7 @@ use crate::readout::SpringReadout;
 use crate::workbench::bench::{Ask, Bench};
 use crate::workbench::model::facts::{EndKind, Facts};
 use crate::workbench::model::snapshot::Snapshot;
+use crate::workbench::model::units::Units;
 use crate::workbench::model::verdict::{Tone, verdict};
 use crate::workbench::model::{code, preset};
 use bevy_egui::egui::{Button, Color32, ComboBox, Grid, RichText, ScrollArea, TextEdit, Ui};
@@ -37,10 +38,10 @@ pub(super) fn show(ui: &mut Ui, bench: &mut Bench) {
         changed(bench, &draft, "a number");
         ui.separator();
         if let Some(sample) = bench.sample() {
-            readout(ui, &sample.readout, draft.part.is_torsion());
+            readout(ui, &sample.readout, draft.part.units());
         }
         ui.separator();
-        companions::show(ui, &mut draft, subject.facts.custom);
+        companions::show(ui, &mut draft, &subject.facts);
         changed(bench, &draft, "a companion");
     });
 }
@@ -77,16 +78,11 @@ fn ends(ui: &mut Ui, draft: &Snapshot, facts: &Facts) {
 /// Stiffness, damping and rest length, and what follows from them.
 fn numbers(ui: &mut Ui, draft: &mut Snapshot, facts: &Facts) {
     let torsion = draft.part.is_torsion();
-    let [stiffness, damping, length] = if torsion {
-        [" N m/rad", " N m s/rad", " rad"]
-    } else {
-        [" N/m", " N s/m", " m"]
-    };
+    let units = draft.part.units();
     // A law with coefficients of its own has no use for the element's.
     let used = match draft.spring_law {
-        None | Some(SpringLaw::Linear) => Some(stiffness),
-        Some(SpringLaw::Cubic) if torsion => Some(" N m/rad³"),
-        Some(SpringLaw::Cubic) => Some(" N/m³"),
+        None | Some(SpringLaw::Linear) => Some(units.stiffness),
+        Some(SpringLaw::Cubic) => Some(units.stiffness_cubed),
         Some(SpringLaw::Polynomial { .. } | SpringLaw::Table(_)) => None,
     };
     if let (Some(value), Some(unit)) = (draft.part.stiffness_mut(), used) {
@@ -94,18 +90,18 @@ fn numbers(ui: &mut Ui, draft: &mut Snapshot, facts: &Facts) {
     }
     let linear = draft.damper_is_linear();
     if let Some(value) = draft.part.damping_mut().filter(|_| linear) {
-        line(ui, "damping", value, damping, Drag::Share);
+        line(ui, "damping", value, units.damping, Drag::Share);
     }
+    let drag = if draft.has_sign() {
+        Drag::Even(0.002)
+    } else {
+        Drag::Positive(0.002)
+    };
     if let Some(rest) = draft.part.rest_mut() {
         ui.label(if torsion { "rest angle" } else { "rest length" });
         match rest {
             Some(value) => {
-                let drag = if torsion || draft.axis.is_some() {
-                    Drag::Even(0.002)
-                } else {
-                    Drag::Positive(0.002)
-                };
-                number(ui, value, length, drag);
+                number(ui, value, units.length, drag);
             }
             None => {
                 ui.label("as at the first step");
@@ -142,7 +138,7 @@ fn figures(ui: &mut Ui, draft: &mut Snapshot, facts: &Facts) {
     if stiffness.is_nan() || stiffness <= 0.0 {
         return;
     }
-    let torsion = draft.part.is_torsion();
+    let (torsion, units) = (draft.part.is_torsion(), draft.part.units());
     let damping = draft.part.damping().filter(|_| draft.damper_is_linear());
     let mut frequency = load.frequency(stiffness);
     ui.label("frequency");
@@ -168,20 +164,18 @@ fn figures(ui: &mut Ui, draft: &mut Snapshot, facts: &Facts) {
         let mut sag = load.sag(stiffness);
         ui.label("sag")
             .on_hover_text("The rest length goes with it: the load stays where it rests");
-        if is_changed(ui, &mut sag, " m", Drag::Share) {
+        if is_changed(ui, &mut sag, units.length, Drag::Share) {
             facts.set_sag(draft, sag);
         }
         ui.end_row();
     }
-    let (mass, unit) = (f64::from(load.mass), if torsion { "kg m²" } else { "kg" });
     ui.label("effective mass");
-    ui.label(format!("{} {unit}", brief(mass)));
+    ui.label(format!("{}{}", brief(load.mass.into()), units.mass));
     ui.end_row();
     if damping.is_some() {
         let critical = f64::from(load.critical(stiffness));
-        let unit = if torsion { "N m s/rad" } else { "N s/m" };
         ui.label("critical damping");
-        ui.label(format!("{} {unit}", brief(critical)));
+        ui.label(format!("{}{}", brief(critical), units.damping));
         ui.end_row();
     }
 }
@@ -193,27 +187,22 @@ fn set(field: Option<&mut f32>, value: f32) {
 }
 
 /// What the last step came to, or the one that is looked at.
-fn readout(ui: &mut Ui, readout: &SpringReadout, torsion: bool) {
-    let [length, rate, force] = if torsion {
-        ["rad", "rad/s", "N m"]
-    } else {
-        ["m", "m/s", "N"]
-    };
+fn readout(ui: &mut Ui, readout: &SpringReadout, units: &Units) {
     let lines = [
-        ("length", readout.length, length),
-        ("rate", readout.rate, rate),
-        ("spring force", readout.spring_force, force),
-        ("damper force", readout.damper_force, force),
-        ("stored energy", readout.stored_energy, "J"),
-        ("dissipated", readout.dissipated_energy, "J"),
-        ("dissipated power", readout.dissipated_power, "W"),
-        ("work done on it", readout.work, "J"),
+        ("length", readout.length, units.length),
+        ("rate", readout.rate, units.rate),
+        ("spring force", readout.spring_force, units.force),
+        ("damper force", readout.damper_force, units.force),
+        ("stored energy", readout.stored_energy, " J"),
+        ("dissipated", readout.dissipated_energy, " J"),
+        ("dissipated power", readout.dissipated_power, " W"),
+        ("work done on it", readout.work, " J"),
     ];
     Grid::new("readout").num_columns(4).show(ui, |ui| {
         for pair in lines.chunks(2) {
             for (name, value, unit) in pair {
                 ui.label(RichText::new(*name).weak());
-                ui.label(format!("{} {unit}", brief(f64::from(*value))));
+                ui.label(format!("{}{unit}", brief(f64::from(*value))));
             }
             ui.end_row();
         }

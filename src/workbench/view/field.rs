@@ -1,5 +1,6 @@
 //! Numbers with units that can be dragged and typed.
 
+use crate::workbench::model::like::is_like;
 use bevy::prelude::Vec3;
 use bevy_egui::egui::{DragValue, Response, Ui};
 
@@ -67,13 +68,26 @@ pub(super) fn number(ui: &mut Ui, value: &mut f32, unit: &str, drag: Drag) -> Re
     let least = least as f32;
     // What stands there already is not changed by being shown.
     let range = least..=f32::INFINITY;
+    // A NaN is another number than itself, and what is typed over a number that is another one in every frame is thrown
+    // away: it is shown as it is, and edited from zero.
+    let is_nan = value.is_nan();
+    let get_set = move |new: Option<f64>| {
+        if let Some(new) = new {
+            *value = new as f32;
+        }
+        if value.is_nan() {
+            0.0
+        } else {
+            f64::from(*value)
+        }
+    };
     ui.add(
-        DragValue::new(value)
+        DragValue::from_get_set(get_set)
             .speed(speed)
             .range(range)
             .clamp_existing_to_range(false)
             .update_while_editing(false)
-            .custom_formatter(|value, _| significant(value))
+            .custom_formatter(move |value, _| significant(if is_nan { f64::NAN } else { value }))
             .custom_parser(parse)
             .suffix(unit),
     )
@@ -85,7 +99,7 @@ pub(super) fn number(ui: &mut Ui, value: &mut f32, unit: &str, drag: Drag) -> Re
 pub(super) fn is_changed(ui: &mut Ui, value: &mut f32, unit: &str, drag: Drag) -> bool {
     let before = *value;
     number(ui, value, unit, drag);
-    *value != before
+    !is_like(&*value, &before)
 }
 
 /// A line of a grid with a name and a number.

@@ -3,6 +3,7 @@
 use super::companions::{choice, grid};
 use super::field::{Drag, line, number};
 use crate::element::*;
+use crate::workbench::model::units::Units;
 use bevy::prelude::Vec2;
 use bevy_egui::egui::Ui;
 
@@ -33,7 +34,7 @@ fn law<T: Clone + PartialEq>(
     });
 }
 
-pub(super) fn spring(ui: &mut Ui, spring: &mut Option<SpringLaw>, stiffness: f32) {
+pub(super) fn spring(ui: &mut Ui, spring: &mut Option<SpringLaw>, stiffness: f32, units: &Units) {
     let k = stiffness;
     law(
         ui,
@@ -55,24 +56,34 @@ pub(super) fn spring(ui: &mut Ui, spring: &mut Option<SpringLaw>, stiffness: f32
                 grid(ui, name, |ui| {
                     ui.label(name);
                     ui.end_row();
-                    line(ui, "linear", &mut polynomial.linear, " N/m", Drag::Share);
-                    line(
-                        ui,
-                        "quadratic",
-                        &mut polynomial.quadratic,
-                        " N/m²",
-                        Drag::Share,
-                    );
-                    line(ui, "cubic", &mut polynomial.cubic, " N/m³", Drag::Share);
+                    let terms = [
+                        ("linear", &mut polynomial.linear, units.stiffness),
+                        (
+                            "quadratic",
+                            &mut polynomial.quadratic,
+                            units.stiffness_squared,
+                        ),
+                        ("cubic", &mut polynomial.cubic, units.stiffness_cubed),
+                    ];
+                    for (name, coefficient, unit) in terms {
+                        line(ui, name, coefficient, unit, Drag::Share);
+                    }
                 });
             }
         }
-        Some(SpringLaw::Table(points)) => table(ui, "spring table", points, " m"),
+        Some(SpringLaw::Table(points)) => {
+            table(ui, "spring table", points, [units.length, units.force]);
+        }
         None | Some(SpringLaw::Linear | SpringLaw::Cubic) => {}
     }
 }
 
-pub(super) fn damping(ui: &mut Ui, damping: &mut Option<DampingLaw>, coefficient: f32) {
+pub(super) fn damping(
+    ui: &mut Ui,
+    damping: &mut Option<DampingLaw>,
+    coefficient: f32,
+    units: &Units,
+) {
     let c = coefficient;
     let quadratic = DampingLaw::Quadratic {
         linear: c,
@@ -100,34 +111,42 @@ pub(super) fn damping(ui: &mut Ui, damping: &mut Option<DampingLaw>, coefficient
     );
     match damping {
         Some(DampingLaw::Sided { bump, rebound }) => grid(ui, "sided", |ui| {
-            line(ui, "bump", bump, " N s/m", Drag::Share);
-            line(ui, "rebound", rebound, " N s/m", Drag::Share);
+            line(ui, "bump", bump, units.damping, Drag::Share);
+            line(ui, "rebound", rebound, units.damping, Drag::Share);
         }),
         Some(DampingLaw::Quadratic { linear, quadratic }) => grid(ui, "orifice", |ui| {
-            line(ui, "linear", linear, " N s/m", Drag::Share);
-            line(ui, "quadratic", quadratic, " N s²/m²", Drag::Share);
+            line(ui, "linear", linear, units.damping, Drag::Share);
+            line(
+                ui,
+                "quadratic",
+                quadratic,
+                units.damping_squared,
+                Drag::Share,
+            );
         }),
         Some(DampingLaw::BlowOff {
             damping,
             knee,
             beyond,
         }) => grid(ui, "blow-off", |ui| {
-            line(ui, "damping", damping, " N s/m", Drag::Share);
-            line(ui, "knee", knee, " m/s", Drag::Share);
-            line(ui, "beyond", beyond, " N s/m", Drag::Share);
+            line(ui, "damping", damping, units.damping, Drag::Share);
+            line(ui, "knee", knee, units.rate, Drag::Share);
+            line(ui, "beyond", beyond, units.damping, Drag::Share);
         }),
-        Some(DampingLaw::Table(points)) => table(ui, "damping table", points, " m/s"),
+        Some(DampingLaw::Table(points)) => {
+            table(ui, "damping table", points, [units.rate, units.force]);
+        }
         None | Some(DampingLaw::Linear) => {}
     }
 }
 
-/// Points that can be moved, added and removed.
-fn table(ui: &mut Ui, name: &str, table: &mut ForceTable, unit: &str) {
+/// Points that can be moved, added and removed, in units of their own along each axis.
+fn table(ui: &mut Ui, name: &str, table: &mut ForceTable, [x, y]: [&str; 2]) {
     let mut removed = None;
     grid(ui, name, |ui| {
         for (i, point) in table.points.iter_mut().enumerate() {
-            number(ui, &mut point.x, unit, Drag::Even(0.005));
-            number(ui, &mut point.y, " N", Drag::Even(0.5));
+            number(ui, &mut point.x, x, Drag::Even(0.005));
+            number(ui, &mut point.y, y, Drag::Even(0.5));
             if ui
                 .small_button("−")
                 .on_hover_text("Remove this point")

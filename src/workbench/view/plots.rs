@@ -59,11 +59,18 @@ fn controls(ui: &mut Ui, bench: &mut Bench) {
     let table = ui.button("Save CSV");
     let hover = format!("The last {SECONDS} s as a table");
     if table.on_hover_text(hover).clicked() {
-        bench.asks.push(Ask::Csv(bench.record.csv()));
+        let table = bench.record.csv(is_torsion(bench));
+        bench.asks.push(Ask::Csv(table));
     }
     if ui.button("Save picture").clicked() {
         bench.asks.push(Ask::Picture);
     }
+}
+
+/// Whether the chosen element has angles and moments.
+fn is_torsion(bench: &Bench) -> bool {
+    let subject = bench.subject.as_ref();
+    subject.is_some_and(|subject| subject.now.part.is_torsion())
 }
 
 /// Several plots beside each other, each below its title: words in the colours of their curves.
@@ -99,11 +106,7 @@ fn row(
 }
 
 fn over_time(ui: &mut Ui, bench: &Bench) {
-    let torsion = bench
-        .subject
-        .as_ref()
-        .is_some_and(|subject| subject.now.part.is_torsion());
-    let names = if torsion {
+    let names = if is_torsion(bench) {
         ["angle, rad", "rate, rad/s", "moment, N m", "energy, J"]
     } else {
         ["length, m", "rate, m/s", "force, N", "energy, J"]

@@ -1,0 +1,55 @@
+//! Drawn children that were made for an element: for the cameras that see it, and gone with its looks.
+
+use bevy::camera::visibility::RenderLayers;
+use bevy::ecs::entity_disabling::Disabled;
+use bevy::ecs::query::Allow;
+use bevy::ecs::system::SystemParam;
+use bevy::prelude::*;
+
+/// On a child that was made. What users bring along, such as a [`SpringSkin`](super::SpringSkin), is theirs and has none.
+#[derive(Component, Clone, Copy, Debug, Default)]
+pub(super) struct Made;
+
+/// Makes children of elements and removes them: those of one kind, or with [`Made`] as the kind all of them.
+#[derive(SystemParam)]
+pub(super) struct Maker<'w, 's, Kind: Component> {
+    children: Query<'w, 's, &'static Children, Allow<Disabled>>,
+    made: Query<'w, 's, (), (With<Kind>, With<Made>, Allow<Disabled>)>,
+    layers: Query<'w, 's, &'static RenderLayers>,
+    commands: Commands<'w, 's>,
+}
+
+impl<Kind: Component> Maker<'_, '_, Kind> {
+    /// Spawns a child of an element.
+    pub fn make(&mut self, element: Entity, kind: Kind, looks: impl Bundle) {
+        let mut child = self.commands.spawn((Made, kind, looks, ChildOf(element)));
+        if let Ok(layers) = self.layers.get(element) {
+            child.insert(layers.clone());
+        }
+    }
+
+    /// Despawns those of an element.
+    pub fn clear(&mut self, element: Entity) {
+        for child in self.children.get(element).into_iter().flatten() {
+            if self.made.contains(*child) {
+                self.commands.entity(*child).despawn();
+            }
+        }
+    }
+
+    /// Puts those of an element on its render layers, which Bevy does not hand on to children.
+    pub fn put_on_layers(&mut self, element: Entity) {
+        let layers = self.layers.get(element).ok();
+        for child in self.children.get(element).into_iter().flatten() {
+            if !self.made.contains(*child) {
+                continue;
+            }
+            // It may be cleared in the same frame.
+            let mut child = self.commands.entity(*child);
+            match layers {
+                Some(layers) => child.try_insert(layers.clone()),
+                None => child.try_remove::<RenderLayers>(),
+            };
+        }
+    }
+}

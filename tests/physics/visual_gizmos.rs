@@ -1,0 +1,74 @@
+//! Do the lines for debugging show forces the way they act?
+
+use crate::harness::*;
+use bevy::asset::AssetPlugin;
+use bevy::gizmos::config::GizmoConfigStore;
+use bevy::gizmos::{GizmoAsset, GizmoHandles};
+use bevy::prelude::*;
+use bevy_coilover::prelude::*;
+use std::any::TypeId;
+use std::f32::consts::FRAC_PI_2;
+
+/// Where end B is; end A is at the origin, turned so that its Y points along −X.
+const B: Vec3 = Vec3::new(0.3, 1.0, 0.0);
+
+/// The shafts of the arrows of an element under a tension of 40 N, from where to where.
+fn arrows(axis: Option<SpringAxis>) -> Vec<[Vec3; 2]> {
+    // Without physics, which would write what the element shows.
+    let mut lab = Lab::without_plugin(Engine::default());
+    lab.app
+        .add_plugins(AssetPlugin::default())
+        .init_asset::<GizmoAsset>()
+        .init_resource::<GizmoConfigStore>()
+        .add_plugins(CoiloverVisualPlugin)
+        .init_asset::<Mesh>()
+        .init_asset::<StandardMaterial>();
+    lab.prime();
+    let a = lab.spawn(Transform::from_rotation(Quat::from_rotation_z(FRAC_PI_2)));
+    let b = lab.point(B);
+    let tension = SpringReadout {
+        spring_force: 40.0,
+        ..default()
+    };
+    let element = lab.spawn((Spring::new(a, b), tension, ShowSpringGizmos(true)));
+    if let Some(axis) = axis {
+        lab.app.world_mut().entity_mut(element).insert(axis);
+    }
+    lab.tick();
+    let world = lab.app.world();
+    let handles = world.resource::<GizmoHandles>().handles();
+    let handle = handles.get(&TypeId::of::<SpringGizmos>());
+    let handle = handle.and_then(Option::as_ref).expect("lines");
+    let drawn = world.resource::<Assets<GizmoAsset>>().get(handle);
+    let drawn = drawn.expect("lines").buffer().buffer();
+    // An arrow's shaft is ten times as long as its tips.
+    let lines = drawn
+        .list_positions
+        .chunks(2)
+        .zip(drawn.list_colors.chunks(2));
+    lines
+        .filter(|(_, colors)| colors[0].red > 0.5 && colors[0].green < 0.1)
+        .map(|(line, _)| [line[0], line[1]])
+        .filter(|[from, to]| from.distance(*to) > 0.1)
+        .collect()
+}
+
+#[test]
+fn forces_lie_along_the_line_between_the_ends_or_along_the_axis_of_the_element() {
+    for (axis, way) in [
+        (None, B.normalize()),
+        (Some(SpringAxis::World(2.0 * Vec3::X)), Vec3::X),
+        (Some(SpringAxis::BodyA(Vec3::Y)), Vec3::NEG_X),
+    ] {
+        // 5 mm for a newton.
+        let pull = 0.2 * way;
+        let wanted = [[Vec3::ZERO, pull], [B, B - pull]];
+        let drawn = arrows(axis);
+        assert_eq!(drawn.len(), 2, "{axis:?}: {drawn:?}");
+        for (drawn, wanted) in drawn.into_iter().zip(wanted) {
+            let is_near =
+                drawn[0].distance(wanted[0]) < 1e-5 && drawn[1].distance(wanted[1]) < 1e-5;
+            assert!(is_near, "{axis:?}: {drawn:?}, not {wanted:?}");
+        }
+    }
+}
