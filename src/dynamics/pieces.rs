@@ -6,11 +6,14 @@
 use super::law::{Elastic, Law};
 use super::soft::Tangent;
 
-/// Damper, spring below and above a kink, and stops below and above.
-pub(crate) const MOST: usize = 5;
+/// Damper, spring below and above a kink, what it hardens by below and above, and stops below and above.
+pub(crate) const MOST: usize = 7;
 
 /// Share of how far an element may come over which the slope beside a kink is taken, where it is not there yet.
 const BESIDE: f64 = 0.01;
+
+/// Share of its slope by which a spring is stiffer beyond its way for that to be a piece of its own. Pinned by `ground::mixed`.
+const HARDENS: f64 = 0.1;
 
 /// Times the force that a piece can come to over a step, as far as can be seen, that it may have.
 const ROOM: f64 = 2.0;
@@ -119,11 +122,14 @@ impl Pieces {
         let spring = |length| law.spring_beyond(length, rest_length);
         match law.kink(rest_length) {
             None => {
-                let tangent = Tangent::chord(spring, reach.way);
+                let way = reach.way_between(law.uncut_between(rest_length));
+                let tangent = Tangent::chord(spring, way);
                 let tangent = Tangent { damping, ..tangent };
                 let range = law.range();
                 let share = reach.share(&tangent, range);
                 pieces.push(reach.piece(tangent.times(share), range));
+                let edges = [way[0].min(way[1]), way[0].max(way[1])];
+                pieces.push_hardening(&reach, edges, spring, [tangent.stiffness; 2], range);
             }
             Some(kink) => pieces.push_split(&reach, spring, kink, damping, law.range()),
         }
@@ -179,6 +185,7 @@ impl Pieces {
             }
             tangent
         });
+        let slopes = sides.map(|tangent| tangent.stiffness);
         let shares = sides.map(|tangent| reach.share(&tangent, [0.0, f64::INFINITY]));
         let share = shares[0].min(shares[1]);
         if free {
@@ -196,6 +203,40 @@ impl Pieces {
         above.force -= middle;
         self.push(reach.piece(below, [least, middle]));
         self.push(reach.piece(above, [0.0, greatest - middle]));
+        let [from, to] = reach.way;
+        let edges = [from.min(to).min(kink), from.max(to).max(kink)];
+        self.push_hardening(reach, edges, spring, slopes, [least, greatest]);
+    }
+
+    /// What a spring is stiffer by beyond these lengths, below and above, than the pieces that go on there with these slopes. A
+    /// blow takes it farther than the last steps tell: it would store what was never taken from its bodies.
+    fn push_hardening(
+        &mut self,
+        reach: &Outreach,
+        edges: [f64; 2],
+        spring: impl Fn(f64) -> Elastic,
+        slopes: [f64; 2],
+        limits: [f64; 2],
+    ) {
+        for above in [false, true] {
+            let side = usize::from(above);
+            let edge = edges[side];
+            if limits[side].is_finite() || reach.change <= 0.0 {
+                continue;
+            }
+            let (far, range) = if above {
+                (edge + reach.change, [0.0, f64::INFINITY])
+            } else {
+                (edge - reach.change, [f64::NEG_INFINITY, 0.0])
+            };
+            let beyond = (spring(far).force - spring(edge).force) / (far - edge);
+            let harder = beyond - slopes[side];
+            if harder > HARDENS * slopes[side] {
+                let tangent = Tangent::linear(harder, 0.0, edge);
+                let share = reach.share(&tangent, range);
+                self.push(reach.piece(tangent.times(share), range));
+            }
+        }
     }
 
     fn push(&mut self, piece: Piece) {
@@ -229,6 +270,22 @@ impl Pieces {
 }
 
 impl Outreach {
+    /// Its way where a spring's force is not cut, or a beginning of it there: that of a rope is what it has once it is taut.
+    fn way_between(&self, [low, high]: [f64; 2]) -> [f64; 2] {
+        let way = self.way.map(|length| length.max(low).min(high));
+        if !(way[0].is_finite() && way[1].is_finite()) {
+            return self.way;
+        }
+        let inward = BESIDE * self.change;
+        if way == [low; 2] {
+            [low, (low + inward).min(high)]
+        } else if way == [high; 2] {
+            [high, (high - inward).max(low)]
+        } else {
+            way
+        }
+    }
+
     /// What is left of a piece with such a range, as a share. The motor that moves its middle is as strong as all that it
     /// may come to, and in f32 their difference would be lost.
     fn share(&self, tangent: &Tangent, [least, greatest]: [f64; 2]) -> f64 {
@@ -255,127 +312,4 @@ impl Outreach {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::super::law::{DragLaw, Recipe, SpringForce, Stop};
-    use super::*;
-
-    const STIFFNESS: f64 = 50.0;
-
-    fn law(limits: [f64; 2]) -> Law {
-        Law::new(recipe(limits))
-    }
-
-    fn recipe(limits: [f64; 2]) -> Recipe {
-        let force = [STIFFNESS, 0.0, 0.0];
-        Recipe {
-            spring: SpringForce::Polynomial {
-                pull: force,
-                push: force,
-            },
-            drag: DragLaw::Sided {
-                bump: 2.0,
-                rebound: 6.0,
-            },
-            preload: 0.0,
-            limits,
-            most: f64::INFINITY,
-            travel: [0.5, 1.5],
-            stop: Stop {
-                stiffness: 1e3,
-                ..Stop::default()
-            },
-        }
-    }
-
-    fn reach(way: [f64; 2], rate: f64) -> Outreach {
-        Outreach {
-            way,
-            rate,
-            change: 0.3,
-            speed: 10.0,
-            firmest: [f64::INFINITY; 2],
-        }
-    }
-
-    #[test]
-    fn pieces_do_the_work_of_the_laws_energy_across_its_kinks() {
-        let free = [f64::NEG_INFINITY, f64::INFINITY];
-        for limits in [free, [0.0, f64::INFINITY], [f64::NEG_INFINITY, 0.0]] {
-            let law = law(limits);
-            for way in [[0.9, 1.2], [1.2, 0.8], [0.6, 0.4], [1.3, 1.6], [1.6, 1.4]] {
-                // It was thought to go the other way.
-                let pieces = Pieces::of(&law, 1.0, reach([way[0], 2.0 * way[0] - way[1]], 1.0));
-                let stored = way.map(|length| law.elastic(length, 1.0).energy);
-                let missed = pieces.work(way) - (stored[1] - stored[0]);
-                assert!(missed.abs() < 1e-12, "{limits:?}, {way:?}: {missed}");
-            }
-        }
-    }
-
-    #[test]
-    fn a_spring_that_is_stiffer_one_way_does_its_work_across_the_kink() {
-        let mut recipe = recipe([f64::NEG_INFINITY, f64::INFINITY]);
-        recipe.spring = SpringForce::Polynomial {
-            pull: [300.0, 0.0, 0.0],
-            push: [10.0, 0.0, 0.0],
-        };
-        let law = Law::new(recipe);
-        for way in [[0.9, 1.1], [1.1, 0.9], [0.8, 0.9], [1.0, 1.2], [1.2, 1.1]] {
-            let pieces = Pieces::of(&law, 1.0, reach([way[0], way[0]], 0.0));
-            let stored = way.map(|length| law.elastic(length, 1.0).energy);
-            let missed = pieces.work(way) - (stored[1] - stored[0]);
-            assert!(missed.abs() < 1e-9, "{way:?}: {missed}");
-        }
-    }
-
-    #[test]
-    fn at_rest_it_gives_what_a_bent_law_gives_there() {
-        let mut recipe = recipe([f64::NEG_INFINITY, f64::INFINITY]);
-        recipe.spring = SpringForce::Polynomial {
-            pull: [100.0, 0.0, 1e4],
-            push: [50.0, 0.0, 0.0],
-        };
-        let law = Law::new(recipe);
-        for length in [0.9, 1.1, 1.2] {
-            let pieces = Pieces::of(&law, 1.0, reach([length; 2], 0.0));
-            let (given, wanted) = (pieces.tension(length, 0.0), law.elastic(length, 1.0).force);
-            assert!((given - wanted).abs() < 1e-9, "{length}: {given}, {wanted}");
-        }
-    }
-
-    #[test]
-    fn a_limit_holds_for_spring_and_damper_together_where_a_spring_is_stiffer_one_way() {
-        let mut recipe = recipe([-100.0, 100.0]);
-        recipe.most = 100.0;
-        recipe.drag = DragLaw::Linear(50.0);
-        recipe.spring = SpringForce::Polynomial {
-            pull: [300.0, 0.0, 0.0],
-            push: [500.0, 0.0, 0.0],
-        };
-        let law = Law::new(recipe);
-        for (way, rate) in [([1.3, 1.33], 4.0), ([0.7, 0.67], -4.0), ([1.5, 1.5], 4.0)] {
-            let pieces = Pieces::of(&law, 1.0, reach(way, rate));
-            let tension = pieces.tension(way[1], rate);
-            let wanted = 100.0_f64.copysign(rate);
-            assert!((tension - wanted).abs() < 1e-9, "{way:?}: {tension}");
-        }
-    }
-
-    #[test]
-    fn a_slack_rope_is_ready_and_has_no_force() {
-        let law = law([0.0, f64::INFINITY]);
-        let pieces = Pieces::of(&law, 1.0, reach([0.9, 0.9], 0.0));
-        assert_eq!(pieces.tension(0.9, 0.0), 0.0);
-        assert!((pieces.tension(1.1, 0.0) - 0.1 * STIFFNESS).abs() < 1e-12);
-        assert_eq!(pieces.stiffness(), STIFFNESS, "no stop is near");
-    }
-
-    #[test]
-    fn a_damper_takes_what_its_law_takes() {
-        for (rate, wanted) in [(1.0, 6.0), (-0.2, 2.0), (0.0, 6.0)] {
-            let law = law([f64::NEG_INFINITY, f64::INFINITY]);
-            let mut pieces = Pieces::of(&law, 1.0, reach([1.0, 1.1], rate));
-            assert_eq!(pieces.spring().damping, wanted, "at {rate} m/s");
-        }
-    }
-}
+mod tests;

@@ -28,6 +28,11 @@ impl Law {
         self.spring.is_bent().then_some(rest_length)
     }
 
+    /// Lengths between which the spring's force is not cut.
+    pub(crate) fn uncut_between(&self, rest_length: f64) -> [f64; 2] {
+        self.at_limits.map(|stretch| rest_length + stretch)
+    }
+
     /// Least and greatest tension of spring and damper together, N.
     pub(crate) fn range(&self) -> [f64; 2] {
         [

@@ -15,6 +15,7 @@ mod feet;
 mod heap;
 mod hierarchy;
 mod hinge;
+mod mixed;
 mod motorcycle;
 mod nets;
 mod play;

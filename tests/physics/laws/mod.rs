@@ -11,7 +11,7 @@ mod hold;
 mod ledger;
 mod light;
 mod one_way;
-mod random;
+pub mod random;
 mod shock;
 mod smooth;
 mod torsion;

@@ -19,6 +19,9 @@ const NOTHING: f64 = 1e-6;
 /// overflow. Pinned by `attack`.
 const SWIFTEST: f64 = 1e7;
 
+/// Angle in a step, rad, from where on it counts which of two bodies turns less. Pinned by `ground::mixed`.
+const TURNS: f64 = 1e-3;
+
 /// One element that acts.
 pub(crate) struct Order {
     /// Index of its row.
@@ -29,6 +32,8 @@ pub(crate) struct Order {
     pub from: f64,
     /// Rotations of what holds both ends.
     pub facings: [DQuat; 2],
+    /// Angular velocities of what holds both ends, rad/s.
+    pub spins: [DVec3; 2],
     pub pieces: Pieces,
     /// How far it may come over the step.
     pub reach: Outreach,
@@ -98,7 +103,7 @@ impl Order {
         substep: f64,
         time: f64,
     ) -> Option<Wanted> {
-        let frame = self.frame(row, holders);
+        let frame = self.frame(row, holders, time);
         let law = self.element.law.as_ref();
         let across = self
             .turn
@@ -152,7 +157,7 @@ impl Order {
         (!wanted.is_empty()).then_some(wanted)
     }
 
-    fn frame(&self, row: &ElementRow, holders: [BodyId; 2]) -> Frame {
+    fn frame(&self, row: &ElementRow, holders: [BodyId; 2], time: f64) -> Frame {
         let anchors = row.rare.held.map(|held| match held {
             Held::Body { local, .. } => local.as_vec3(),
             Held::Path { .. } => Vec3::ZERO,
@@ -172,7 +177,22 @@ impl Order {
             }
             Guide::World(axis) => {
                 frame.along = Along::Apart;
-                frame.rotations[0] = x_to(self.facings[0].inverse() * axis).as_quat();
+                // The joint's axis turns with its first body: the one that elements cannot turn, or that turns less, and as
+                // far before the middle of the step as after it.
+                let [a, b] = self.spins.map(|spin| time * spin.length());
+                let end = match self.line.holds.map(|hold| hold.body) {
+                    [_, None] => 1,
+                    [None, _] => 0,
+                    _ => usize::from(a > TURNS && b < 0.5 * a),
+                };
+                if end == 1 {
+                    frame.bodies.swap(0, 1);
+                    frame.anchors.swap(0, 1);
+                }
+                let axis = if end == 1 { -axis } else { axis };
+                let half = DQuat::from_scaled_axis(0.5 * time * self.spins[end]);
+                let halfway = half * self.facings[end];
+                frame.rotations[0] = x_to(halfway.inverse() * axis).as_quat();
             }
             Guide::Twist(_) => {
                 frame.along = Along::Twist;

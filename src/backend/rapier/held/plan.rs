@@ -259,10 +259,15 @@ impl Plan {
             .ends
             .each_ref()
             .map(|end| end.rotation(&self.bodies));
+        let spins = element
+            .ends
+            .each_ref()
+            .map(|end| end.angular_velocity(&self.bodies));
         Order {
             row,
             from,
             facings,
+            spins,
             element,
             line,
             pieces: Pieces::default(),

@@ -1,0 +1,160 @@
+use super::*;
+use crate::dynamics::law::{DragLaw, Recipe, SpringForce, Stop};
+
+const STIFFNESS: f64 = 50.0;
+
+fn law(limits: [f64; 2]) -> Law {
+    Law::new(recipe(limits))
+}
+
+fn recipe(limits: [f64; 2]) -> Recipe {
+    let force = [STIFFNESS, 0.0, 0.0];
+    Recipe {
+        spring: SpringForce::Polynomial {
+            pull: force,
+            push: force,
+        },
+        drag: DragLaw::Sided {
+            bump: 2.0,
+            rebound: 6.0,
+        },
+        preload: 0.0,
+        limits,
+        most: f64::INFINITY,
+        travel: [0.5, 1.5],
+        stop: Stop {
+            stiffness: 1e3,
+            ..Stop::default()
+        },
+    }
+}
+
+fn reach(way: [f64; 2], rate: f64) -> Outreach {
+    Outreach {
+        way,
+        rate,
+        change: 0.3,
+        speed: 10.0,
+        firmest: [f64::INFINITY; 2],
+    }
+}
+
+#[test]
+fn pieces_do_the_work_of_the_laws_energy_across_its_kinks() {
+    let free = [f64::NEG_INFINITY, f64::INFINITY];
+    for limits in [free, [0.0, f64::INFINITY], [f64::NEG_INFINITY, 0.0]] {
+        let law = law(limits);
+        for way in [[0.9, 1.2], [1.2, 0.8], [0.6, 0.4], [1.3, 1.6], [1.6, 1.4]] {
+            // It was thought to go the other way.
+            let pieces = Pieces::of(&law, 1.0, reach([way[0], 2.0 * way[0] - way[1]], 1.0));
+            let stored = way.map(|length| law.elastic(length, 1.0).energy);
+            let missed = pieces.work(way) - (stored[1] - stored[0]);
+            assert!(missed.abs() < 1e-12, "{limits:?}, {way:?}: {missed}");
+        }
+    }
+}
+
+#[test]
+fn a_spring_that_is_stiffer_one_way_does_its_work_across_the_kink() {
+    let mut recipe = recipe([f64::NEG_INFINITY, f64::INFINITY]);
+    recipe.spring = SpringForce::Polynomial {
+        pull: [300.0, 0.0, 0.0],
+        push: [10.0, 0.0, 0.0],
+    };
+    let law = Law::new(recipe);
+    for way in [[0.9, 1.1], [1.1, 0.9], [0.8, 0.9], [1.0, 1.2], [1.2, 1.1]] {
+        let pieces = Pieces::of(&law, 1.0, reach([way[0], way[0]], 0.0));
+        let stored = way.map(|length| law.elastic(length, 1.0).energy);
+        let missed = pieces.work(way) - (stored[1] - stored[0]);
+        assert!(missed.abs() < 1e-9, "{way:?}: {missed}");
+    }
+}
+
+#[test]
+fn at_rest_it_gives_what_a_bent_law_gives_there() {
+    let mut recipe = recipe([f64::NEG_INFINITY, f64::INFINITY]);
+    recipe.spring = SpringForce::Polynomial {
+        pull: [100.0, 0.0, 1e4],
+        push: [50.0, 0.0, 0.0],
+    };
+    let law = Law::new(recipe);
+    for length in [0.9, 1.1, 1.2] {
+        let pieces = Pieces::of(&law, 1.0, reach([length; 2], 0.0));
+        let (given, wanted) = (pieces.tension(length, 0.0), law.elastic(length, 1.0).force);
+        assert!((given - wanted).abs() < 1e-9, "{length}: {given}, {wanted}");
+    }
+}
+
+#[test]
+fn a_limit_holds_for_spring_and_damper_together_where_a_spring_is_stiffer_one_way() {
+    let mut recipe = recipe([-100.0, 100.0]);
+    recipe.most = 100.0;
+    recipe.drag = DragLaw::Linear(50.0);
+    recipe.spring = SpringForce::Polynomial {
+        pull: [300.0, 0.0, 0.0],
+        push: [500.0, 0.0, 0.0],
+    };
+    let law = Law::new(recipe);
+    for (way, rate) in [([1.3, 1.33], 4.0), ([0.7, 0.67], -4.0), ([1.5, 1.5], 4.0)] {
+        let pieces = Pieces::of(&law, 1.0, reach(way, rate));
+        let tension = pieces.tension(way[1], rate);
+        let wanted = 100.0_f64.copysign(rate);
+        assert!((tension - wanted).abs() < 1e-9, "{way:?}: {tension}");
+    }
+}
+
+#[test]
+fn a_slack_rope_is_ready_and_has_no_force() {
+    let law = law([0.0, f64::INFINITY]);
+    let pieces = Pieces::of(&law, 1.0, reach([0.9, 0.9], 0.0));
+    assert_eq!(pieces.tension(0.9, 0.0), 0.0);
+    assert!((pieces.tension(1.1, 0.0) - 0.1 * STIFFNESS).abs() < 1e-12);
+    assert_eq!(pieces.stiffness(), STIFFNESS, "no stop is near");
+}
+
+#[test]
+fn a_damper_takes_what_its_law_takes() {
+    for (rate, wanted) in [(1.0, 6.0), (-0.2, 2.0), (0.0, 6.0)] {
+        let law = law([f64::NEG_INFINITY, f64::INFINITY]);
+        let mut pieces = Pieces::of(&law, 1.0, reach([1.0, 1.1], rate));
+        assert_eq!(pieces.spring().damping, wanted, "at {rate} m/s");
+    }
+}
+
+#[test]
+fn a_buffer_that_is_not_met_yet_has_no_force_however_it_hardens() {
+    let mut recipe = recipe([f64::NEG_INFINITY, 0.0]);
+    let cubic = [0.0, 0.0, 1e6];
+    recipe.spring = SpringForce::Polynomial {
+        pull: cubic,
+        push: cubic,
+    };
+    let law = Law::new(recipe);
+    for way in [[1.2, 1.1], [1.05, 1.01], [1.3, 1.4]] {
+        let pieces = Pieces::of(&law, 1.0, reach(way, -1.0));
+        for length in [1.2, 1.1, 1.02, 1.001] {
+            assert_eq!(pieces.tension(length, 0.0), 0.0, "{way:?}: at {length}");
+        }
+    }
+}
+
+#[test]
+fn what_goes_farther_than_it_was_thought_to_meets_at_least_what_it_stores() {
+    let mut recipe = recipe([f64::NEG_INFINITY, f64::INFINITY]);
+    let cubic = [10.0, 0.0, 1e5];
+    recipe.spring = SpringForce::Polynomial {
+        pull: cubic,
+        push: cubic,
+    };
+    let law = Law::new(recipe);
+    for (way, goes) in [([1.0, 1.02], 1.2), ([1.0, 0.98], 0.8), ([1.1, 1.11], 1.3)] {
+        let pieces = Pieces::of(&law, 1.0, reach(way, 0.0));
+        let [before, after] = [way[0], goes].map(|length| law.elastic(length, 1.0).energy);
+        let taken = pieces.work([way[0], goes]);
+        assert!(
+            taken > after - before,
+            "{way:?}: {taken} J of {}",
+            after - before
+        );
+    }
+}
