@@ -98,6 +98,8 @@ impl Arguments {
                 "--plot" => drop(path()?),
                 // Read by the scenes that can do something otherwise.
                 "--rapier" => {}
+                // Read where pictures are made.
+                "--small" => {}
                 "--film" => out.film = Some(Film::Last(path()?)),
                 _ => return Err(format!("unknown argument {word}")),
             }
@@ -124,7 +126,7 @@ pub fn run(stage: &Stage) -> AppExit {
         Ok(arguments) => arguments,
         Err(wrong) => {
             eprintln!(
-                "{wrong}; use --headless, --minutes NUMBER, --screenshot FILE, --frames FOLDER or --film FOLDER"
+                "{wrong}; use --headless, --minutes NUMBER, --screenshot FILE, --frames FOLDER or --film FOLDER, and --small"
             );
             return AppExit::error();
         }

@@ -64,7 +64,7 @@ fn the_examples_look_as_they_did_and_their_checks_hold() {
     let seen = SCENES.chunks(2).flat_map(|pair| {
         let begin = |scene: &&'static str| {
             let mut seen = command(scene);
-            seen.arg("--screenshot").arg(shot(scene));
+            seen.arg("--small").arg("--screenshot").arg(shot(scene));
             seen.stdout(Stdio::piped()).stderr(Stdio::piped());
             (*scene, seen.spawn().expect("the example starts"))
         };
