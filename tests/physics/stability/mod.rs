@@ -3,7 +3,7 @@
 mod nets;
 mod statics;
 
-use crate::dice::span;
+use crate::dice::{some, span};
 use crate::harness::*;
 use bevy::math::DVec3;
 use bevy::prelude::*;
@@ -161,9 +161,11 @@ impl Net {
     }
 }
 
-/// Every stiffness and damping, with equal masses or one to ten thousand.
-fn check(net: fn(bool, f32) -> Net, unequal: bool, seconds: f64) {
-    for phase in PHASES {
+/// Every stiffness and damping, with equal masses or one to ten thousand; where not all are taken, each net begins with another
+/// stiffness.
+fn check(turn: usize, net: fn(bool, f32) -> Net, unequal: bool, seconds: f64) {
+    let phases = PHASES.into_iter().cycle().skip(turn).take(PHASES.len());
+    for phase in some(phases) {
         let net = net(unequal, phase);
         let least = net.check_rest(phase, 20.0_f64.min(seconds));
         for zeta in [0.0, 0.1] {
@@ -174,40 +176,40 @@ fn check(net: fn(bool, f32) -> Net, unequal: bool, seconds: f64) {
 
 #[test]
 fn a_chain_of_equal_masses() {
-    check(chain, false, 60.0);
+    check(0, chain, false, 60.0);
 }
 
 #[test]
 fn a_chain_of_masses_one_to_ten_thousand() {
-    check(chain, true, 60.0);
+    check(1, chain, true, 60.0);
 }
 
 #[test]
 fn a_star_of_equal_masses() {
-    check(star, false, 60.0);
+    check(2, star, false, 60.0);
 }
 
 #[test]
 fn a_star_with_a_hub_of_a_ten_thousandth() {
-    check(star, true, 60.0);
+    check(3, star, true, 60.0);
 }
 
 #[test]
 fn a_tensegrity_prism_of_equal_masses() {
-    check(tensegrity, false, 60.0);
+    check(4, tensegrity, false, 60.0);
 }
 
 #[test]
 fn a_tensegrity_prism_of_masses_one_to_ten_thousand() {
-    check(tensegrity, true, 60.0);
+    check(5, tensegrity, true, 60.0);
 }
 
 #[test]
 fn a_lattice_of_equal_masses() {
-    check(lattice, false, 10.0);
+    check(6, lattice, false, 10.0);
 }
 
 #[test]
 fn a_lattice_of_masses_one_to_ten_thousand() {
-    check(lattice, true, 10.0);
+    check(7, lattice, true, 10.0);
 }
