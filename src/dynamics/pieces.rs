@@ -131,7 +131,10 @@ impl Pieces {
                 let edges = [way[0].min(way[1]), way[0].max(way[1])];
                 pieces.push_hardening(&reach, edges, spring, [tangent.stiffness; 2], range);
             }
-            Some(kink) => pieces.push_split(&reach, spring, kink, damping, law.range()),
+            Some(kink) => {
+                let uncut = law.uncut_between(rest_length);
+                pieces.push_split(&reach, spring, kink, damping, uncut, law.range());
+            }
         }
         for above in [false, true] {
             let away = law.to_stop(above, reach.way[0]);
@@ -158,36 +161,33 @@ impl Pieces {
         pieces
     }
 
-    /// A spring whose slope leaps: a piece that comes up to the kink from below, and one that goes on above it.
+    /// A spring whose slope leaps: a piece that comes up to the kink from below, and one that goes on above it. Its force is
+    /// not cut from `low` to `high`.
     fn push_split(
         &mut self,
         reach: &Outreach,
         spring: impl Fn(f64) -> Elastic,
         kink: f64,
         damping: f64,
+        [low, high]: [f64; 2],
         [least, greatest]: [f64; 2],
     ) {
         let free = least.is_finite() == greatest.is_finite();
-        let sides = [false, true].map(|above| {
-            let (beside, beyond) = if above {
-                (f64::max as fn(f64, f64) -> f64, 1.0)
-            } else {
-                (f64::min as fn(f64, f64) -> f64, -1.0)
-            };
-            let mut way = reach.way.map(|length| beside(length, kink));
-            if way == [kink; 2] {
-                way = [kink, kink + beyond * BESIDE * reach.change];
-            }
-            let mut tangent = Tangent::chord(&spring, way);
+        let mut sides = [[low, kink.min(high)], [kink.max(low), high]]
+            .map(|side| Tangent::chord(&spring, reach.way_between(side)));
+        if !free {
             // A rope's damper is a part of what pulls.
-            if !free && above == (least == 0.0) {
-                tangent.damping = damping;
-            }
-            tangent
-        });
+            sides[usize::from(least == 0.0)].damping = damping;
+        }
         let slopes = sides.map(|tangent| tangent.stiffness);
-        let shares = sides.map(|tangent| reach.share(&tangent, [0.0, f64::INFINITY]));
-        let share = shares[0].min(shares[1]);
+        // A side that never acts softens nothing.
+        let at_kink = spring(kink).force.max(least).min(greatest);
+        let share = sides
+            .iter()
+            .zip([at_kink > least, at_kink < greatest])
+            .filter(|(_, acts)| *acts)
+            .map(|(tangent, _)| reach.share(tangent, [0.0, f64::INFINITY]))
+            .fold(1.0, f64::min);
         if free {
             // Damping of its own, which neither side's range cuts off. It has what the spring leaves of the limit.
             let tangent = Tangent::linear(0.0, share * damping, kink);

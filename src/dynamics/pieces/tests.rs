@@ -139,6 +139,24 @@ fn a_buffer_that_is_not_met_yet_has_no_force_however_it_hardens() {
 }
 
 #[test]
+fn a_rope_is_as_stiff_as_it_is_however_hard_it_would_push() {
+    let mut recipe = recipe([0.0, f64::INFINITY]);
+    recipe.spring = SpringForce::Polynomial {
+        pull: [STIFFNESS, 0.0, 0.0],
+        push: [10.0, 0.0, 1e9],
+    };
+    let law = Law::new(recipe);
+    for way in [[0.7, 0.8], [0.9, 1.1], [1.1, 1.2]] {
+        let mut reach = reach(way, 0.0);
+        reach.firmest = [1e3; 2];
+        let pieces = Pieces::of(&law, 1.0, reach);
+        assert_eq!(pieces.tension(0.9, 0.0), 0.0, "{way:?}");
+        let taut = pieces.tension(1.2, 0.0);
+        assert!((taut - 0.2 * STIFFNESS).abs() < 1e-9, "{way:?}: {taut}");
+    }
+}
+
+#[test]
 fn what_goes_farther_than_it_was_thought_to_meets_at_least_what_it_stores() {
     let mut recipe = recipe([f64::NEG_INFINITY, f64::INFINITY]);
     let cubic = [10.0, 0.0, 1e5];
