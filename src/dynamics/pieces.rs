@@ -126,8 +126,7 @@ impl Pieces {
                 let tangent = Tangent::chord(spring, way);
                 let tangent = Tangent { damping, ..tangent };
                 let range = law.range();
-                let share = reach.share(&tangent, range);
-                pieces.push(reach.piece(tangent.times(share), range));
+                pieces.push_softened(&reach, tangent, range);
                 let edges = [way[0].min(way[1]), way[0].max(way[1])];
                 pieces.push_hardening(&reach, edges, spring, [tangent.stiffness; 2], range);
             }
@@ -148,8 +147,7 @@ impl Pieces {
             } else {
                 [f64::NEG_INFINITY, 0.0]
             };
-            let share = reach.share(&tangent, range);
-            pieces.push(reach.piece(tangent.times(share), range));
+            pieces.push_softened(&reach, tangent, range);
         }
         let has_stop = [false, true].map(|above| law.to_stop(above, reach.way[0]));
         if pieces.iter().any(Piece::ends) || has_stop != [None; 2] {
@@ -232,11 +230,15 @@ impl Pieces {
             let beyond = (spring(far).force - spring(edge).force) / (far - edge);
             let harder = beyond - slopes[side];
             if harder > HARDENS * slopes[side] {
-                let tangent = Tangent::linear(harder, 0.0, edge);
-                let share = reach.share(&tangent, range);
-                self.push(reach.piece(tangent.times(share), range));
+                self.push_softened(reach, Tangent::linear(harder, 0.0, edge), range);
             }
         }
+    }
+
+    /// A force of such a range, as firm as one with this range may be.
+    fn push_softened(&mut self, reach: &Outreach, tangent: Tangent, range: [f64; 2]) {
+        let share = reach.share(&tangent, range);
+        self.push(reach.piece(tangent.times(share), range));
     }
 
     fn push(&mut self, piece: Piece) {

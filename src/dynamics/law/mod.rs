@@ -182,8 +182,9 @@ impl Law {
         if law.at_limits[0] > law.at_limits[1] {
             law.at_limits[1] = law.at_limits[0];
         }
-        let free = Some(law.stretch_for(0.0)).filter(|x| x.is_finite());
-        law.reference = law.spring_at(free.unwrap_or(0.0)).energy;
+        let free = law.stretch_for(0.0);
+        let free = if free.is_finite() { free } else { 0.0 };
+        law.reference = law.spring_at(free).energy;
         law
     }
 

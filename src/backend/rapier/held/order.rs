@@ -157,6 +157,16 @@ impl Order {
         (!wanted.is_empty()).then_some(wanted)
     }
 
+    /// The end that elements cannot turn, or that turns less over the step.
+    fn turns_less(&self, time: f64) -> usize {
+        let [a, b] = self.spins.map(|spin| time * spin.length());
+        match self.line.holds.map(|hold| hold.body) {
+            [_, None] => 1,
+            [None, _] => 0,
+            _ => usize::from(a > TURNS && b < 0.5 * a),
+        }
+    }
+
     fn frame(&self, row: &ElementRow, holders: [BodyId; 2], time: f64) -> Frame {
         let anchors = row.rare.held.map(|held| match held {
             Held::Body { local, .. } => local.as_vec3(),
@@ -177,22 +187,16 @@ impl Order {
             }
             Guide::World(axis) => {
                 frame.along = Along::Apart;
-                // The joint's axis turns with its first body: the one that elements cannot turn, or that turns less, and as
-                // far before the middle of the step as after it.
-                let [a, b] = self.spins.map(|spin| time * spin.length());
-                let end = match self.line.holds.map(|hold| hold.body) {
-                    [_, None] => 1,
-                    [None, _] => 0,
-                    _ => usize::from(a > TURNS && b < 0.5 * a),
-                };
+                // The joint's axis turns with its first body, as far before the middle of the step as after it.
+                let end = self.turns_less(time);
+                let half = DQuat::from_scaled_axis(0.5 * time * self.spins[end]);
+                let mut axis = (half * self.facings[end]).inverse() * axis;
                 if end == 1 {
                     frame.bodies.swap(0, 1);
                     frame.anchors.swap(0, 1);
+                    axis = -axis;
                 }
-                let axis = if end == 1 { -axis } else { axis };
-                let half = DQuat::from_scaled_axis(0.5 * time * self.spins[end]);
-                let halfway = half * self.facings[end];
-                frame.rotations[0] = x_to(halfway.inverse() * axis).as_quat();
+                frame.rotations[0] = x_to(axis).as_quat();
             }
             Guide::Twist(_) => {
                 frame.along = Along::Twist;
