@@ -1,4 +1,4 @@
-//! What elements are held by, and who finds it.
+//! The ends of elements as the engine has them, and the interface that finds them before a step.
 
 use super::BodyId;
 use crate::dynamics::guide::Guide;
@@ -8,40 +8,41 @@ use bevy::ecs::entity::EntityHashSet;
 use bevy::math::{DVec3, Vec3};
 use bevy::prelude::Entity;
 
-/// An end, found.
+/// Where the end of an element is.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Place {
-    /// A point fixed to a rigid body, in the body's own frame (scale taken in).
+    /// A point fixed to a rigid body. `local` is in the body's frame and includes the body's scale, m.
     OnBody {
         entity: Entity,
         body: BodyId,
-        /// The world of the engine in which the body is.
+        /// Entity of the engine's world that contains the body.
         context: Entity,
         local: DVec3,
     },
-    /// A point of the world, where the entity stands now.
+    /// The present position of an entity that is not on a rigid body, world frame, m.
     Point(DVec3),
 }
 
-/// Both ends of a sound element.
+/// Both ends of an element without a fault.
 pub(crate) struct Found {
     pub places: [Place; 2],
-    /// The bodies at both ends that elements can move.
+    /// The body at each end, if elements can move it.
     pub movable: [Option<Movable>; 2],
 }
 
-/// What is found of a body that elements can move.
+/// Data about a body that elements can move.
 #[derive(Clone, Copy)]
 pub(crate) struct Movable {
-    /// The element turns it.
+    /// Whether the element turns the body.
     pub turns: bool,
-    /// Where it stands among the bodies of a component, whenever it was spawned: a hash of how it was first found.
+    /// Sort key of the body within its component: a hash of its state when it was first found. It does not depend on the order
+    /// in which bodies were spawned.
     pub rank: u64,
 }
 
-/// Finds the ends of elements in the world as an engine has it before its step, and judges them.
+/// Finds and checks the ends of elements before the engine's step.
 pub(crate) trait Finder {
-    /// One end.
+    /// Finds one end.
     fn place(
         &self,
         end: Entity,
@@ -50,8 +51,7 @@ pub(crate) trait Finder {
         scale: &mut Option<DVec3>,
     ) -> Result<Place, Fault>;
 
-    /// Both ends, or what is wrong with the element. The mass of `modified` bodies is yet to be worked
-    /// out anew by the engine.
+    /// Finds both ends, or the fault of the element. The engine has not yet recomputed the masses of the bodies in `modified`.
     fn find(
         &mut self,
         parameters: &Parameters,
@@ -60,7 +60,7 @@ pub(crate) trait Finder {
         modified: &EntityHashSet,
     ) -> Result<Found, Fault>;
 
-    /// Puts the coefficients that a tuning asks for into an element's numbers; says whether contacts may hold its ends.
+    /// Writes the coefficients that `tuning` asks for into `parameters`. Returns whether contacts may hold the ends.
     fn tune(
         &self,
         tuning: SpringTuning,
@@ -69,6 +69,7 @@ pub(crate) trait Finder {
         parameters: &mut Parameters,
     ) -> Result<bool, Fault>;
 
-    /// The tension with which an element holds its load where that is, and its length there, N and m.
+    /// Returns the tension with which the element holds its load in its present pose, and its present length, N and m
+    /// (for a torsion element N m and rad).
     fn pose(&self, pose: HoldPose, guide: Guide, places: &[Place; 2]) -> Result<[f64; 2], Fault>;
 }

@@ -1,8 +1,8 @@
-//! What a physics engine must tell and be told; all else of the crate knows engines through this alone.
+//! The interface between the crate and a physics engine. The rest of the crate uses engines only through it.
 //!
-//! An engine that has bodies which fly in equal substeps implements [`Sight`] and [`Engine`], and springs between free bodies
-//! work. What contacts or joints hold is another matter, for there only the engine knows what acts: a backend that has such
-//! things solves those components itself (`rapier::held`).
+//! An engine that moves bodies in equal substeps implements [`Sight`] and [`Engine`]; then springs between free bodies work.
+//! Only the engine knows the forces of contacts and joints. So a backend whose engine has them must itself solve the components
+//! that they hold (`rapier::held`).
 
 mod ends;
 pub(crate) mod rapier;
@@ -13,12 +13,12 @@ use crate::dynamics::body::Body;
 use crate::dynamics::delivery::{Schedule, TurnRule};
 use bevy::math::{DQuat, DVec3, Quat, Vec3};
 
-/// What an engine calls one of its bodies.
+/// Handle of a body in the engine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct BodyId {
     pub index: u32,
-    /// Tells it from others that had this index before.
+    /// Distinguishes the body from earlier bodies with the same index.
     pub generation: u32,
 }
 
@@ -30,87 +30,87 @@ impl BodyId {
     };
 }
 
-/// What an engine calls one of its joints.
+/// Handle of a joint in the engine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct JointId {
     pub index: u32,
-    /// Tells it from others that had this index before.
+    /// Distinguishes the joint from earlier joints with the same index.
     pub generation: u32,
 }
 
-/// A force (N) and a torque (N m) on a body, world frame.
+/// A force (N) and a torque (N m) on a body, in the world frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Wrench {
     pub force: Vec3,
     pub torque: Vec3,
 }
 
-/// How an engine is about to step.
+/// How the engine will step in this tick.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct StepPlan {
-    /// Seconds in all; 0 where nothing will be stepped.
+    /// Total time of the tick, s; 0 if the engine does not step.
     pub time: f64,
-    /// Steps of the engine in it, one after the other.
+    /// Number of engine steps in that time.
     pub calls: u32,
-    /// Substeps of each of them, for a body that asks for no more.
+    /// Number of substeps per engine step, for a body that asks for no extra substeps.
     pub substeps: usize,
-    /// Cap on speeds, m/s.
+    /// Greatest speed that the engine allows, m/s.
     pub fastest: f64,
-    /// Cap on turning in all, rad; a body that may turn fast has none.
+    /// Greatest rotation of a body in the whole tick, rad. It does not apply to bodies that may turn fast.
     pub farthest_turn: f64,
-    /// How it turns a body.
+    /// How the engine integrates rotation.
     pub turn: TurnRule,
-    /// Length of an ordinary thing, m: what counts as rest is that many times as fast.
+    /// Typical size of an object, m. The speed below which a body counts as resting is proportional to it.
     pub length_unit: f32,
 }
 
 impl StepPlan {
-    /// The substeps of a body that the engine takes so many of in a step of its own.
+    /// Schedule of a body that has `substeps` substeps in each engine step.
     pub(crate) fn schedule(&self, substeps: usize) -> Schedule {
         let substeps = u32::try_from(substeps.max(1)).unwrap_or(u32::MAX);
         Schedule::new(self.time, substeps.saturating_mul(self.calls.max(1)))
     }
 }
 
-/// A body as an engine has it now. World frame.
+/// State of a body in the engine now. World frame unless a field says otherwise.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Seen {
-    /// Origin of its frame, m.
+    /// Origin of the body's frame, m.
     pub origin: Vec3,
     pub rotation: Quat,
-    /// Centre of mass in its own frame, m.
+    /// Centre of mass in the body's frame, m.
     pub local_center: Vec3,
-    /// Of the centre of mass, m/s.
+    /// Velocity of the centre of mass, m/s.
     pub velocity: Vec3,
-    /// rad/s.
+    /// Angular velocity, rad/s.
     pub spin: Vec3,
-    /// 1/kg, whatever is locked.
+    /// Inverse mass, 1/kg; locked axes are not taken into account.
     pub inverse_mass: f32,
-    /// By gravity where nothing is locked, m/s².
+    /// Acceleration by gravity, m/s²; locked axes are not taken into account.
     pub gravity: DVec3,
-    /// Substeps that it asks for beyond those of all.
+    /// Number of substeps that the body asks for beyond those of all bodies.
     pub more_substeps: usize,
-    /// Forces and impulses can move it.
+    /// Whether forces and impulses can move the body.
     pub is_movable: bool,
     pub is_asleep: bool,
-    /// It cannot move along some axis of the world.
+    /// Whether its translation is locked along some world axis.
     pub is_locked: bool,
-    /// It has colliders.
+    /// Whether it has colliders.
     pub can_touch: bool,
-    /// It may turn faster than others.
+    /// Whether the engine's cap on rotation does not apply to it.
     pub turns_fast: bool,
-    /// The engine counts in that a body spins about another axis than that of its momentum.
+    /// Whether the engine applies gyroscopic forces to it.
     pub is_gyroscopic: bool,
 }
 
 impl Seen {
-    /// From its frame to the world.
+    /// Rotation from the body's frame to the world.
     pub(crate) fn facing(&self) -> DQuat {
         self.rotation.as_dquat().normalize()
     }
 
-    /// Centre of mass.
+    /// Centre of mass in the world, m.
     #[inline(always)]
     pub(crate) fn center(&self) -> DVec3 {
         let origin = self.origin.as_dvec3();
@@ -121,7 +121,7 @@ impl Seen {
         }
     }
 
-    /// Position and velocity of a point fixed to it (`local` in its frame).
+    /// Position and velocity of a point fixed to the body. `local` is the point in the body's frame.
     pub(crate) fn point(&self, local: DVec3) -> (DVec3, DVec3) {
         let arm = self.facing() * (local - self.local_center.as_dvec3());
         let velocity = self.velocity.as_dvec3() + self.spin.as_dvec3().cross(arm);
@@ -129,57 +129,58 @@ impl Seen {
     }
 }
 
-/// What an engine is told of a body, so that it ends the step where the integrator did.
+/// What the engine must be given for a body so that its step ends where the integrator's step ended.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Push {
-    /// Velocities at the start, if others than it has, m/s and rad/s.
+    /// New velocity at the start of the step, m/s; none to keep the present one.
     pub velocity: Option<Vec3>,
+    /// New angular velocity at the start of the step, rad/s; none to keep the present one.
     pub spin: Option<Vec3>,
-    /// By elements, over the step.
+    /// Force and torque of the elements, constant over the step.
     pub share: Wrench,
-    /// It is to take a second substep.
+    /// Whether the body needs a second substep.
     pub second_substep: bool,
-    /// It is not to fall asleep yet.
+    /// Whether the body must not fall asleep yet.
     pub keep_awake: bool,
 }
 
-/// What an engine tells of its bodies. A body that is gone is none.
+/// Read access to the bodies of an engine. Methods that return an `Option` return `None` for a body that no longer exists.
 pub(crate) trait Sight: Sync {
-    /// How it is now.
+    /// State of a body now.
     fn see(&self, body: BodyId) -> Option<Seen>;
 
-    /// Whether it sleeps.
+    /// Whether a body is asleep.
     fn is_asleep(&self, body: BodyId) -> bool;
 
-    /// The integrator's view of it. `turns` is false where every element holds it at its centre of mass.
+    /// The body as the integrator sees it. `turns` is false if every element holds the body at its centre of mass.
     fn body(&self, body: BodyId, user: &Wrench, turns: bool) -> Option<Body>;
 
-    /// Where a point of a body that elements cannot move is now (`local` in the body's frame), and where it will be in
-    /// `time` seconds.
+    /// Position now, and position in `time` seconds, of a point on a body that elements cannot move. `local` is the point in
+    /// the body's frame.
     fn way(&self, body: BodyId, local: DVec3, time: f64) -> Option<[DVec3; 2]>;
 
-    /// How a body that elements cannot turn is turned now, and its angular velocity over the coming `time` seconds.
+    /// Rotation now, and angular velocity over the coming `time` seconds (rad/s), of a body that elements cannot turn.
     fn turning(&self, body: BodyId, time: f64) -> Option<(DQuat, DVec3)>;
 
-    /// Its radius of gyration, in the bounds that count for whether it rests, m.
+    /// Radius of gyration of a body, m, clamped to the range that the test for rest uses.
     fn size(&self, body: BodyId) -> f32;
 }
 
-/// The worlds of an engine, after a step.
+/// The worlds of an engine after a step.
 pub(crate) trait Worlds: Sync {
-    /// The bodies of one.
+    /// Read access to the bodies of one world.
     type Sight: Sight;
 
-    /// Those of the world that the ECS calls so.
+    /// The bodies of the world whose entity in the ECS is `context`.
     fn of(&self, context: bevy::prelude::Entity) -> Option<&Self::Sight>;
 }
 
-/// What an engine is told.
+/// Write access to the bodies of an engine.
 pub(crate) trait Engine: Sight {
-    /// Has a body go where elements take it; `user` acts beside them.
+    /// Gives a body the velocities and forces in `push`. `user` is the user's force and torque, which acts as well.
     fn give(&mut self, body: BodyId, push: &Push, user: &Wrench);
 
-    /// Has a body not fall asleep yet.
+    /// Resets the sleep timer of a body.
     fn keep_awake(&mut self, body: BodyId);
 
     /// Wakes a body.

@@ -1,4 +1,4 @@
-//! Rapier's bodies, as the rest of the crate sees them.
+//! Converts Rapier's bodies for the rest of the crate: implements the backend's `Sight` and `Engine`.
 
 use crate::backend::{BodyId, Engine, JointId, Push, Seen, Sight, Wrench};
 use crate::dynamics::body::{Body, Spin, turn};
@@ -8,38 +8,38 @@ use bevy_rapier3d::rapier::dynamics::{
 };
 use std::borrow::{Borrow, BorrowMut};
 
-/// Rapier turns no body further in one pipeline step (`MAX_ROTATION` in its solver), rad.
+/// Greatest rotation of a body in one pipeline step of Rapier (`MAX_ROTATION` in its solver), rad.
 pub(crate) const FARTHEST_TURN: f64 = std::f64::consts::FRAC_PI_4;
 
-/// The bodies of a context, with gravity there, m/s².
+/// The bodies of a context, and its gravity, m/s².
 pub(crate) struct Bodies<B> {
     pub set: B,
     pub gravity: Vec3,
 }
 
-/// What Rapier calls a body.
+/// Rapier's handle of a body.
 pub(crate) fn handle(body: BodyId) -> RigidBodyHandle {
     RigidBodyHandle::from_raw_parts(body.index, body.generation)
 }
 
-/// What all else calls it.
+/// The crate's id of a body.
 pub(crate) fn id(handle: RigidBodyHandle) -> BodyId {
     let (index, generation) = handle.into_raw_parts();
     BodyId { index, generation }
 }
 
-/// What Rapier calls a joint.
+/// Rapier's handle of a joint.
 pub(crate) fn joint_handle(joint: JointId) -> ImpulseJointHandle {
     ImpulseJointHandle::from_raw_parts(joint.index, joint.generation)
 }
 
-/// What all else calls it.
+/// The crate's id of a joint.
 pub(crate) fn joint_id(handle: ImpulseJointHandle) -> JointId {
     let (index, generation) = handle.into_raw_parts();
     JointId { index, generation }
 }
 
-/// How a body is now.
+/// State of a body now.
 #[inline(always)]
 pub(crate) fn see(body: &RigidBody, gravity: Vec3) -> Seen {
     let properties = &body.mass_properties().local_mprops;
@@ -64,22 +64,22 @@ pub(crate) fn see(body: &RigidBody, gravity: Vec3) -> Seen {
     }
 }
 
-/// Whether an element can move it.
+/// Whether elements can move a body.
 pub(crate) fn is_movable(body: &RigidBody) -> bool {
     body.is_dynamic() && body.is_enabled()
 }
 
-/// From its frame to the world.
+/// Rotation from the body's frame to the world.
 fn facing(body: &RigidBody) -> DQuat {
     body.position().rotation.as_dquat().normalize()
 }
 
-/// Position and velocity of a point fixed to a body (`local` in its frame).
+/// Position and velocity of a point fixed to a body. `local` is the point in the body's frame.
 pub(crate) fn point_of(body: &RigidBody, local: DVec3) -> (DVec3, DVec3) {
     see(body, Vec3::ZERO).point(local)
 }
 
-/// Where a point of a body that the game moves will be after the step.
+/// Position after the step of a point on a body that elements cannot move. `local` is the point in the body's frame.
 fn point_after(body: &RigidBody, local: DVec3, time: f64) -> DVec3 {
     let (now, _) = point_of(body, local);
     if !body.is_kinematic() || !body.is_enabled() {
@@ -91,7 +91,7 @@ fn point_after(body: &RigidBody, local: DVec3, time: f64) -> DVec3 {
         return next.translation.as_dvec3() + next.rotation.as_dquat().normalize() * local;
     }
     match body.body_type() {
-        // Velocity-based: moves straight and turns steadily.
+        // The centre moves along a straight line, and the body turns at a constant rate.
         RigidBodyType::KinematicVelocityBased => {
             let turned = turn(time * body.angvel().as_dvec3());
             let (center, _) = point_of(body, body.local_center_of_mass().as_dvec3());
@@ -101,7 +101,7 @@ fn point_after(body: &RigidBody, local: DVec3, time: f64) -> DVec3 {
     }
 }
 
-/// Rotation of a body that elements cannot turn, and its angular velocity over the step.
+/// Rotation now of a body that elements cannot turn, and its angular velocity over the step, rad/s.
 pub(crate) fn turning_of(body: &RigidBody, time: f64) -> (DQuat, DVec3) {
     let now = facing(body);
     if !body.is_kinematic() || !body.is_enabled() {
@@ -121,7 +121,7 @@ pub(crate) fn turning_of(body: &RigidBody, time: f64) -> (DQuat, DVec3) {
     }
 }
 
-/// The integrator's view. `turns` is false where every element holds the body at its centre of mass.
+/// The body as the integrator sees it. `turns` is false if every element holds the body at its centre of mass.
 pub(crate) fn read(body: &RigidBody, gravity: Vec3, user: &Wrench, turns: bool) -> Body {
     let properties = &body.mass_properties().local_mprops;
     let rotation = facing(body);
@@ -174,10 +174,10 @@ pub(crate) fn read(body: &RigidBody, gravity: Vec3, user: &Wrench, turns: bool) 
     out
 }
 
-/// Lets a body turn as its locks and its inertia allow.
+/// Sets how a body can turn, from its locked axes and its inertia.
 fn set_spin(body: &mut Body, angular_velocity: DVec3) {
     let locked = body.rotation_locked;
-    // No inertia about an axis means to the engine that nothing turns the body about it.
+    // For the engine, zero inertia about an axis means that no torque turns the body about it.
     if locked == [false; 3] && body.inertia.min_element() > 0.0 {
         body.spin = Spin::Free {
             momentum: DVec3::ZERO,
@@ -190,7 +190,7 @@ fn set_spin(body: &mut Body, angular_velocity: DVec3) {
     }
 }
 
-/// Its greatest radius of gyration, but a metre at most and two centimetres at least, m.
+/// Greatest radius of gyration of a body, clamped to 0.02 m to 1 m.
 fn size_of(body: &RigidBody) -> f32 {
     let properties = &body.mass_properties().local_mprops;
     let inertia = properties.principal_inertia().max_element();
@@ -244,7 +244,7 @@ impl<B: BorrowMut<RigidBodySet> + Sync> Engine for Bodies<B> {
     #[inline(always)]
     fn keep_awake(&mut self, body: BodyId) {
         if let Some(body) = self.set.borrow_mut().get_mut(handle(body)) {
-            // The engine's sleep timer.
+            // Resets the engine's sleep timer.
             body.activation_mut().time_since_can_sleep = 0.0;
         }
     }
@@ -256,11 +256,11 @@ impl<B: BorrowMut<RigidBodySet> + Sync> Engine for Bodies<B> {
     }
 }
 
-/// Gives a body velocities, and the elements' share of force and torque beside the user's.
+/// Sets the velocities of a body, and its force and torque to the sum of the elements' share and the user's.
 #[inline(always)]
 pub(crate) fn give(body: &mut RigidBody, push: &Push, user: &Wrench) {
     if push.keep_awake {
-        // The engine's sleep timer.
+        // Resets the engine's sleep timer.
         body.activation_mut().time_since_can_sleep = 0.0;
     }
     if push.second_substep {
@@ -281,7 +281,7 @@ pub(crate) fn give(body: &mut RigidBody, push: &Push, user: &Wrench) {
     }
 }
 
-/// The elements' share and the user's: what stands in the engine for them.
+/// The force and torque that the engine holds for the elements' share and the user's together.
 pub(crate) fn sum(elements: &Wrench, user: &Wrench) -> Wrench {
     Wrench {
         force: told_apart(user.force + elements.force, user.force),
@@ -289,8 +289,8 @@ pub(crate) fn sum(elements: &Wrench, user: &Wrench) -> Wrench {
     }
 }
 
-/// A sum that happens to be zero is left as the smallest number instead, so that a user who clears it
-/// changes it.
+/// Replaces zeros in `sum` by the smallest positive number where the user's share is not zero. Otherwise a user who clears
+/// the force would not change it, and the crate would not notice.
 fn told_apart(sum: Vec3, user: Vec3) -> Vec3 {
     let hidden = sum.cmpeq(Vec3::ZERO) & user.cmpne(Vec3::ZERO);
     Vec3::select(hidden, Vec3::splat(f32::MIN_POSITIVE), sum)

@@ -1,4 +1,4 @@
-//! What an end is: a body, a point below a body, or a point that the game moves.
+//! Finds where an end is: on a body, on a descendant of a body, or at a point that the game moves.
 
 use super::body::id;
 use crate::backend::Place;
@@ -8,7 +8,7 @@ use bevy::math::{DAffine3, DVec3};
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
 
-/// Finds ends.
+/// Finds the ends of elements.
 #[derive(SystemParam)]
 pub(crate) struct Ends<'w, 's> {
     bodies: Query<
@@ -24,10 +24,10 @@ pub(crate) struct Ends<'w, 's> {
 }
 
 impl Ends<'_, '_> {
-    /// Walks up from the entity to the first body, or to the root.
+    /// Walks up the hierarchy from the entity `end` to the first body, or to the root.
     ///
-    /// Local transforms are composed here rather than read from `GlobalTransform`, which is stale
-    /// for children within a fixed tick and interpolated for bodies.
+    /// It composes local transforms instead of reading `GlobalTransform`, which is out of date for children within a fixed tick
+    /// and interpolated for bodies.
     pub(crate) fn find(
         &self,
         end: Entity,
@@ -82,8 +82,8 @@ impl Ends<'_, '_> {
     }
 }
 
-/// The body's global scale. A rotating transform's scale flickers in the last bits, which would make
-/// the anchor tremble, so a change below 1e-4 is none.
+/// The body's global scale. The scale of a rotating transform changes in its last bits, which would make the anchor tremble.
+/// So relative changes below 1e-4 are ignored.
 fn steady_scale(global: Option<&GlobalTransform>, last: &mut Option<DVec3>) -> DVec3 {
     let now = global.map_or(DVec3::ONE, |g| g.scale().as_dvec3());
     let known = last.unwrap_or(DVec3::ONE);

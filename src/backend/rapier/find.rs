@@ -1,4 +1,4 @@
-//! Both ends of an element, and what can be wrong with them.
+//! Finds both ends of an element in Rapier and checks them, before the step.
 
 use super::body::{handle, is_movable};
 use super::ends::Ends;
@@ -14,7 +14,7 @@ use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
 use bevy_rapier3d::rapier::dynamics::RigidBody as RapierBody;
 
-/// Finds the ends of elements and judges them.
+/// Finds the ends of elements and checks them.
 #[derive(SystemParam)]
 pub(crate) struct RapierFinder<'w, 's> {
     pub(crate) ends: Ends<'w, 's>,
@@ -115,7 +115,7 @@ impl Finder for RapierFinder<'_, '_> {
 }
 
 impl RapierFinder<'_, '_> {
-    /// The body of this end, if it can be moved, and whether it is held off its centre of mass.
+    /// Returns data about the body at an end, if elements can move it.
     fn movable(
         &mut self,
         place: &Place,
@@ -137,7 +137,7 @@ impl RapierFinder<'_, '_> {
         );
         let (mut set, colliders, ..) = self.sets.get_mut(context).map_err(|_| missing)?;
         let of = handle(body);
-        // Read first: a mutable look marks the body as modified in the engine.
+        // Read first: mutable access marks the body as modified in the engine.
         let body = set.bodies.get(of).ok_or(missing)?;
         if !is_movable(body) {
             return Ok(None);
@@ -163,8 +163,8 @@ impl RapierFinder<'_, '_> {
     }
 }
 
-/// A number for a body that does not depend on when it was spawned. Two bodies of the same mass at the same place have the
-/// same one.
+/// A hash of a body's pose and mass, which does not depend on when the body was spawned. Two bodies of the same mass in the
+/// same pose have the same hash.
 fn rank(body: &RapierBody) -> u64 {
     let place = body.position();
     let numbers = place.translation.to_array().into_iter();

@@ -1,4 +1,4 @@
-//! One `ExternalForce` per body, two owners: the user's share and ours, kept apart.
+//! Each body has one `ExternalForce` with two owners: the user and the elements. This file keeps their shares apart.
 
 use super::body;
 use crate::backend::{Push, Wrench};
@@ -10,30 +10,30 @@ use bevy::ecs::query::Allow;
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
 
-/// On a body that elements act on: their share of what stands in its `ExternalForce`.
+/// The shares of elements and user in the `ExternalForce` of a body on which elements act.
 ///
-/// `ExternalForce` holds the sum of both shares after every step. Whatever is assigned to it is taken
-/// as the user's new share; to change that relative to what it was, start from `user`.
+/// After every step, `ExternalForce` holds the sum of both shares. A value that you assign to it becomes the user's new share.
+/// To change the user's share by some amount, start from `user`.
 ///
-/// The share of the elements is the force delivered, not the springs' own: together with an impulse
-/// at the start of the step it makes the engine's few substeps end where the springs take the body.
+/// The share of the elements is not the force of the springs. It is the force that, together with an impulse at the start of
+/// the step, makes the engine's few substeps end where the springs take the body.
 #[derive(Component, Reflect, Clone, Debug)]
 #[type_path = "bevy_coilover"]
 #[reflect(Component, Debug, Clone)]
 pub struct SpringLoad {
-    /// Force (N) and torque (N m) delivered by elements over the last step, world frame.
+    /// Force (N) and torque (N m) that elements gave to the body over the last step, world frame.
     pub elements: ExternalForce,
-    /// Force and torque that the user wrote.
+    /// Force (N) and torque (N m) that the user wrote, world frame.
     pub user: ExternalForce,
-    /// Index of the body's row in the scene, if that row says so too.
+    /// Index of the body's row in the scene. It is valid only if that row has the same entity.
     #[reflect(ignore)]
     pub(crate) slot: usize,
-    /// We gave the body a second solver iteration.
+    /// Whether the crate gave the body a second solver iteration.
     #[reflect(ignore)]
     raised_iterations: bool,
 }
 
-/// Loads of bodies, also of disabled ones: their share must be taken back too.
+/// Loads of bodies, including disabled bodies, whose share must be removed too.
 pub(crate) type Loads<'w, 's> = Query<
     'w,
     's,
@@ -45,7 +45,7 @@ pub(crate) type Loads<'w, 's> = Query<
     Allow<Disabled>,
 >;
 
-/// Loads of bodies whose `ExternalForce` somebody has written since the last tick.
+/// Loads of bodies whose `ExternalForce` changed since the last tick.
 pub(crate) type ChangedLoads<'w, 's> = Query<
     'w,
     's,
@@ -53,10 +53,10 @@ pub(crate) type ChangedLoads<'w, 's> = Query<
     (Changed<ExternalForce>, Allow<Disabled>),
 >;
 
-/// One of them.
+/// One item of [`Loads`].
 type LoadsItem<'a> = (Entity, Mut<'a, SpringLoad>, Option<Mut<'a, ExternalForce>>);
 
-/// Where bodies are in the engine, those of disabled ones too.
+/// Engine handles of bodies, including disabled bodies.
 pub(crate) type Handles<'w, 's> = Query<
     'w,
     's,
@@ -67,10 +67,10 @@ pub(crate) type Handles<'w, 's> = Query<
     Allow<Disabled>,
 >;
 
-/// Bodies above which it is worth waking other threads. Pinned by the benchmark `own/isolated`.
+/// Number of bodies from which on several threads are worth their start-up time. Pinned by the benchmark `own/isolated`.
 const WORTH_SHARING: usize = 4096;
 
-/// In the crate's own numbers.
+/// Converts the component to the crate's own type.
 pub(crate) fn wrench(force: &ExternalForce) -> Wrench {
     Wrench {
         force: force.force,
@@ -78,7 +78,7 @@ pub(crate) fn wrench(force: &ExternalForce) -> Wrench {
     }
 }
 
-/// In the component's.
+/// Converts the crate's own type to the component.
 fn external(wrench: Wrench) -> ExternalForce {
     ExternalForce {
         force: wrench.force,
@@ -86,7 +86,7 @@ fn external(wrench: Wrench) -> ExternalForce {
     }
 }
 
-/// What stands in a body's component for both shares.
+/// The value of a body's `ExternalForce` for both shares.
 fn sum(elements: &ExternalForce, user: &ExternalForce) -> ExternalForce {
     external(body::sum(&wrench(elements), &wrench(user)))
 }
@@ -101,7 +101,7 @@ impl SpringLoad {
         }
     }
 
-    /// The shares of user and elements as they were, and what stands in the body's component for them.
+    /// Restores the shares of user and elements. Also returns the value of the body's `ExternalForce` for them.
     pub(crate) fn again(
         [user, elements]: [ExternalForce; 2],
         slot: usize,
@@ -120,19 +120,19 @@ impl SpringLoad {
         self.raised_iterations
     }
 
-    /// Takes in what the user wrote into a component that changed since the last step; says whether
-    /// that is new.
+    /// Reads the user's share from an `ExternalForce` that changed since the last step. Returns whether the share differs from
+    /// before.
     fn read_user(&mut self, now: &ExternalForce) -> bool {
         let before = self.user;
-        // What we left in the component.
+        // The value that the crate left in the component.
         let left = sum(&self.elements, &self.user);
         take_in(&mut self.user.force, now.force, left.force);
         take_in(&mut self.user.torque, now.torque, left.torque);
         self.user != before
     }
 
-    /// Shows the shares, the sum without marking it changed: a change would make bevy_rapier write it
-    /// again and keep the body awake for ever.
+    /// Writes the elements' share, and the sum of both shares to the component. The component is not marked as changed, because
+    /// bevy_rapier would then write it to the engine again and keep the body awake for ever.
     fn show(&mut self, elements: ExternalForce, component: Option<&mut Mut<ExternalForce>>) {
         self.elements = elements;
         if let Some(component) = component {
@@ -141,8 +141,8 @@ impl SpringLoad {
     }
 }
 
-/// Takes in what users wrote since the last step. The engine wakes a body whose sum changes; ours must
-/// wake when the user's share does.
+/// Reads what the user wrote since the last step. The engine wakes a body whose `ExternalForce` changes. The crate marks a body
+/// whose user's share changed as disturbed, so that its component wakes.
 pub(crate) fn read_users(scene: &mut Scene, mut changed: ChangedLoads) {
     scene.loaded = false;
     for (entity, mut load, component) in &mut changed {
@@ -158,7 +158,7 @@ pub(crate) fn read_users(scene: &mut Scene, mut changed: ChangedLoads) {
     }
 }
 
-/// Shows on every stepped body what it was given.
+/// Writes the elements' share of every stepped body to its components.
 pub(crate) fn show(scene: &Scene, loads: &mut Loads) {
     if !scene.delivered {
         return;
@@ -178,7 +178,7 @@ pub(crate) fn show(scene: &Scene, loads: &mut Loads) {
     }
 }
 
-/// Axes that differ from what we left there were written by the user.
+/// Updates the user's share on axes where the component differs from the value that the crate left there.
 fn take_in(share: &mut Vec3, now: Vec3, left: Vec3) {
     for axis in 0..3 {
         if now[axis].to_bits() != left[axis].to_bits() {
@@ -187,7 +187,7 @@ fn take_in(share: &mut Vec3, now: Vec3, left: Vec3) {
     }
 }
 
-/// Takes our share back from bodies that no element acts on any more; the user's shares have been read.
+/// Removes the elements' share from bodies on which no element acts any more. The user's shares must have been read before.
 pub(crate) fn release(
     scene: &mut Scene,
     loads: &mut Loads,
@@ -211,7 +211,7 @@ pub(crate) fn release(
             }
             body.wake_up(true);
         } else if let Some(component) = &mut component {
-            // No body any more; one that comes later starts from the component.
+            // The engine's body is gone. A later body starts from the component.
             *component.bypass_change_detection() = load.user;
         }
         commands.entity(entity).try_remove::<SpringLoad>();

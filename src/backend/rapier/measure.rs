@@ -1,4 +1,4 @@
-//! After Rapier's step: what it has made of all elements.
+//! The system after Rapier's step. It reads the new state of all elements and writes their readouts.
 
 use super::body::Bodies;
 use crate::backend::Worlds;
@@ -9,7 +9,7 @@ use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
 use bevy_rapier3d::rapier::dynamics::RigidBodySet;
 
-/// Finds where the step has taken elements, and writes what they show.
+/// Reads the positions of elements after the step, and writes their readouts.
 pub(crate) fn measure(
     mut scene: ResMut<Scene>,
     sets: Query<(Entity, Ref<RapierRigidBodySet>)>,
@@ -17,7 +17,7 @@ pub(crate) fn measure(
     mut springs: Query<Springs, IsElement>,
     mut commands: Commands,
 ) {
-    // bevy_rapier's write-back has marked every set as changed.
+    // bevy_rapier's write-back marks every set as changed in every tick, so note that time.
     let changed = |context| sets.get(context).ok().map(|(_, set)| set.last_changed());
     scene.still.mark(changed);
     let all_asleep = !(scene.delivered || scene.immovable);
@@ -28,10 +28,10 @@ pub(crate) fn measure(
     scene.show(&mut readouts, &mut springs, &mut commands);
 }
 
-/// The bodies of a context, and what the ECS calls that.
+/// The entity of a context, and its bodies.
 type Set<'a> = (Entity, Bodies<&'a RigidBodySet>);
 
-/// The bodies of all contexts after the step: mostly of one alone.
+/// The bodies of all contexts after the step. Usually there is only one context.
 struct Sets<'a> {
     first: Option<Set<'a>>,
     others: Vec<Set<'a>>,

@@ -1,9 +1,13 @@
-//! Rapier: the only room that knows it.
+//! The Rapier backend: the only module that knows Rapier.
 //!
-//! Three systems run the stages of [`crate::scene`]: [`prepare`] finds (with [`watch`], [`ends`], [`find`], [`tune`], [`statics`]), [`solve`]
-//! reads, solves and writes ([`body`] and [`rotation`] are how Rapier sees bodies and turns them, [`timestep`] how it steps,
-//! [`forces`] what stands in `ExternalForce`, [`held`] what its own solver solves), and [`measure`] observes and shows.
-//! [`setup`] tells of wrong set-ups; [`snapshot`] and [`kept`] go back to an earlier tick.
+//! Three systems run the stages of [`crate::scene`]:
+//!
+//! - [`prepare`] finds elements and their ends, with [`watch`], [`ends`], [`find`], [`tune`] and [`statics`].
+//! - [`solve`] reads, solves and writes. [`body`] converts bodies, [`rotation`] repeats Rapier's rotation, [`timestep`] predicts
+//!   the step, [`forces`] shares `ExternalForce` with the user, and [`held`] uses Rapier's own solver.
+//! - [`measure`] reads the result after the step and writes readouts.
+//!
+//! [`setup`] reports wrong set-ups. [`snapshot`] and [`kept`] return to an earlier tick.
 
 pub(crate) mod body;
 pub(crate) mod ends;

@@ -1,4 +1,5 @@
-//! Before the step: is the scene still the one we know? Mostly it is, and only what can move is read.
+//! The system before the step. It checks whether the known scene is still valid. Usually it is, and then the system reads only
+//! ends that can move; otherwise it rebuilds all rows.
 
 use crate::backend::rapier::body::handle;
 use crate::backend::rapier::find::RapierFinder;
@@ -13,7 +14,7 @@ use bevy::ecs::bundle::NoBundleEffect;
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
 
-/// Finds elements, their ends and the bodies they load.
+/// Finds elements, their ends, and the bodies on which they act.
 pub(crate) fn prepare(
     mut scene: ResMut<Scene>,
     elements: Query<Parts, Acts>,
@@ -33,7 +34,7 @@ pub(crate) fn prepare(
     let mut same = !watch.saw_change(scene);
     same &= !std::mem::take(&mut scene.stale);
     companions.look(scene.since.take(), scene.left_behind.drain(..));
-    // What comes and goes is seen by the watch; this is for whatever else may take elements away.
+    // `Watch` sees entities that appear and disappear. The count covers other ways in which elements may disappear.
     same &= elements.iter().len() == scene.elements.len();
     let is_new = |entity: &Entity| {
         let parts = elements.get(*entity);
@@ -61,7 +62,7 @@ pub(crate) fn prepare(
     enter_loads(scene, &mut loads, &finder, &mut commands);
 }
 
-/// Gives each body that elements load the components that show it, and reads which force is the user's.
+/// Gives each body on which elements act its `SpringLoad` and `ExternalForce`, and reads the user's share of the force.
 fn enter_loads(
     scene: &mut Scene,
     loads: &mut Query<
@@ -95,7 +96,7 @@ fn enter_loads(
                     torque: body.user_torque(),
                 })
             });
-        // A force written to the engine alone belongs to the user too.
+        // A force written directly to the engine belongs to the user too.
         let present = force.copied().or(engine).unwrap_or_default();
         row.set_user(wrench(&known.unwrap_or(present)));
         let load = SpringLoad::new(present, slot);
@@ -112,12 +113,12 @@ fn enter_loads(
     insert_all(new_loads, commands);
 }
 
-/// Gives many entities components at once: an entity that gets one after the other leaves room for itself in a table for each, and a
-/// command for each takes room for ever.
+/// Inserts components into many entities with one command. One command per entity would enlarge the command queue for good;
+/// one component at a time would leave unused room in a table for each component.
 fn insert_all<B: Bundle<Effect: NoBundleEffect>>(all: Vec<(Entity, B)>, commands: &mut Commands) {
     if !all.is_empty() {
         commands.queue(|world: &mut World| {
-            // What has gone meanwhile needs none.
+            // Entities that no longer exist need none.
             _ = world.try_insert_batch(all);
         });
     }

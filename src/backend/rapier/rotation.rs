@@ -1,19 +1,19 @@
-//! How Rapier turns a body.
+//! Repeats Rapier's integration of rotation, so that the crate can predict where a torque takes a body.
 
 use crate::dynamics::delivery::{Delivery, Spinning};
 use bevy::math::{DQuat, DVec3, Quat, Vec3};
 
-/// What Rapier makes of a delivery: see [`TurnRule`](crate::dynamics::delivery::TurnRule).
+/// Rotation and angular velocity that Rapier reaches with a delivery; see [`TurnRule`](crate::dynamics::delivery::TurnRule).
 pub(crate) fn turn(spinning: &Spinning, spin: DVec3, delivery: &Delivery) -> (DQuat, DVec3) {
     Rounded::new(spinning).run(spin, delivery)
 }
 
-/// Rapier's rotation of a body over its substeps, with its own f32: its gyroscopic term is biased by that (also
-/// where moments are equal, so that there should be none), over ten seconds by 1e-4 of the momentum, and running it
-/// shows the bias of this very step.
+/// Rapier's rotation of a body over its substeps, in f32 as in Rapier. Rounding biases Rapier's gyroscopic term, by 1e-4 of the
+/// angular momentum in ten seconds, even for equal moments of inertia, where the term should be zero. The same computation here
+/// gives the bias of this step.
 struct Rounded {
     substeps: u32,
-    /// Of one substep.
+    /// Duration of one substep, s.
     time: f32,
     rotation: Quat,
     principal: Quat,
@@ -58,7 +58,7 @@ impl Rounded {
         (rotation.as_dquat(), velocity.as_dvec3())
     }
 
-    /// Rapier's explicit gyroscopic term, which keeps the size of the angular momentum
+    /// Angular velocity after Rapier's explicit gyroscopic term, which keeps the magnitude of the angular momentum
     /// (`gyroscopic_corrected_angvel` in rapier3d's rigid_body.rs).
     fn precessed(&self, rotation: Quat, velocity: Vec3) -> Vec3 {
         let axes = rotation * self.principal;

@@ -1,4 +1,4 @@
-//! Wrong set-ups are told in one message that says what to change.
+//! Checks the set-up of plugins, schedule and timestep. For each mistake it logs one message that says what to change.
 
 use crate::settings::CoiloverSettings;
 use bevy::ecs::schedule::{ScheduleLabel, Schedules};
@@ -7,16 +7,17 @@ use bevy::prelude::*;
 use bevy_rapier3d::plugin::systems;
 use bevy_rapier3d::prelude::*;
 
-/// What has been told already.
+/// Mistakes that have been found and reported.
 #[derive(Resource, Default)]
 pub(crate) struct Watched {
-    /// The engine is missing, or does not step where we run: doing anything would only heap up impulses.
+    /// Whether the engine is missing or does not step in the crate's schedule. Then the crate must do nothing, because impulses
+    /// would accumulate without a step.
     misplaced: bool,
     variable: bool,
     mismatch: bool,
 }
 
-/// Whether Rapier is there, and steps in our schedule.
+/// Checks that Rapier is present and steps in the crate's schedule.
 pub(crate) fn check_schedule(
     settings: Res<CoiloverSettings>,
     schedules: Res<Schedules>,
@@ -32,7 +33,8 @@ pub(crate) fn check_schedule(
         return;
     }
     let label = settings.schedule;
-    // Any schedule that steps the engine holds Rapier's write-back, which has no generic parameter.
+    // Every schedule that steps Rapier contains its write-back system. That system has no generic parameter, so it can
+    // be found by its type.
     let writeback = IntoSystem::into_system(systems::writeback_rigid_bodies).system_type();
     let steps_here = schedules.get(label).is_some_and(|schedule| {
         schedule
@@ -51,12 +53,12 @@ pub(crate) fn check_schedule(
     }
 }
 
-/// Whether Rapier is there and steps in our schedule, as far as [`check_schedule`] could see.
+/// Whether Rapier is present and steps in the crate's schedule, according to [`check_schedule`].
 pub(crate) fn in_place(watched: Res<Watched>) -> bool {
     !watched.misplaced
 }
 
-/// How the engine and the schedule step.
+/// The timesteps of the engine and of the schedule.
 #[derive(SystemParam)]
 pub(crate) struct Timesteps<'w> {
     mode: Res<'w, TimestepMode>,
@@ -66,7 +68,7 @@ pub(crate) struct Timesteps<'w> {
 }
 
 impl Timesteps<'_> {
-    /// Whether the engine's step fits the schedule's.
+    /// Warns once if the engine's timestep does not fit the schedule's.
     pub(crate) fn check(&mut self) {
         let fixed = self.fixed.as_ref();
         let Some(fixed) = fixed.filter(|_| self.settings.schedule == FixedUpdate.intern()) else {

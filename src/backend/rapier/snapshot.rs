@@ -1,4 +1,4 @@
-//! Rapier's side.
+//! Snapshots of Rapier's own state, and how they are restored.
 
 use crate::backend::rapier::kept::note_engine;
 use crate::compat::{self, SoftBodies};
@@ -15,28 +15,30 @@ use bevy_rapier3d::rapier::geometry::{BroadPhaseBvh, ColliderHandle, ColliderSet
 use bevy_rapier3d::rapier::pipeline::PhysicsPipeline;
 use std::collections::HashMap;
 
-/// All that Rapier remembers from one tick to the next, in all contexts.
+/// The state that Rapier keeps from one tick to the next, in all contexts.
 ///
-/// `bevy_rapier3d` has most of it in components that are public and `Clone`, but not `RapierContextSimulation`, and not which
-/// entity has which handle. So this takes the parts one by one, and leaves the handles of a world as they are: a body,
-/// collider or joint must still have the handle that it had. It has, as long as it is not despawned meanwhile; what came later
-/// has to be despawned before this is put back. Rather than despawn a body that may come back, give it `RigidBodyDisabled`
-/// until that is sure. In another world handles are the same if all was spawned there in the same order, and nothing despawned
-/// before.
+/// Most of this state is in public components of `bevy_rapier3d` that are `Clone`. Two parts are not:
+/// `RapierContextSimulation`, and the map from entities to handles. So the snapshot copies the parts one by one and does not
+/// restore handles. To restore it:
 ///
-/// It puts back `Transform`, `Velocity` and `Sleeping` of bodies too, as Rapier writes them after a step. It holds no events
-/// and no components of the game's, such as `ExternalForce` of bodies without springs, which is to be written with
-/// `bypass_change_detection`: Rapier wakes a body whose force is written.
+/// - Each body, collider and joint must still have the handle that it had. It has, unless it was despawned meanwhile. If a
+///   body may have to come back, give it `RigidBodyDisabled` until you are sure, instead of despawning it.
+/// - First despawn bodies, colliders and joints that were spawned after the snapshot.
+/// - In another world, handles are the same if everything was spawned in the same order and nothing was despawned before.
+///
+/// Restoring also sets `Transform`, `Velocity` and `Sleeping` of bodies, as Rapier writes them after a step. The snapshot
+/// contains no events and no components of the game, such as `ExternalForce` of bodies without springs. Restore such a force
+/// with `bypass_change_detection`, because Rapier wakes a body whose force is written.
 #[derive(Clone)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub struct RapierSnapshot(Vec<Context>);
 
-/// One context.
+/// The state of one Rapier context.
 #[derive(Clone)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 struct Context {
     entity: Entity,
-    /// Seconds.
+    /// Time by which the simulation is behind the renderer, s.
     lag: f32,
     bodies: RigidBodySet,
     soft_bodies: SoftBodies,
@@ -51,7 +53,7 @@ struct Context {
     handles: Handles,
 }
 
-/// Which entity has which handle.
+/// The handle of each entity.
 #[derive(Clone, Default)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 struct Handles {
@@ -61,7 +63,7 @@ struct Handles {
     multibody_joints: Vec<(Entity, MultibodyJointHandle)>,
 }
 
-/// What of a world's context is written.
+/// The components of a context that are written.
 type Parts = (
     &'static mut RapierContextSimulation,
     &'static mut RapierRigidBodySet,
@@ -79,7 +81,7 @@ type PartsItem<'a> = (
 );
 
 impl RapierSnapshot {
-    /// Takes one. It is empty where there is no `RapierPhysicsPlugin`.
+    /// Takes a snapshot. It is empty if there is no `RapierPhysicsPlugin`.
     pub fn take(world: &World) -> Self {
         let Some(mut contexts) = world.try_query::<(
             Entity,
@@ -120,7 +122,7 @@ impl RapierSnapshot {
         Self(all)
     }
 
-    /// Has Rapier go on from there. If it does not fit the world, nothing is changed.
+    /// Restores Rapier's state. If the snapshot does not fit the world, nothing is changed.
     pub fn restore(&self, world: &mut World) -> Result<(), SnapshotError> {
         if !world.contains_resource::<TimestepMode>() {
             return Err(SnapshotError::NoPlugin);
@@ -139,12 +141,13 @@ impl RapierSnapshot {
             }
         }
         note_engine(world);
-        // Also notes what it has written, so that nothing of it is taken for the game's.
+        // The write-back also records what it wrote, so that bevy_rapier does not take it for changes by the game.
         let written = world.run_system_cached(writeback_rigid_bodies);
         written.map_err(|_| SnapshotError::NoPlugin)
     }
 
-    /// The contexts of a world that these are: the only one is the only one.
+    /// The entities of the snapshot's contexts in a world. If snapshot and world each have only one context, they match whatever
+    /// the entity.
     fn places(&self, world: &mut World) -> Vec<Entity> {
         let mut there = world.query_filtered::<Entity, With<RapierContextSimulation>>();
         let mut there = there.iter(world);
@@ -169,13 +172,13 @@ impl Context {
         simulation.narrow_phase.clone_from(&self.narrow_phase);
         simulation.ccd_solver.clone_from(&self.ccd_solver);
         simulation.integration_parameters = self.parameters;
-        // It knows joints by the count of their changes, and that has gone back.
+        // The pipeline detects changes of joints by a counter, which now has an earlier value.
         simulation.pipeline = PhysicsPipeline::new();
     }
 }
 
 impl Handles {
-    /// Whether a context of a world calls the same entities the same.
+    /// Checks that entities have the same handles in a context of a world.
     fn check(&self, context: Entity, world: &World) -> Result<(), SnapshotError> {
         use SnapshotError::{NoBody, NoCollider, NoContext, NoJoint};
         let bodies = |e| world.get::<RapierRigidBodyHandle>(e).map(|h| h.0);
@@ -198,7 +201,8 @@ impl Handles {
     }
 }
 
-/// Whether entities have the handles that they had, and no other entity has one. What is despawned may still be known.
+/// Checks that entities have the handles that they had (`then`), and that no other entity has a handle. The map `known` may
+/// still contain despawned entities.
 fn fit<H: Copy + PartialEq>(
     then: &[(Entity, H)],
     known: &HashMap<Entity, H>,
@@ -223,7 +227,7 @@ fn fit<H: Copy + PartialEq>(
     }
 }
 
-/// A map in the order of its entities, so that the same world gives the same snapshot.
+/// The entries of a map, sorted by entity, so that the same world gives the same snapshot.
 fn sorted<H: Copy>(map: &HashMap<Entity, H>) -> Vec<(Entity, H)> {
     let mut all: Vec<_> = map
         .iter()
@@ -239,7 +243,7 @@ impl MapEntities for RapierSnapshot {
             context.entity = mapper.get_mapped(context.entity);
             let handles = &mut context.handles;
             for (entity, handle) in &mut handles.bodies {
-                // A mutable look marks the body as changed.
+                // Mutable access marks the body as changed.
                 if let Some(name) = rename(entity, mapper)
                     && let Some(body) = context.bodies.get_mut(*handle)
                 {
@@ -263,7 +267,7 @@ impl MapEntities for RapierSnapshot {
     }
 }
 
-/// Maps an entity; gives what stands for it in Rapier if that is another now.
+/// Maps an entity. Returns its new `user_data` in Rapier if the entity changed.
 fn rename<M: EntityMapper>(entity: &mut Entity, mapper: &mut M) -> Option<u128> {
     let before = std::mem::replace(entity, mapper.get_mapped(*entity));
     (before != *entity).then(|| u128::from(entity.to_bits()))

@@ -1,4 +1,4 @@
-//! The step's system: component by component.
+//! The system that computes all elements before the engine's step: held components first, then free ones.
 
 use super::body::{Bodies, handle};
 use super::timestep;
@@ -13,7 +13,7 @@ use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
 use bevy_rapier3d::rapier::dynamics::IntegrationParameters;
 
-/// What of a Rapier context the step needs.
+/// The components of a Rapier context that the step needs.
 type ContextParts<'a> = (
     Entity,
     &'a mut RapierContextSimulation,
@@ -23,14 +23,14 @@ type ContextParts<'a> = (
     &'a SimulationToRenderTime,
 );
 
-/// Room for the work of a step.
+/// Buffers that are reused from step to step.
 #[derive(Default)]
 pub(crate) struct Spare {
     free: free::Spare,
     inside: Solver,
 }
 
-/// Computes and delivers every element's force for the coming engine step.
+/// Computes the forces of all elements for the coming engine step and gives them to the engine.
 pub(crate) fn solve(
     mut scene: ResMut<Scene>,
     settings: Res<CoiloverSettings>,
@@ -57,7 +57,7 @@ pub(crate) fn solve(
         let parameters = &simulation.integration_parameters;
         let plan = timestep::plan(*mode, time.delta_secs(), lag.diff, parameters);
         if plan.time <= 0.0 || !configuration.physics_pipeline_active {
-            // What is moved meanwhile is not to be taken for known.
+            // Bodies may move while the context is not stepped, so its state is not known afterwards.
             scene.still.note(context, false);
             scene.stepped.some_rest = true;
             continue;
@@ -103,7 +103,7 @@ pub(crate) fn solve(
 }
 
 impl Scene {
-    /// Tells a context how many sweeps over all joints and contacts a substep takes.
+    /// Sets the number of sweeps over all joints and contacts per substep of a context.
     fn raise_sweeps(
         &mut self,
         context: Entity,
@@ -114,7 +114,7 @@ impl Scene {
         told.raise(&mut parameters.num_internal_pgs_iterations, sweeps);
     }
 
-    /// Whether there is anything to do in a context, and then, whether nothing has been changed in it since the last step.
+    /// Returns `None` if there is nothing to do in a context, otherwise whether nothing has been changed since the last step.
     fn is_to_step(
         &self,
         context: Entity,
@@ -133,7 +133,7 @@ impl Scene {
         (!idle).then_some(quiet)
     }
 
-    /// Takes out of a context what elements that are gone have left there, and gives back what bodies had.
+    /// Removes from a context what elements that no longer act have left there, and restores the settings of bodies.
     fn take_out_what_is_left(&mut self, context: Entity, engine: &mut EngineParts) {
         self.left.retain_mut(|(of, inside)| {
             let here = *of == context;

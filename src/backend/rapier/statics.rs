@@ -1,4 +1,5 @@
-//! The tension with which an element holds its load against gravity.
+//! Computes the tension with which an element holds its load against gravity, for `HoldPose` and for the rest length of
+//! `SpringTuning::Sag`.
 
 use crate::backend::rapier::body::is_movable;
 use crate::backend::rapier::find::RapierFinder;
@@ -11,9 +12,11 @@ use crate::input::check::Fault;
 use bevy::math::DVec3;
 use bevy_rapier3d::rapier::dynamics::RigidBodyHandle;
 
-/// Below this cosine between an element and gravity it is level, and no tension of it holds a weight.
+/// Cosine of the angle between an element and the weight of its load below which the element counts as level: then its tension
+/// cannot carry the weight.
 const LEVEL: f64 = 0.1;
-/// What joints leave of an element's mobility, as a share: below, they hold the load without it.
+/// Share of the load's inverse mass along the element that joints must leave. Below it, joints hold the load without
+/// the element.
 const HELD: f64 = 1e-4;
 
 fn fault<T>(reason: &'static str) -> Result<T, Fault> {
@@ -21,7 +24,8 @@ fn fault<T>(reason: &'static str) -> Result<T, Fault> {
 }
 
 impl Lever {
-    /// The one end that can move along the line, if it is one: `known` says what else holds them.
+    /// Index of the end that can move along the line, if exactly one can. `left` returns the inverse mass that joints and
+    /// contacts leave at an end, 1/kg.
     pub(crate) fn load(&self, left: impl Fn(usize) -> f64) -> Option<usize> {
         let moves = |end: usize| self.line.holds[end].body.is_some() && left(end) > 0.0;
         match [moves(0), moves(1)] {
@@ -31,15 +35,15 @@ impl Lever {
         }
     }
 
-    /// Inverse mass of an end alone, 1/kg.
+    /// Inverse mass along the line of an end without joints and contacts, 1/kg.
     fn free(&self, end: usize) -> f64 {
         self.line.holds[end].inverse_mass_along(self.line.direction)
     }
 }
 
 impl RapierFinder<'_, '_> {
-    /// The tension that this element alone has to have, N, for its load at one end not to accelerate along it; and
-    /// whether joints take part in holding it.
+    /// Returns the tension (N) at which the load at `end` does not accelerate along the element if no other element acts, and
+    /// whether joints help to hold the load. `None` if joints hold the load without the element.
     pub(crate) fn tension_alone(
         &self,
         lever: &Lever,
@@ -55,7 +59,7 @@ impl RapierFinder<'_, '_> {
             bodies: vec![*body],
             constraints: self.locks_of(lever, body, handle, other.filter(|_| hold.twist)),
         };
-        // The other end counts as fixed.
+        // The other end is treated as fixed.
         let mut line = lever.line;
         line.holds[1 - end].body = None;
         line.holds[end].body = Some(0);
@@ -71,12 +75,12 @@ impl RapierFinder<'_, '_> {
             ],
         };
         let [left, fall] = held.response(&apart, [&apart, &falling])?;
-        // Tension draws the ends together.
+        // Tension pulls the ends together, so it is positive where the weight drives them apart.
         let carries = left > HELD * lever.free(end);
         carries.then(|| (fall / left, !held.constraints.is_empty()))
     }
 
-    /// What the joints between a load and what cannot move lock, or between it and a body that counts as such.
+    /// Constraints of the joints between the load and bodies that cannot move. The body `still` counts as one that cannot move.
     fn locks_of(
         &self,
         lever: &Lever,
@@ -107,7 +111,7 @@ impl RapierFinder<'_, '_> {
         held
     }
 
-    /// The tension that an element has to have to carry its share of its load, N.
+    /// The tension with which an element carries its share of its load, N.
     pub(crate) fn tension_of_pose(&self, lever: &Lever, pose: HoldPose) -> Result<f64, Fault> {
         if !(pose.share > 0.0 && pose.share.is_finite()) {
             return Err(Fault::new("HoldPose::share", "is not above zero"));
@@ -157,7 +161,7 @@ impl RapierFinder<'_, '_> {
     }
 }
 
-/// Of a body, or of as much mass in its place, N.
+/// Weight of a body, N. If `mass` (kg) is given, it replaces the mass of the body.
 fn weight(body: &Body, mass: Option<f64>) -> DVec3 {
     let own = body.inverse_mass.max_element().recip();
     let mass = mass.unwrap_or(own);

@@ -1,4 +1,4 @@
-//! How the engine is about to step.
+//! Predicts how bevy_rapier will step in this tick, before it does.
 
 use super::body::FARTHEST_TURN;
 use super::rotation;
@@ -6,8 +6,8 @@ use crate::backend::StepPlan;
 use bevy_rapier3d::prelude::TimestepMode;
 use bevy_rapier3d::rapier::dynamics::IntegrationParameters;
 
-/// What bevy_rapier's `step_simulation` will do with this mode, the time since the last tick, and the lag of the simulation
-/// behind the renderer.
+/// Predicts the work of bevy_rapier's `step_simulation` with this mode. `delta` is the time since the last tick, `lag` the time
+/// by which the simulation is behind the renderer, s.
 pub(crate) fn plan(
     mode: TimestepMode,
     delta: f32,
@@ -26,7 +26,7 @@ pub(crate) fn plan(
     }
 }
 
-/// Seconds of a tick, and how many pipeline steps they take.
+/// Simulated time of a tick, s, and its number of pipeline steps.
 fn calls(mode: TimestepMode, delta: f32, lag: f32) -> (f64, u32) {
     let plan = |time: f32, steps: usize| {
         let steps = u32::try_from(steps).unwrap_or(u32::MAX);
@@ -45,7 +45,7 @@ fn calls(mode: TimestepMode, delta: f32, lag: f32) -> (f64, u32) {
             time_scale,
             substeps,
         } => {
-            // The same float operations as the engine's loop, so that both count alike.
+            // Same float operations as in bevy_rapier's loop, so that both count the same steps.
             let mut lag = lag + delta;
             let mut calls = 0_u16;
             while lag > 0.0 && dt > 0.0 && calls < u16::MAX {

@@ -1,4 +1,4 @@
-//! Stiffness and damping worked out from the masses at the ends, once.
+//! Computes stiffness and damping for a `SpringTuning` from the masses at the ends, once, when the element is found.
 
 use super::body::{handle, is_movable, point_of, read, turning_of};
 use super::find::RapierFinder;
@@ -14,23 +14,24 @@ use bevy::math::DVec3;
 use bevy::prelude::*;
 use bevy_rapier3d::rapier::dynamics::RigidBodyHandle;
 
-/// What an element acts on.
+/// The bodies on which an element acts, and its line.
 pub(crate) struct Lever {
     pub line: Line,
-    /// The bodies at its ends that can be moved, with their weight, and what the engine calls them.
+    /// The movable bodies at its ends, with gravity.
     pub bodies: Vec<Body>,
+    /// The engine's handles of `bodies`.
     pub handles: Vec<RigidBodyHandle>,
-    /// The Rapier context.
+    /// Entity of the Rapier context.
     pub context: Entity,
-    /// A body of it has colliders.
+    /// Whether one of `bodies` has colliders.
     can_touch: bool,
-    /// m/s².
+    /// Gravity, m/s².
     gravity: Vec3,
 }
 
 impl RapierFinder<'_, '_> {
-    /// Puts the coefficients that a tuning asks for into an element's numbers; says whether contacts may hold its ends.
-    /// A sag sets the rest length too, where there is none.
+    /// Writes the coefficients that `tuning` asks for into `parameters`. A sag also sets the rest length if there is none.
+    /// Returns whether contacts may hold the ends.
     pub(crate) fn tuned(
         &self,
         tuning: SpringTuning,
@@ -77,8 +78,8 @@ impl RapierFinder<'_, '_> {
         Ok(lever.can_touch)
     }
 
-    /// Stretch with which a spring of this stiffness carries its load where that is, m; none where nothing says which
-    /// end is the load.
+    /// Stretch with which a spring of this stiffness carries its load in the present pose, m. `None` if it is not clear which end
+    /// is the load.
     fn stretch(&self, lever: &Lever, stiffness: f32) -> Option<f64> {
         let one_sided = |end: usize| {
             let mut line = lever.line;
@@ -90,7 +91,7 @@ impl RapierFinder<'_, '_> {
         Some(stretch).filter(|stretch| stretch.is_finite())
     }
 
-    /// Inverse mass of a line, with what joints and contacts leave, 1/kg.
+    /// Inverse mass along a line that joints and contacts leave, 1/kg.
     fn left(&self, lever: &Lever, line: Line) -> f64 {
         let Ok((set, colliders, joints, simulation)) = self.sets.get(lever.context) else {
             return 0.0;
@@ -106,7 +107,7 @@ impl RapierFinder<'_, '_> {
         inverse_mass(&line, |body| lever.handles[body], all)
     }
 
-    /// Gravity of the context in which an element's ends are, m/s².
+    /// Gravity of the context that contains an element's ends, m/s².
     fn gravity_at(&self, places: &[Place; 2]) -> Vec3 {
         let on = |place: &Place| match place {
             Place::OnBody { context, .. } => Some(*context),
@@ -117,7 +118,7 @@ impl RapierFinder<'_, '_> {
         configuration.map_or(Vec3::ZERO, |configuration| configuration.gravity)
     }
 
-    /// An element's line as it is now, if it has one and either end can move.
+    /// An element's present line and bodies. `None` if it has no line or neither end can move.
     pub(crate) fn lever(&self, guide: Guide, places: &[Place; 2]) -> Option<Lever> {
         let (mut bodies, mut handles) = (Vec::new(), Vec::new());
         let mut context = None;

@@ -1,7 +1,7 @@
-//! What can change a scene besides its elements' numbers: bodies that come, go, or become another kind of
-//! body, and components that are taken away.
+//! Detects changes of the scene other than changed parameters: bodies that appear, disappear or change their kind, and removed
+//! components.
 //!
-//! What comes and goes, observers see, so that a tick in which nothing does pays nothing.
+//! Observers detect what appears and disappears, so a tick without such changes costs nothing.
 
 use crate::backend::rapier::forces::SpringLoad;
 use crate::compat::{Inserted, Removed};
@@ -16,7 +16,7 @@ use bevy::ecs::system::SystemParam;
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
 
-/// Watches for bodies that become others.
+/// Detects bodies whose kind or mass changed.
 #[derive(SystemParam)]
 pub(crate) struct Watch<'w, 's> {
     changed: Query<'w, 's, Entity, (Changed<RigidBody>, Allow<Disabled>)>,
@@ -25,8 +25,7 @@ pub(crate) struct Watch<'w, 's> {
 }
 
 impl Watch<'_, '_> {
-    /// Whether anything of the kind happened to the scene since the last tick. What elements have nothing to do
-    /// with may come and go as it likes.
+    /// Whether any such change happened to the scene since the last tick. Entities that no element uses do not count.
     pub(crate) fn saw_change(&mut self, scene: &mut Scene) -> bool {
         self.mass_modified.clear();
         self.mass_modified.extend(self.masses.read().map(|m| m.0));
@@ -37,12 +36,13 @@ impl Watch<'_, '_> {
     }
 }
 
-/// Makes an app notice what comes and goes.
+/// Adds the observers to an app.
 pub(crate) fn watch(app: &mut App) {
     macro_rules! elements {
         ($($element:ident),*) => {$(lost::<$element>(app);)*};
     }
-    // One that was not known comes into the count of elements, or is looked for in every tick.
+    // Entities that the scene does not know need no observer: a new element changes the count of elements, and missing
+    // ends of an inert element are looked for in every tick.
     with_elements!(elements);
     lost::<Anchors>(app);
     lost::<RapierRigidBodyHandle>(app);
@@ -61,24 +61,25 @@ pub(crate) fn watch(app: &mut App) {
     came::<Disabled>(app);
 }
 
-/// Something happened to an entity; while a snapshot is put back, nobody asks.
+/// Marks the scene as disturbed if it knows the entity. While a snapshot is restored there is no scene resource, and nothing
+/// is to be noted.
 fn notice(entity: Entity, scene: Option<ResMut<Scene>>) {
     if let Some(mut scene) = scene.filter(|scene| scene.knows(entity)) {
         scene.disturbed = true;
     }
 }
 
-/// A body or an element gets a component.
+/// Observes that a body or an element gets a component.
 fn came<C: Component>(app: &mut App) {
     app.add_observer(|on: Inserted<C>, scene: Option<ResMut<Scene>>| notice(on.entity, scene));
 }
 
-/// An element or a body loses a component.
+/// Observes that an element or a body loses a component.
 fn lost<C: Component>(app: &mut App) {
     app.add_observer(|on: Removed<C>, scene: Option<ResMut<Scene>>| notice(on.entity, scene));
 }
 
-/// A body that elements move loses a component.
+/// Observes that a body that elements can move loses a component.
 fn unloaded<C: Component>(app: &mut App) {
     app.add_observer(|on: Removed<C>, scene: Option<ResMut<Scene>>| {
         if let Some(mut scene) = scene.filter(|scene| scene.index.contains_key(&on.entity)) {
@@ -87,7 +88,7 @@ fn unloaded<C: Component>(app: &mut App) {
     });
 }
 
-/// An element loses a companion.
+/// Observes that an element loses a companion component.
 fn left<C: Component>(app: &mut App) {
     app.add_observer(|on: Removed<C>, scene: Option<ResMut<Scene>>| {
         if let Some(mut scene) = scene.filter(|scene| scene.row_of.contains_key(&on.entity)) {

@@ -1,19 +1,19 @@
-//! How far ahead the engine has to see the contacts of what stiff springs push.
+//! Sets how far ahead Rapier looks for contacts of bodies on stiff springs, before the step.
 
 use super::lend;
 use crate::scene::rows::{BodyFlags, BodyRow};
 use bevy_rapier3d::rapier::dynamics::RigidBody as RapierBody;
 
-/// ω·dt of a body's springs above which its contacts have to be seen a step ahead. What the engine finds too late it pushes
-/// out of the ground, or stops at its surface, and either compresses a stiff spring. Pinned by `ground::feet` and
+/// ω·dt of a body's springs above which its contacts must be found a step ahead. If the engine finds a contact too late, it
+/// pushes the body out of the ground or stops it at the surface. Both compress a stiff spring. Pinned by `ground::feet` and
 /// `ground::nets`.
 const STIFF: f64 = 0.3;
 
-/// How far ahead, in steps.
+/// Prediction distance, in steps of the body's present motion.
 const AHEAD: f32 = 1.5;
 
-/// Has the engine see contacts of a body ahead that can touch something and that stiff springs push, in steps of
-/// `time` seconds; says whether they are stiff.
+/// Makes Rapier look ahead for contacts of a body if it has colliders and stiff springs. `time` is the duration of an engine
+/// step, s. Returns whether the body has both.
 pub(crate) fn look_ahead(row: &mut BodyRow, body: &mut RapierBody, time: f64) -> bool {
     let inverse_mass = f64::from(body.mass_properties().local_mprops.inv_mass);
     let stiff = row.has(BodyFlags::CAN_TOUCH)

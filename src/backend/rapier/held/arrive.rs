@@ -1,14 +1,14 @@
-//! How a step inside the engine's solver went.
+//! Updates an element after a step inside Rapier's solver: heat, work, energy error and rate.
 
 use crate::scene::rows::ElementRow;
 use bevy::math::DVec3;
 
-/// Share of what a law owes its bodies that is kept from step to step: lost energy is given back only soon after.
+/// Share of the energy owed to the bodies that is kept from step to step. Lost energy is given back only soon after the loss.
 const KEPT: f64 = 0.8;
 
 impl ElementRow {
-    /// Takes in how a step went that ended with such a length. `moved` are ends that something else moves, and how far it
-    /// moved or turned them.
+    /// Updates the element after a step of `time` seconds that ended with `length`. `moved` is the displacement (m) or rotation
+    /// (rad) of each end that elements cannot move. Returns the length and its mean rate over the step.
     pub(crate) fn arrive_inside(
         &mut self,
         length: f64,

@@ -1,8 +1,8 @@
-//! A soft constraint as a joint of Rapier's: the only place that knows how its motors reckon.
+//! Converts a soft constraint into a Rapier joint with a motor. Only this file knows how Rapier computes motor forces.
 //!
-//! A motor with stiffness k, damping c and target s₀ gives in a substep h the impulse h·(k (s − s₀) + (h k + c) ṡ − …),
-//! where s is the length at the start and ṡ its rate at the end. So a damping of C is ordered as C − h k; what is left is
-//! the symplectic Euler rule with an implicit damper.
+//! In a substep h, a motor with stiffness k, damping c and target s₀ gives the impulse h·(k (s − s₀) + (h k + c) ṡ − …), where
+//! s is the length at the start of the substep and ṡ its rate at the end. For a damping C the motor therefore gets C − h k.
+//! The result is symplectic Euler for the spring with implicit damping.
 
 use crate::backend::JointId;
 use crate::backend::rapier::body::{handle, joint_handle, joint_id};
@@ -13,17 +13,18 @@ use bevy_rapier3d::rapier::dynamics::{
 };
 use bevy_rapier3d::rapier::math::Pose;
 
-/// Marks the joints that are ours alone.
+/// `user_data` of the joints that this crate makes.
 const OURS: u128 = u128::from_be_bytes(*b"bevy_coilover\0\0\0");
 
-/// How softly an axis is held that is to be free, Hz: not at all, but for numbers that Rapier divides by. Rapier pushes the
-/// first body where the second one is, but for what lies along axes that are held. Pinned by `ground::companions`.
+/// Softness of locked axes that are to be free in fact. The frequency (Hz) is nearly zero, but not zero because Rapier divides
+/// by it. [`Along::Apart`] needs such axes: Rapier applies a joint's impulse on the first body at the anchor of the second,
+/// except for the offset along locked axes. Pinned by `ground::companions`.
 const LOOSE: SpringCoefficients<f32> = SpringCoefficients {
     natural_frequency: 1e-9,
     damping_ratio: 1.0,
 };
 
-/// Whether elements have made a joint.
+/// Whether this crate made a joint.
 pub(crate) fn is_ours(joint: &ImpulseJoint) -> bool {
     joint.data.user_data == OURS
 }
@@ -67,7 +68,7 @@ impl SoftJoint {
             Along::Apart => (none, across),
         };
         let ordered = ordered_damping(self.stiffness, self.damping, self.substep);
-        // As Rapier reckons it: what its damper gives at a speed of 1.
+        // Total damping as Rapier computes it: the motor's force at a rate of 1.
         let acting = self.substep * self.stiffness + ordered;
         let mut joint = GenericJointBuilder::new(held)
             .softness(LOOSE)
@@ -90,13 +91,14 @@ impl SoftJoint {
     }
 }
 
-/// The damping to order so that in substeps of so long a damping of `wanted` acts. What Rapier makes of it in f32 is a
-/// small difference of large numbers, so of its neighbours the one is taken that leaves the stiffness as it is.
+/// Returns the damping to give Rapier so that the damping `wanted` acts in substeps of `substep` seconds. In Rapier's f32 this
+/// is a small difference of large numbers, so the function also tries the next larger f32 numbers and returns the one that
+/// changes the stiffness least.
 fn ordered_damping(stiffness: f32, wanted: f32, substep: f32) -> f32 {
     let (k, h) = (stiffness, substep);
     let ordered = (f64::from(wanted) - f64::from(h) * f64::from(k)) as f32;
     let off = |c: f32| {
-        // As in Rapier's `MotorModel::combine_coefficients`.
+        // Same operations as in Rapier's `MotorModel::combine_coefficients`.
         let (per_rate, per_speed) = (h * k + c, h * h * k + h * c);
         if per_rate > 0.0 && per_speed > 0.0 {
             (f64::from(per_speed) / (f64::from(per_rate) * f64::from(h)) - 1.0).abs()
@@ -118,8 +120,9 @@ fn ordered_damping(stiffness: f32, wanted: f32, substep: f32) -> f32 {
     best.1
 }
 
-/// Neighbours that are tried, and the relative error of the stiffness that is small enough.
+/// Number of neighbouring f32 numbers to try.
 const NEIGHBOURS: usize = 64;
+/// Relative error of the stiffness that is small enough.
 const EXACT: f64 = 3e-7;
 
 #[cfg(test)]
@@ -135,7 +138,7 @@ mod tests {
                 for damping in [least, least.max(0.1), least.max(2e3)] {
                     let ordered = ordered_damping(stiffness, damping, substep);
                     let (bias, _, gain) = model.combine_coefficients(substep, stiffness, ordered);
-                    // Force for a stretch, and for a speed.
+                    // Ratios of the acting stiffness and damping to the wanted ones.
                     let (bias, gain) = (f64::from(bias), f64::from(gain));
                     let springs = bias / gain / f64::from(substep) / f64::from(stiffness);
                     let dampens = 1.0 / (gain * f64::from(substep)) / f64::from(damping);

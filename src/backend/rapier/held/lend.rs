@@ -1,9 +1,9 @@
-//! What bodies are lent in Rapier besides forces.
+//! Settings of Rapier bodies that the crate changes temporarily: solver iterations and contact prediction.
 
 use crate::scene::rows::Raised;
 use bevy_rapier3d::rapier::dynamics::RigidBody;
 
-/// Has Rapier solve a body in so many iterations more than its own, or as many as its user asks for.
+/// Sets the additional solver iterations of a body to `iterations`, or to the user's number if that is greater.
 pub(crate) fn raise(raised: &mut Raised, body: &mut RigidBody, iterations: usize) {
     let now = body.additional_solver_iterations();
     let ours = raised.order_substeps(now, iterations);
@@ -12,7 +12,7 @@ pub(crate) fn raise(raised: &mut Raised, body: &mut RigidBody, iterations: usize
     }
 }
 
-/// Has Rapier see its contacts so far ahead, m.
+/// Sets the contact prediction distance of a body to `way` (m), or to the user's distance if that is greater.
 pub(crate) fn look_ahead(raised: &mut Raised, body: &mut RigidBody, way: f32) {
     let now = body.soft_ccd_prediction();
     let ours = raised.order_prediction(now, way);
@@ -21,13 +21,13 @@ pub(crate) fn look_ahead(raised: &mut Raised, body: &mut RigidBody, way: f32) {
     }
 }
 
-/// Whether this is what the body had been lent when it was as it is now; `meanwhile` it was lent that.
+/// Whether a body has the settings that `raised` records, and not those that the crate set later (`meanwhile`).
 pub(crate) fn fits(raised: &Raised, body: &RigidBody, meanwhile: Raised) -> bool {
     let iterations = body.additional_solver_iterations();
     raised.fits(iterations, body.soft_ccd_prediction(), meanwhile)
 }
 
-/// Gives back what the user had ordered.
+/// Restores the user's settings.
 pub(crate) fn give_back(raised: &mut Raised, body: &mut RigidBody) {
     raise(raised, body, 0);
     look_ahead(raised, body, 0.0);

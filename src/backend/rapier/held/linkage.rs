@@ -1,4 +1,4 @@
-//! What joints and contacts leave of the mass at an element's ends, read from the engine.
+//! Computes the inverse mass that joints and contacts leave at an element's ends, from Rapier's joints and contacts.
 
 use super::joint::is_ours;
 use crate::backend::Wrench;
@@ -12,28 +12,28 @@ use bevy_rapier3d::prelude::RapierContextJoints;
 use bevy_rapier3d::rapier::dynamics::{GenericJoint, JointAxesMask, RigidBodyHandle, RigidBodySet};
 use bevy_rapier3d::rapier::geometry::{ColliderSet, ContactPair, NarrowPhase};
 
-/// Most bodies that are looked at together; what is further away counts as fixed. A car's chassis and its wheels with
-/// their hubs and arms are no more.
+/// Greatest number of linked bodies that are considered; bodies beyond them count as fixed. It is enough for the chassis of a
+/// car with wheels, hubs and suspension arms.
 const MOST: usize = 16;
 
-/// Contact points of a pair that count: no more than three hold a body.
+/// Greatest number of contact points that are considered per contact manifold. Three points already fix a body to a plane.
 const POINTS: usize = 3;
 
-/// A Rapier context, as far as it holds bodies.
+/// The parts of a Rapier context that can hold bodies.
 #[derive(Clone, Copy)]
 pub(crate) struct Holding<'a> {
-    /// Contacts count too.
+    /// Whether contacts count, or only joints.
     pub contacts: bool,
     pub bodies: &'a RigidBodySet,
     pub joints: &'a RapierContextJoints,
     pub colliders: &'a ColliderSet,
     pub narrow: &'a NarrowPhase,
-    /// m/s².
+    /// Gravity, m/s².
     pub gravity: Vec3,
 }
 
 impl<'a> Holding<'a> {
-    /// Its bodies as all else sees them.
+    /// Read access to the bodies for code that does not know Rapier.
     pub(crate) fn sight(&self) -> Bodies<&'a RigidBodySet> {
         Bodies {
             set: self.bodies,
@@ -42,7 +42,8 @@ impl<'a> Holding<'a> {
     }
 }
 
-/// What a joint locks between two bodies, where it is, in its first frame's axes.
+/// Constraints of the locked axes of a joint between the bodies `on`. `rotation` is the rotation of the joint's first frame,
+/// `at` the position of the joint, both in the world frame.
 pub(crate) fn locks(
     joint: &GenericJoint,
     rotation: DQuat,
@@ -65,7 +66,7 @@ pub(crate) fn locks(
     })
 }
 
-/// Bodies that hang together, as they are found.
+/// Linked bodies found so far, and their constraints.
 struct Found<'a> {
     all: Holding<'a>,
     handles: Vec<RigidBodyHandle>,
@@ -73,7 +74,7 @@ struct Found<'a> {
 }
 
 impl Found<'_> {
-    /// Index of a body that can be moved and is near enough.
+    /// Index of a movable body; adds the body if it is new. `None` if it cannot move or there are [`MOST`] bodies already.
     fn index(&mut self, handle: RigidBodyHandle) -> Option<usize> {
         if let Some(known) = self.handles.iter().position(|h| *h == handle) {
             return Some(known);
@@ -110,7 +111,7 @@ impl Found<'_> {
         linkage.constraints.extend(locks(joint, rotation, at, on));
     }
 
-    /// What presses on each other neither parts nor slides.
+    /// Adds the constraints of a contact pair with pressure: at each contact point, no separation and, with friction, no sliding.
     fn contact(&mut self, pair: &ContactPair) {
         let all = self.all;
         let Some(first) = all.colliders.get(pair.collider1) else {
@@ -137,7 +138,7 @@ impl Found<'_> {
         }
     }
 
-    /// Takes in all that holds a body, but for bodies that are known already.
+    /// Adds all joints and contacts of a body, except those with bodies before it in the list, which were added with them.
     fn around(&mut self, index: usize) {
         let (all, handle) = (self.all, self.handles[index]);
         let before = |found: &Self, other: RigidBodyHandle| {
@@ -179,8 +180,8 @@ impl Found<'_> {
     }
 }
 
-/// Inverse mass of an element along its line, with all that holds its ends, 1/kg. `on` are the bodies that the line
-/// names.
+/// Inverse mass of an element along its line that the joints and contacts at its ends leave, 1/kg. `on` returns the handle of
+/// a body of the line.
 pub(crate) fn inverse_mass(
     line: &Line,
     on: impl Fn(usize) -> RigidBodyHandle,

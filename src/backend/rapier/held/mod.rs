@@ -1,10 +1,12 @@
-//! What the engine holds, the engine solves: components some body of which contacts or joints hold.
+//! Components with at least one body that contacts or joints hold. Rapier's own solver solves their elements.
 //!
-//! A force that is worked out for a whole step, before the engine knows of contact and joint, is explicit to them, however
-//! exact it is in free flight. So each element of such a component is a soft constraint of the engine's own solver, in as
-//! many substeps as it needs. A [`step`] runs [`touch`] → [`plan`] → [`mod@write`] → (Rapier steps) → [`arrive`]. [`order`] says what one
-//! element is to do, [`linkage`] what mass it has then; [`crate::scene::held`] is what it has in the engine, [`joint`] and [`lend`]
-//! how Rapier is told.
+//! A force that is computed for a whole step, before contacts and joints are solved, is explicit to contacts and joints, even
+//! if it is exact in free flight. So each element of a held component becomes a soft constraint in Rapier's solver, with as
+//! many substeps as it needs.
+//!
+//! A [`step`] runs [`touch`] → [`plan`] → [`mod@write`] → (Rapier steps) → [`arrive`]. [`order`] computes the joints of one
+//! element, and [`linkage`] the inverse mass that contacts and joints leave. [`crate::scene::held`] has the data of an element
+//! inside the solver; [`joint`] and [`lend`] write it to Rapier.
 
 mod ahead;
 mod arrive;

@@ -1,8 +1,7 @@
-//! What a component may run into within the coming step.
+//! Predicts whether a free component of stiff springs may collide with something in the coming step.
 //!
-//! The engine finds a contact only within the step in which it begins. A stiff spring whose force has been worked out
-//! before that does not answer the blow until the next step, and its energy is won from nothing. So a component of stiff
-//! springs that is free looks ahead.
+//! The engine detects a contact only during the step in which it begins. A stiff spring whose force was computed before that
+//! step reacts to the impact one step late, which adds energy. So the crate looks for coming contacts before the step.
 
 use crate::backend::rapier::body::handle;
 use crate::compat;
@@ -15,36 +14,37 @@ use bevy_rapier3d::rapier::geometry::{Collider, ColliderSet, DefaultBroadPhase};
 use bevy_rapier3d::rapier::math::Pose;
 use bevy_rapier3d::rapier::pipeline::QueryFilter;
 
-/// Nearer than this counts as touching, m.
+/// Distance below which two shapes count as touching, m.
 const NEAR: f32 = 0.005;
 
-/// Speed of other bodies for which there is no need to look again at once, m/s.
+/// Assumed greatest speed of other bodies in the search for near colliders, m/s.
 const OTHERS: f32 = 30.0;
 
-/// Most steps for which one look is good: meanwhile bodies gain speed.
+/// Greatest number of steps for which one search is valid. It is limited because bodies gain speed meanwhile.
 const MOST: u8 = 8;
 
-/// Share of the free way that is trusted.
+/// Share of the free distance that is used to compute the number of steps without contact.
 const TRUSTED: f32 = 0.7;
 
-/// Where all that can touch something stands.
+/// The bodies and colliders of a context.
 pub(crate) struct Outlook<'a> {
     pub broad: &'a DefaultBroadPhase,
     pub bodies: &'a RigidBodySet,
     pub colliders: &'a ColliderSet,
-    /// Seconds.
+    /// Duration of the step, s.
     pub time: f32,
 }
 
-/// A body that may be met, and its speed.
+/// A collider that a component may hit, and the speed of its body, m/s.
 struct Other<'a> {
     collider: &'a Collider,
     speed: f32,
 }
 
 impl Outlook<'_> {
-    /// Whether bodies may meet something that is not of their own component, and if not for how many steps more there is
-    /// no need to look.
+    /// Returns whether a component may hit a body outside it in the coming step, and if not, for how many further steps no new
+    /// search is needed. `rows` are the bodies of the component, `pushes` the speed that springs can add to each, m/s; `is_own`
+    /// says whether a body belongs to the component.
     pub(crate) fn look(
         &self,
         rows: &[&BodyRow],
@@ -89,7 +89,7 @@ impl Outlook<'_> {
         (false, clear)
     }
 
-    /// Bounds of all colliders of some bodies, and the greatest speed of a body.
+    /// Bounding box of all colliders of the bodies, and the greatest speed of a body, m/s.
     fn bounds(&self, rows: &[&BodyRow], pushes: &[f32]) -> Option<(Aabb, f32)> {
         let mut bounds: Option<Aabb> = None;
         let mut fastest = 0.0_f32;
@@ -111,7 +111,7 @@ impl Outlook<'_> {
         colliders.filter_map(|own| self.colliders.get(*own))
     }
 
-    /// Whether some body may meet another in the coming step.
+    /// Whether a body of the component may hit `other` in the coming step.
     fn meets(&self, rows: &[&BodyRow], pushes: &[f32], other: &Other) -> bool {
         let bodies = rows.iter().zip(pushes);
         let mut bodies =
@@ -132,7 +132,7 @@ impl Outlook<'_> {
     }
 }
 
-/// Speed of a body's fastest point.
+/// Upper bound on the speed of any point of a body, m/s.
 pub(crate) fn speed_of(body: &RapierBody) -> f32 {
     let reach = body.mass_properties().max_extent();
     body.linvel().length() + reach * body.angvel().length()

@@ -1,4 +1,5 @@
-//! What one element is to do inside the engine's solver, and the joints that make it do so.
+//! What one element does inside Rapier's solver in a step, and the joints that do it. `plan` makes an [`Order`] for each
+//! element; `write` puts its joints into Rapier.
 
 use crate::backend::BodyId;
 use crate::dynamics::element::Element;
@@ -11,44 +12,47 @@ use crate::scene::held::{Along, SoftJoint, Turn, Wanted};
 use crate::scene::rows::{ElementRow, Held};
 use bevy::math::{DQuat, DVec3, Quat, Vec3};
 
-/// Damping that is nothing, as a share of mass over substep: the engine divides by it.
+/// Least damping of a joint, in units of mass / substep. It counts as none, but must not be zero because the engine divides
+/// by it.
 const NOTHING: f64 = 1e-6;
 
-/// Speed that an element may give its ends in one substep, m/s or rad/s: far more than the engine lets anything have, so
-/// that a light hook can carry a heavy load. Without a bound, joints that contradict each other have it push until numbers
-/// overflow. Pinned by `attack`.
+/// Bound on the impulse of an element, as the change of speed of its ends in one substep, m/s or rad/s. It is far above the
+/// engine's cap on speed, so that a light hook can carry a heavy load. Without a bound, joints that contradict each other
+/// would drive the impulse up until numbers overflow. Pinned by `attack`.
 const SWIFTEST: f64 = 1e7;
 
-/// Angle in a step, rad, from where on it counts which of two bodies turns less. Pinned by `ground::mixed`.
+/// Rotation of body A in a step, rad, above which the joint's axis is fixed to body B if B turns less than half as far.
+/// Pinned by `ground::mixed`.
 const TURNS: f64 = 1e-3;
 
-/// One element that acts.
+/// One element that acts in this step.
 pub(crate) struct Order {
-    /// Index of its row.
+    /// Index of the element's row.
     pub row: usize,
     pub element: Element,
     pub line: Line,
-    /// Length at the start of the step.
+    /// Length at the start of the step, m; twist of a torsion element, rad.
     pub from: f64,
-    /// Rotations of what holds both ends.
+    /// Rotation of the body at each end.
     pub facings: [DQuat; 2],
-    /// Angular velocities of what holds both ends, rad/s.
+    /// Angular velocity of the body at each end, rad/s.
     pub spins: [DVec3; 2],
     pub pieces: Pieces,
-    /// How far it may come over the step.
+    /// How far its length may change over the step.
     pub reach: Outreach,
-    /// Bound on the stiffest mode that it takes part in, rad/s.
+    /// Upper bound on the frequency of the stiffest mode in which the element takes part, rad/s.
     pub omega: f64,
-    /// Bound on that mode where contacts hold still what they press, rad/s.
+    /// Upper bound on the frequency of that mode if bodies under contact pressure do not move, rad/s.
     pub lively: f64,
-    /// A contact touches what it holds.
+    /// Whether something touches a body at one of its ends.
     pub touched: bool,
-    /// Its damper is solved before all springs. Joints answer a spring only after it is solved, so a damper must not see
-    /// what springs do to bodies that joints hold. Contacts are warm-started: they have answered by then.
+    /// Whether its damper is a joint of its own that is solved before all springs. Other joints react to a spring only after it
+    /// is solved, so a damper must not see the velocities that springs give to bodies on joints. Contacts are warm-started, so
+    /// they have already reacted.
     pub apart: bool,
-    /// Of a torsion element.
+    /// Data of a torsion element in this step; none for other elements.
     pub turn: Option<Turn>,
-    /// Share that joints leave of its inverse mass.
+    /// Share of the element's inverse mass that joints leave.
     pub jointed: f64,
 }
 
@@ -60,7 +64,7 @@ struct Frame {
 }
 
 impl Frame {
-    /// A joint here, of these stiffness and damping, force and its limit.
+    /// A joint in this frame. `force` is its force at the length `target`, `most` its greatest force.
     fn joint(
         &self,
         substep: f64,
@@ -84,18 +88,19 @@ impl Frame {
 }
 
 impl Order {
-    /// How much more the joint's own coordinate weighs than the element's: that of a twist is an angle about its gradient.
+    /// Change of the element's coordinate per change of the joint's coordinate. It differs from 1 only for torsion elements,
+    /// whose joint measures the angle about the gradient of the twist.
     fn leverage(&self) -> f64 {
         self.turn.as_ref().map_or(1.0, |turn| turn.leverage)
     }
 
-    /// Stiffness of the joint's coordinate.
+    /// Stiffness with respect to the joint's coordinate, N/m or N m/rad.
     pub(crate) fn stiffness(&self) -> f64 {
         self.leverage().powi(2) * self.pieces.stiffness()
     }
 
-    /// The joints that make it act in substeps of so long; none where there is no force. `holders` are the bodies at
-    /// both ends.
+    /// Returns the joints of the element for substeps of `substep` seconds, or none if it has no force. `holders` are the bodies
+    /// at both ends.
     pub(crate) fn joints(
         &mut self,
         row: &ElementRow,
@@ -139,7 +144,7 @@ impl Order {
             if let Some(turn) = self.turn.as_mut().filter(|_| i == 0) {
                 turn.damping = acting + if apart { damping } else { 0.0 };
             }
-            // A linear force is the same in every step; others are measured from where they are now.
+            // The joint of a linear element is the same in every step. All others measure from the present length or rotation.
             let (target, offset) = match (law, self.turn.is_some()) {
                 (_, true) => (0.0, force),
                 (None, false) => (self.element.rest_length, 0.0),
@@ -149,7 +154,8 @@ impl Order {
                 wanted.damper = Some(joint([0.0, damping], target, [0.0, most]));
             }
             if middle != 0.0 {
-                // A motor's range lies evenly about zero. One that is always at its limit moves that of the spring.
+                // The range of a motor's force is symmetric about zero. A second motor, always at its limit, shifts the spring's
+                // range.
                 wanted.push(joint([0.0; 2], target, [2.0 * middle, middle.abs()]));
             }
             wanted.push(joint([stiffness, acting], target, [offset - middle, most]));
@@ -157,7 +163,8 @@ impl Order {
         (!wanted.is_empty()).then_some(wanted)
     }
 
-    /// The end that elements cannot turn, or that turns less over the step.
+    /// Index of the end to which the axis of the joint is fixed: an end that elements cannot turn, otherwise end A unless end B
+    /// turns much less over the step.
     fn turns_less(&self, time: f64) -> usize {
         let [a, b] = self.spins.map(|spin| time * spin.length());
         match self.line.holds.map(|hold| hold.body) {
@@ -187,7 +194,7 @@ impl Order {
             }
             Guide::World(axis) => {
                 frame.along = Along::Apart;
-                // The joint's axis turns with its first body, as far before the middle of the step as after it.
+                // The joint's axis turns with its first body. It coincides with the world axis in the middle of the step.
                 let end = self.turns_less(time);
                 let half = DQuat::from_scaled_axis(0.5 * time * self.spins[end]);
                 let mut axis = (half * self.facings[end]).inverse() * axis;

@@ -1,4 +1,4 @@
-//! What the engine's solver is to be given for a component: read from its bodies and elements, before anything is written.
+//! Reads the bodies and elements of a held component and computes what Rapier's solver needs. `write` writes it.
 
 use crate::backend::Sight;
 use crate::backend::rapier::body::handle;
@@ -14,76 +14,78 @@ use crate::scene::rows::{BodyFlags, BodyRow, ElementFlags, ElementRow, Members};
 use crate::scene::step::Step;
 use bevy::math::DVec3;
 
-/// A component before its step.
+/// A held component before its step.
 #[derive(Default)]
 pub(crate) struct Plan {
     pub group: usize,
     pub bodies: Vec<Body>,
     pub orders: Vec<Order>,
-    /// Bound on its stiffest mode, rad/s.
+    /// Upper bound on the frequency of the stiffest mode, rad/s.
     pub omega: f64,
-    /// Something about it is new: it must not sleep.
+    /// Whether something about the component has changed, so that it must not sleep.
     pub disturbed: bool,
-    /// For each body, the stiffness of its elements over its mass,
+    /// For each body, the sum over its elements of stiffness times inverse mass, 1/s².
     sums: Vec<f64>,
-    /// and what springs and outside forces do to it.
+    /// For each body, the effect of springs and external forces.
     pulls: Vec<Pull>,
-    /// Joints of the game's hold some body of it.
+    /// Whether a joint of the game holds some body of the component.
     jointed: bool,
-    /// Springs pull some body to and fro by far more than its weight, while the component rests on something.
+    /// Whether springs pull some body with far more than its weight while contacts press on the component; see [`TENSE`].
     tense: bool,
 }
 
-/// What springs and outside forces do to a body.
+/// Effect of springs and external forces on a body.
 struct Pull {
-    /// Acceleration by all of them, m/s²,
+    /// Total acceleration, m/s².
     net: DVec3,
-    /// and the sum of their sizes.
+    /// Sum of the magnitudes of the accelerations, m/s².
     all: f64,
-    /// Speed that they can give it over the step, m/s: a spring that swings faster than that turns round before.
+    /// Speed that these forces can add in the step, m/s. A fast spring reverses within the step, so it counts only for 1/ω.
     gain: f64,
 }
 
-/// Sum of what springs pull at a body, in units of its weight, above which one sweep over all joints leaves it trembling
-/// on what it stands on: a tensegrity of struts does, and a bridge of springs under boxes. Pinned by the check of the
-/// example `tensegrity` and by `ground::play`.
+/// Sum of the forces on a body, in units of its weight, above which one sweep over all joints per substep leaves the body
+/// trembling on its support. Examples are a tensegrity of struts and a bridge of springs under boxes. Pinned by the check of
+/// the example `tensegrity` and by `ground::play`.
 const TENSE: f64 = 100.0;
 
-/// Sweeps over all joints and contacts in a substep of what is tense, or has forces that end on one side: with two, the
-/// bridge still trembles; with one, stiff ropes that fall on the ground win energy (`ground::ropes`). They cost little beside
-/// the making of joints in each substep.
+/// Number of sweeps over all joints and contacts per substep, for a tense component without joints of the game, or one with
+/// one-sided forces. With two sweeps the bridge still trembles; with one, stiff ropes that fall on the ground gain energy
+/// (`ground::ropes`). Sweeps cost little compared with the set-up of joints in each substep.
 const TENSE_SWEEPS: usize = 4;
 
-/// Share of all forces on a body that may be left of them where they are in balance. Pinned by `ground::heap`.
+/// Net force on a body, as a share of the sum of all forces on it, below which the forces count as balanced. Pinned by
+/// `ground::heap`.
 const BALANCE: f64 = 5e-3;
 
-/// How many times as fast as what is pressed a body goes that joints take along. Pinned by `ground::ragdoll`.
+/// Greatest creep speed at which a body on a joint counts as carried along, as a multiple of the creep speed of the fastest
+/// body that contacts press. Pinned by `ground::ragdoll`.
 const ALONG: f32 = 2.0;
 
-/// Share that joints leave of a damper's inverse mass below which a substep's one sweep over all joints is not enough,
-/// where without joints it would take more than such a share of its ends' speed in one substep. Pinned by
-/// `ground::hinge`.
+/// Share of a damper's inverse mass that joints leave, below which one sweep over all joints per substep is not enough, if
+/// the damper alone would remove more than the share [`DAMPED`] of its ends' speed in a substep. Pinned by `ground::hinge`.
 const LIGHT: f64 = 0.7;
+/// See [`LIGHT`].
 const DAMPED: f64 = 0.02;
 
-/// Sweeps in a substep there: with one, a lamp's arm rests where its damper still pushes; with four, a bridge on hinges
-/// does not come to rest. Pinned by `ground::hinge` and `ground::play`.
+/// Number of sweeps per substep for dampers on light bodies; see [`LIGHT`]. With one, the arm of a lamp stops in a place where
+/// its damper still pushes. With four, a bridge on hinges does not come to rest. Pinned by `ground::hinge` and `ground::play`.
 const LIGHT_SWEEPS: usize = 2;
 
-/// Times as far as its ends can come at their speed and with what pushes them that an element is ready for. Pinned by
-/// `ground::ropes`.
+/// Change of length for which an element is prepared, as a multiple of the distance that its ends can move in the step.
+/// Pinned by `ground::ropes`.
 const FAR: f64 = 2.0;
 
-/// (ω·dt)² above which an element that only pulls or only pushes is softened to that: it gives way under the weight of its
-/// ends by a thousandth of a millimetre then. Pinned by `ground::ropes`: with 10⁴ it wins energy.
+/// Greatest (ω·dt)² of a force that only pulls or only pushes; a stiffer force is softened to it. Then it yields a thousandth
+/// of a millimetre under the weight of its ends. Pinned by `ground::ropes`: with 10⁴ a rope gains energy.
 const FIRMEST: f64 = 2.5e3;
 
-/// The same for its damping · dt over mass: its ends creep by 8 mm/s under their weight then. Pinned by `ground::ropes`: with
-/// 50 a rope whose damper is firmer than that reaches 20 m/s in its fall.
+/// Greatest damping · dt / mass of a force that only pulls or only pushes; more is reduced to it. Then its ends creep at 8 mm/s
+/// under their weight. Pinned by `ground::ropes`: with 50, a rope with a firmer damper reaches 20 m/s in its fall.
 const DAMPEST: f64 = 20.0;
 
 impl Plan {
-    /// Reads a component; says whether all its bodies can be moved.
+    /// Reads a component. Returns whether all its bodies can be moved.
     pub(crate) fn read(
         &mut self,
         step: &Step,
@@ -120,7 +122,7 @@ impl Plan {
         true
     }
 
-    /// Reads an element, whose bodies have been read: what is to be ordered of the engine for it.
+    /// Reads an element and adds its order. Its bodies must have been read before.
     fn read_element(
         &mut self,
         e: usize,
@@ -144,7 +146,7 @@ impl Plan {
         });
         let Some((element, line, turn)) = found else {
             if let Some(inside) = &mut row.inside {
-                // Where a twist has no meaning, it keeps the one that it had.
+                // While the twist is undefined, the element keeps its last twist.
                 inside.slipped = is_twist;
             }
             return;
@@ -167,7 +169,7 @@ impl Plan {
             .first()
             .map(|b| bodies[*b as usize].rare.context);
         if by != [(false, false); 2] {
-            // Before its first step the engine knows no contacts.
+            // The engine finds contacts only within a step, so the result before the first step is provisional.
             if inside.leeway.is_due(by, inside.rates.is_some()) {
                 let on = |body: usize| handle(bodies[members.bodies[body] as usize].id);
                 inside.leeway.left = inverse_mass(&line, on, all);
@@ -185,7 +187,8 @@ impl Plan {
         self.orders.push(order);
     }
 
-    /// Finds which bodies are pressed, hang in balance, or are taken along by joints: where they go, others take them.
+    /// Marks bodies that may creep: bodies that contacts press, that hang in balance, or that joints carry along. A body of the
+    /// last two kinds only follows the motion of others. Also finds whether the component is tense.
     fn balance(
         &mut self,
         members: &Members,
@@ -217,7 +220,7 @@ impl Plan {
         }
         let pressed = members.bodies.iter().map(|b| &bodies[*b as usize]);
         let pressed = pressed.filter(|row| row.has(BodyFlags::PRESSED));
-        // How fast what lies on something goes, if there is any such body.
+        // Creep speed of the fastest body that contacts press; none if there is no such body.
         let creeping = pressed.map(|row| row.rare.rest.rate).reduce(f32::max);
         let pulled = self.bodies.iter().zip(&self.pulls);
         self.tense = creeping.is_some()
@@ -236,7 +239,7 @@ impl Plan {
         }
     }
 
-    /// What an element does over the step.
+    /// Makes the order of an element. [`Self::act`] and [`Self::bound`] complete it.
     fn order(
         &self,
         row: usize,
@@ -245,14 +248,14 @@ impl Plan {
         touched: bool,
         time: f64,
     ) -> Order {
-        // A torsion element that has slipped is wound up otherwise than its bodies show.
+        // After a slip, the twist of a torsion element differs from the rotation of its bodies.
         let from = if inside.slipped {
             element.angle
         } else {
             line.distance()
         };
         let rate = line.motion(&element, &self.bodies, 0.0).axial;
-        // As the last steps went on: the engine's own velocities are those of its last substep.
+        // Extrapolated from the last two steps, because the engine's velocities are those of its last substep.
         let [last, before] = inside.rates.unwrap_or([rate; 2]);
         let ahead = 2.0 * last - before;
         let facings = element
@@ -288,7 +291,7 @@ impl Plan {
         }
     }
 
-    /// Finds with what force an element acts over the step, now that it is known what may push its ends.
+    /// Computes the force of an element over the step from the speeds and forces at its ends.
     fn act(&mut self, at: usize, elements: &mut [ElementRow], time: f64) {
         let Self {
             bodies,
@@ -310,7 +313,7 @@ impl Plan {
         }
         order.reach.change = FAR * time * order.reach.speed;
         if element.guide.is_twist() {
-            // What springs turn a body with is not looked at.
+            // The torques of springs are not in `pulls`, so allow for one radian more.
             order.reach.change += 1.0;
         }
         order.pieces = match &element.law {
@@ -322,15 +325,15 @@ impl Plan {
         };
         let last = inside.rates.map_or(0.0, |rates| rates[0]);
         if inside.debt > 0.0 && last != 0.0 && line.inverse_mass > 0.0 {
-            // At most what stops the motion within the step.
+            // At most the damping that stops the motion within the step.
             let most = 1.0 / (line.inverse_mass * time);
             order.pieces.spring().damping += (inside.debt / (last * last * time)).min(most);
         }
         inside.begin(order.from, order.pieces, line, order.facings);
     }
 
-    /// Bounds on the stiffest mode: ω² is at most the sum over both ends of an element of their elements' stiffness over
-    /// mass, as for the Laplacian of a graph (W. Anderson and T. Morley, 1985).
+    /// Computes upper bounds on the frequency of the stiffest mode. For each body, add stiffness over mass of its elements; ω² is
+    /// at most the greatest sum of both bodies of an element, as for a graph's Laplacian (W. Anderson and T. Morley, 1985).
     fn bound(&mut self, members: &Members, bodies: &[BodyRow]) {
         self.sums.clear();
         self.sums.resize(self.bodies.len(), 0.0);
@@ -354,7 +357,7 @@ impl Plan {
         }
     }
 
-    /// Bound on the stiffest mode of those elements that have too little damping for substeps of so long, rad/s.
+    /// Upper bound on the stiffest mode of the elements with too little damping for substeps of `substep` seconds, rad/s.
     pub(crate) fn undamped(&self, substep: f64) -> f64 {
         let orders = self.orders.iter();
         orders
@@ -366,13 +369,13 @@ impl Plan {
             .fold(0.0, f64::max)
     }
 
-    /// How often joints and contacts are to be solved in a substep of so long, for a damper to know what joints leave of a
-    /// push, or what other springs do.
+    /// Number of sweeps over joints and contacts that a substep of `substep` seconds needs. With too few, a damper does not see
+    /// what joints leave of an impulse, or what other springs do.
     pub(crate) fn sweeps(&self, substep: f64) -> usize {
         let light = |order: &Order| {
             let damping = order.pieces.iter().map(|piece| piece.tangent.damping);
             let damped = damping.sum::<f64>() * order.line.inverse_mass * substep;
-            // Where contacts press, the engine's warm start has brought their answer already.
+            // Where something touches, the engine's warm start already contains the reaction of the contacts.
             order.jointed < LIGHT && damped > DAMPED && !order.touched
         };
         let mut pieces = self.orders.iter().flat_map(|order| order.pieces.iter());
@@ -385,7 +388,7 @@ impl Plan {
         }
     }
 
-    /// Whether its joints may be solved in finer substeps than they are made for.
+    /// Whether joints made for substeps of `substep` seconds still have positive damping in finer ones of `finest` seconds.
     pub(crate) fn stands_finer(&self, substep: f64, finest: f64) -> bool {
         let mut pieces = self.orders.iter().flat_map(|order| order.pieces.iter());
         pieces.all(|piece| piece.tangent.damping > (substep - finest) * piece.tangent.stiffness)

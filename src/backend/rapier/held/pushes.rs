@@ -1,4 +1,4 @@
-//! How much faster springs can make bodies within a step: what has to know its contacts ahead has to know that too.
+//! Estimates the speed that springs can add to bodies within a step. The search for coming contacts needs it.
 
 use crate::backend::Sight;
 use crate::backend::rapier::held::write::Solver;
@@ -6,7 +6,7 @@ use crate::scene::rows::{BodyRow, ElementRow, Held, Members};
 use crate::scene::step::Step;
 
 impl Solver {
-    /// Finds how much faster springs can make each body of a component in a step, m/s.
+    /// Computes into `pushes` the speed that springs can add to each body of a component in a step, m/s.
     pub(crate) fn find_pushes(
         &mut self,
         step: &Step,

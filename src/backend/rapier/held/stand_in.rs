@@ -1,4 +1,4 @@
-//! What an element has in the engine besides its bodies: joints, and bodies that stand for ends which are none.
+//! Objects that an element adds to Rapier: its joints, and hidden bodies that stand for ends without a rigid body.
 
 use super::write::Engine;
 use crate::backend::BodyId;
@@ -8,7 +8,7 @@ use crate::scene::held::Inside;
 use crate::scene::rows::Held;
 use bevy_rapier3d::rapier::dynamics::RigidBodyBuilder;
 
-/// Takes all that an element has out of the engine.
+/// Removes the joints and hidden bodies of an element from the engine.
 pub(crate) fn remove(inside: &mut Inside, engine: &mut Engine) {
     inside.joints.remove(&mut engine.joints.impulse_joints);
     for body in inside.hidden.iter_mut().filter_map(Option::take) {
@@ -23,7 +23,7 @@ pub(crate) fn remove(inside: &mut Inside, engine: &mut Engine) {
     inside.active = false;
 }
 
-/// The body of the engine at an end.
+/// Returns the engine's body at an end. For an end without a rigid body it makes or moves a hidden kinematic body.
 pub(crate) fn holder(inside: &mut Inside, end: usize, held: &Held, engine: &mut Engine) -> BodyId {
     let (from, to) = match *held {
         Held::Body { body, .. } => return body,

@@ -1,4 +1,4 @@
-//! The components of a context that contacts or joints hold, through the step.
+//! Takes the held components of a context through the step: finds them, and has Rapier's solver solve them.
 
 use super::ahead::look_ahead;
 use super::touch::any_joints;
@@ -14,7 +14,7 @@ use bevy_rapier3d::rapier::dynamics::RigidBody;
 use bevy_rapier3d::rapier::geometry::{DefaultBroadPhase, NarrowPhase};
 use std::mem::take;
 
-/// What is known of contacts in a context.
+/// The contacts of a context.
 #[derive(Clone, Copy)]
 pub(crate) struct View<'a> {
     pub context: Entity,
@@ -23,8 +23,8 @@ pub(crate) struct View<'a> {
 }
 
 impl Scene {
-    /// Finds what contacts or joints hold, and has the engine solve it; says whether all of that is asleep. `finest` are the
-    /// most iterations that any body has by its user.
+    /// Finds the components that contacts or joints hold, and makes the engine solve them. Returns whether all of them are
+    /// asleep. `finest` is the greatest number of additional solver iterations that the user gave to any body.
     pub(crate) fn step_held(
         &mut self,
         view: View,
@@ -82,7 +82,7 @@ impl Scene {
         all_asleep
     }
 
-    /// Whether some body of a component in a context is yet to be stepped.
+    /// Whether a component is in `context` and has a body that the engine has not stepped yet.
     fn is_new(&self, group: usize, context: Entity) -> bool {
         let group = &self.groups.list()[group];
         let mut bodies = self.groups.members(group).bodies.iter();
@@ -90,7 +90,8 @@ impl Scene {
         group.context == context && bodies.any(is_new)
     }
 
-    /// Takes a component in if it is held, and lets go of one that no longer is; says whether it needs no solving here.
+    /// Reads a component if it is held, and releases it if it no longer is. Returns whether Rapier's solver has nothing to do for
+    /// it.
     fn step_group(
         &mut self,
         g: usize,
@@ -128,7 +129,7 @@ impl Scene {
         !awake || !held
     }
 
-    /// Whether contacts or joints hold some body of a component, or may within the step.
+    /// Whether contacts or joints hold some body of a component, or may hold one within the step.
     fn is_held(
         &mut self,
         g: usize,
@@ -147,7 +148,7 @@ impl Scene {
             ..
         } = self;
         let members = groups.members(&groups.list()[g]);
-        // What is new may touch something already: the engine does not know before its first step.
+        // A new body may already touch something, which the engine does not know before the body's first step.
         let any_new = members.bodies.iter().any(|b| {
             let row = &bodies[*b as usize];
             row.has(BodyFlags::NEW)
@@ -171,7 +172,7 @@ impl Scene {
                 stiff |= look_ahead(row, body, time);
             }
         }
-        // Other numbers may push it elsewhere.
+        // With new parameters the elements may push the bodies elsewhere.
         let is_changed = !changed.is_empty()
             && members
                 .elements
@@ -188,7 +189,7 @@ impl Scene {
         }
         let left = clear.saturating_sub(1);
         for b in members.bodies {
-            // Mostly zero, and what is not written need not go back to memory.
+            // The counter is mostly zero already, and a row that is not written need not go back to memory.
             let row = &mut bodies[*b as usize];
             if row.clear != left {
                 row.clear = left;
@@ -197,7 +198,7 @@ impl Scene {
         held
     }
 
-    /// Whether a component may meet something within the step; notes for how many steps more it cannot.
+    /// Returns whether a component may hit something within the step. Stores in its bodies for how many further steps it cannot.
     fn meets_soon(
         &mut self,
         g: usize,
@@ -230,7 +231,7 @@ impl Scene {
     }
 }
 
-/// Of each body the stiffness of all its elements.
+/// Computes for each body the total stiffness of its elements, N/m. Torsion elements do not count.
 pub(crate) fn add_up(elements: &[ElementRow], bodies: &mut [BodyRow]) {
     for row in bodies.iter_mut() {
         row.rare.stiffness = 0.0;
@@ -238,7 +239,7 @@ pub(crate) fn add_up(elements: &[ElementRow], bodies: &mut [BodyRow]) {
     for row in elements.iter().filter(|row| !row.rare.guide.is_twist()) {
         for body in row.all_movable() {
             let stiffness = match row.law {
-                // It may be anything where it kinks.
+                // At a kink of the law the slope may be arbitrarily large.
                 Some(_) => f64::INFINITY,
                 None => f64::from(row.numbers.stiffness),
             };

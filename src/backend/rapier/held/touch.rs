@@ -1,4 +1,4 @@
-//! Whether contacts or joints hold a body.
+//! Finds out whether contacts or joints hold a body, before the step.
 
 use super::joint::is_ours;
 use crate::backend::rapier::body;
@@ -12,19 +12,19 @@ use bevy_rapier3d::prelude::RapierContextJoints;
 use bevy_rapier3d::rapier::dynamics::{RigidBody as RapierBody, RigidBodyHandle};
 use bevy_rapier3d::rapier::geometry::{Collider, ColliderHandle, ColliderSet, NarrowPhase};
 
-/// How long a body counts as held after the last contact, s: a wheel that hops and a foot that drums need not change
-/// between the two predicted_travel of being solved in every step. Pinned by `ground::drumming`.
+/// How long a body counts as held after its last contact, s. So a hopping wheel or a drumming foot does not change between
+/// the two solvers in every step. Pinned by `ground::drumming`.
 const LINGER: f32 = 0.1;
 
-/// Nearer than this counts as touching before the first step, m.
+/// Distance below which shapes count as touching before the first step, m.
 const NEAR: f32 = 0.005;
 
-/// All colliders, for bodies that the engine has not stepped yet: it finds contacts only within a step, and a stiff spring
-/// has to know before the first.
+/// All solid colliders of a context, to find contacts of bodies that the engine has not stepped yet. The engine finds contacts
+/// only within a step, but a stiff spring needs them before the first step.
 pub(crate) struct Crowd {
     tree: Bvh,
     bounded: Vec<ColliderHandle>,
-    /// Those without bounds, such as half-spaces.
+    /// Colliders without bounds, such as half-spaces.
     boundless: Vec<ColliderHandle>,
 }
 
@@ -48,7 +48,7 @@ impl Crowd {
         }
     }
 
-    /// Whether anything else is so near that it may touch a body in its first step.
+    /// Whether another collider is within the distance `way` (m) of a body, so that it may touch the body in its first step.
     fn is_near(
         &self,
         handle: RigidBodyHandle,
@@ -76,25 +76,25 @@ impl Crowd {
     }
 }
 
-/// Steps of a body's motion within which a contact that the engine has seen ahead counts.
+/// A contact that the engine predicts counts if its distance is less than this number of steps of the body's motion.
 const REACH: f32 = 3.0;
 
-/// Extents above which a collider counts as boundless, m.
+/// Size of its bounding box above which a collider counts as boundless, m.
 const BOUNDLESS: f32 = 1e6;
 
-/// Whether there are joints at all.
+/// Whether a context has any joints.
 pub(crate) fn any_joints(joints: &RapierContextJoints) -> bool {
     let mut links = joints.multibody_joints.multibodies();
     links.next().is_some() || !joints.impulse_joints.is_empty()
 }
 
-/// What can hold bodies in a Rapier context.
+/// The contacts and joints of a Rapier context, which can hold bodies.
 pub(crate) struct Surroundings<'a> {
     narrow: &'a NarrowPhase,
     joints: &'a RapierContextJoints,
     colliders: &'a ColliderSet,
     crowd: Option<&'a Crowd>,
-    /// There are joints at all.
+    /// Whether the context has any joints.
     pub any_joints: bool,
 }
 
@@ -114,7 +114,7 @@ impl<'a> Surroundings<'a> {
         }
     }
 
-    /// Whether a joint other than ours acts on a body.
+    /// Whether a joint that this crate did not make acts on a body.
     pub(crate) fn is_jointed(&self, handle: RigidBodyHandle) -> bool {
         if !self.any_joints {
             return false;
@@ -130,11 +130,11 @@ impl<'a> Surroundings<'a> {
                 .any(|(_, _, _, joint)| !is_ours(joint))
     }
 
-    /// Whether anything touches a body, or will in the coming step of `time` seconds as far as the engine has looked
-    /// ahead; and whether it has pushed it in the last one.
+    /// Returns two facts: whether something touches the body or, as far as the engine predicts, will touch it in the coming step
+    /// of `time` seconds; and whether a contact pressed on the body in the last step.
     fn touch(&self, body: &RapierBody, time: f64) -> (bool, bool) {
         let (mut touched, mut pressed) = (false, false);
-        // Distances are those at the start of the last step, and the other body moves too.
+        // The distances are those at the start of the last step, and the other body moves too, so take more than one step.
         let way = NEAR + REACH * body.linvel().length() * time as f32;
         for collider in body.colliders() {
             for pair in self.narrow.contact_pairs_with(*collider) {
@@ -148,8 +148,8 @@ impl<'a> Surroundings<'a> {
         (touched, pressed)
     }
 
-    /// Looks what holds a body at the start of a step of `time` seconds; says whether anything does, or did a moment ago.
-    /// `push` is how much faster springs can make it in the step, m/s.
+    /// Finds what holds a body at the start of a step of `time` seconds and updates its flags. Returns whether anything holds it
+    /// now or did a moment ago. `push` is the speed that springs can add in the step, m/s.
     pub(crate) fn look(&self, row: &mut BodyRow, body: &RapierBody, time: f64, push: f32) -> bool {
         let handle = body::handle(row.id);
         let jointed = self.is_jointed(handle);

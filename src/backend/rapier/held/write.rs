@@ -1,4 +1,4 @@
-//! Into the engine: joints, substeps, and what a body needs besides them.
+//! Writes held components into Rapier: joints, substeps, and the initial velocities of bodies.
 
 use super::lend::raise;
 use super::stand_in::{holder, remove};
@@ -18,22 +18,22 @@ use bevy_rapier3d::rapier::dynamics::{IslandManager, RigidBody as RapierBody, Ri
 use bevy_rapier3d::rapier::geometry::{ColliderSet, NarrowPhase};
 use std::sync::atomic::Ordering;
 
-/// Least substeps of a step. With Rapier's own four, contacts of a wheel that rolls at 12 m/s are off by a twentieth of
-/// what it carries. Pinned by `ground::rolling`.
+/// Least number of substeps per tick. With Rapier's own four, the contact forces of a wheel that rolls at 12 m/s are wrong by a
+/// twentieth of its load. Pinned by `ground::rolling`.
 const LEAST: u32 = 16;
 
-/// What of a Rapier context is written.
+/// The parts of a Rapier context that are written.
 pub(crate) struct Engine<'a> {
     pub bodies: &'a mut RigidBodySet,
     pub joints: &'a mut RapierContextJoints,
     pub islands: &'a mut IslandManager,
     pub colliders: &'a mut ColliderSet,
-    /// m/s².
+    /// Gravity, m/s².
     pub gravity: Vec3,
 }
 
 impl Engine<'_> {
-    /// Its bodies as all else sees them.
+    /// Read access to the bodies for code that does not know Rapier.
     pub(crate) fn sight(&self) -> Bodies<&RigidBodySet> {
         Bodies {
             set: self.bodies,
@@ -41,7 +41,7 @@ impl Engine<'_> {
         }
     }
 
-    /// Its bodies as all else moves them.
+    /// Write access to the bodies for code that does not know Rapier.
     fn world(&mut self) -> Bodies<&mut RigidBodySet> {
         Bodies {
             set: self.bodies,
@@ -50,15 +50,15 @@ impl Engine<'_> {
     }
 }
 
-/// The components of a context that the engine solves.
+/// The held components of a context in this step, and reusable buffers.
 #[derive(Default)]
 pub(crate) struct Solver {
     plans: Vec<Plan>,
     used: usize,
     wanted: Vec<Option<Wanted>>,
-    /// Sweeps over all joints and contacts that a substep needs.
+    /// Number of sweeps over all joints and contacts per substep.
     sweeps: usize,
-    /// How much faster springs can make each body of the component that is looked at, m/s.
+    /// Speed that springs can add to each body of the present component in the step, m/s.
     pub(crate) pushes: Vec<f32>,
 }
 
@@ -67,17 +67,17 @@ impl Solver {
         (self.used, self.sweeps) = (0, 1);
     }
 
-    /// Whether there is anything to write.
+    /// Whether there are components to write.
     pub(crate) fn is_any(&self) -> bool {
         self.used > 0
     }
 
-    /// Sweeps over all joints and contacts that a substep of what has been written needs.
+    /// Number of sweeps over all joints and contacts per substep that the written components need.
     pub(crate) fn sweeps(&self) -> usize {
         self.sweeps
     }
 
-    /// Reads a component that is held; says whether it is awake.
+    /// Reads a component. Returns whether it is awake.
     pub(crate) fn read(
         &mut self,
         step: &Step,
@@ -121,8 +121,8 @@ impl Solver {
         awake
     }
 
-    /// Gives the engine what it needs to solve all components that have been read. `finest` are the most iterations that
-    /// any body has by its user.
+    /// Gives the engine what it needs to solve all components that have been read. `finest` is the greatest number of additional
+    /// solver iterations that the user gave to any body.
     pub(crate) fn write(
         &mut self,
         step: &Step,
@@ -149,7 +149,7 @@ impl Solver {
         for (plan, fineness) in self.plans[..self.used].iter_mut().zip(fineness) {
             let mut chosen = iterations(&fineness);
             if chosen < most && !plan.stands_finer(substep(chosen), substep(most)) {
-                // What it touches may be solved more finely than it is, and then it would be too.
+                // A body that touches it may have more iterations, and then the engine solves both with that number.
                 chosen = most;
             }
             let group = &groups.list()[plan.group];
@@ -187,7 +187,7 @@ impl Solver {
         self.used = 0;
     }
 
-    /// Takes a component out of the engine's solver again; it has been read last.
+    /// Takes the component that was read last out of the engine's solver again.
     pub(crate) fn release(
         &mut self,
         step: &Step,
@@ -212,7 +212,7 @@ impl Solver {
     }
 }
 
-/// Takes back what bodies have from steps that were solved here.
+/// Removes from bodies the force and torque that a step with the crate's own integrator gave them.
 fn take_back_shares(
     members: &Members,
     bodies: &mut [BodyRow],
@@ -228,7 +228,7 @@ fn take_back_shares(
     }
 }
 
-/// Takes the joints of a component out of the engine, and gives back what its bodies had.
+/// Removes the joints of a component from the engine, and restores the solver iterations of its bodies.
 pub(crate) fn leave(
     members: &Members,
     elements: &mut [ElementRow],
@@ -248,9 +248,9 @@ pub(crate) fn leave(
     }
 }
 
-/// In the engine's solver velocities are those of half a substep ago. Takes those of a component there, or back again, by
-/// what acts on its bodies, as far as the engine lets them move; but for bodies that contacts press, of which only the
-/// engine knows what acts.
+/// Shifts the velocities of a component in time by `by` seconds (half a substep, either sign). In the engine's solver,
+/// velocities belong to a time half a substep before the positions. Velocities stay within the engine's caps. Bodies under
+/// contact pressure are left out, because only the engine knows the forces on them.
 fn stagger(
     plan: &Plan,
     by: f64,
@@ -267,7 +267,7 @@ fn stagger(
     for order in &plan.orders {
         let rate = order.line.motion(&order.element, &plan.bodies, 0.0).axial;
         let damping: f64 = order.pieces.iter().map(|p| p.tangent.damping).sum();
-        // What a firm damper stops in a substep, it has stopped then.
+        // A strong damper has already reduced the rate within the substep.
         let lasting = (1.0 + 2.0 * by.abs() * damping * order.line.inverse_mass).powi(-2);
         let tension = order.pieces.tension(order.line.distance(), lasting * rate);
         let impulse = -by * tension * order.line.direction;
@@ -291,7 +291,8 @@ fn stagger(
     }
 }
 
-/// Takes all joints of a component out, unless each is of the kind that is wanted; says whether they are.
+/// Returns whether every element has joints of the wanted kinds. If not, removes all joints of the component. Joints of
+/// elements that do not act are removed in any case.
 fn leave_misfits(
     plan: &Plan,
     wanted: &[Option<Wanted>],
@@ -319,7 +320,7 @@ fn leave_misfits(
     fit
 }
 
-/// Makes or changes the joints of a component.
+/// Creates the joints of a component, or updates them.
 fn join(
     plan: &mut Plan,
     wanted: &mut Vec<Option<Wanted>>,
@@ -365,8 +366,8 @@ fn join(
             body.is_none_or(RapierBody::is_fixed)
         })
     };
-    // Rapier solves joints of two bodies in the order in which they come, and then those to a fixed one in the reverse
-    // order. Either way dampers are to go first: pinned by `ground::hinge`.
+    // Rapier first solves joints between two bodies that are not fixed, in the order of insertion, and then joints with a
+    // fixed body, in reverse order. Dampers must be solved first in both groups: pinned by `ground::hinge`.
     let mut put = |damper: bool, to_fixed: bool| {
         each(&mut |inside, wanted| match () {
             () if fixed(wanted) != to_fixed => {}

@@ -1,4 +1,5 @@
-//! When Rapier has gone back and springs cannot: what they had in it then is given back, and they begin anew.
+//! For the case that Rapier's snapshot was restored but the springs' snapshot does not fit. Removes what springs had in Rapier at
+//! the time of the snapshot; then springs start afresh.
 
 use super::check::is_in;
 use crate::backend::rapier::body::id;
@@ -10,7 +11,7 @@ use bevy_rapier3d::prelude::*;
 use std::mem::take;
 
 impl Kept {
-    /// Has the next step take out of the engine what springs had in it when this was taken.
+    /// Makes the next step remove from the engine what springs had in it when the snapshot was taken.
     pub(crate) fn begin_anew(&self, world: &mut World) {
         let mut contexts = world.query::<(Entity, &RapierRigidBodySet, &RapierContextJoints)>();
         let elements = self.elements.iter().filter_map(|e| e.inside.as_deref());
@@ -35,7 +36,7 @@ impl Kept {
         let Some(mut scene) = world.get_resource_mut::<Scene>() else {
             return;
         };
-        // What they have now, the engine does not know any more.
+        // The engine no longer contains what the springs have now.
         for row in &mut scene.elements {
             let _ = row.take_inside();
         }
@@ -48,13 +49,13 @@ impl Kept {
     }
 }
 
-/// Whether Rapier's snapshot was put back after the last step; asked once.
+/// Returns whether Rapier's snapshot was restored after the last step, and resets that fact.
 pub(crate) fn engine_went_back(world: &mut World) -> bool {
     let scene = world.get_resource_mut::<Scene>();
     scene.is_some_and(|mut scene| take(&mut scene.engine_went_back))
 }
 
-/// Notes that Rapier's snapshot was put back.
+/// Records that Rapier's snapshot was restored.
 pub(crate) fn note_engine(world: &mut World) {
     if let Some(mut scene) = world.get_resource_mut::<Scene>() {
         scene.engine_went_back = true;

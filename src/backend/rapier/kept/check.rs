@@ -1,4 +1,4 @@
-//! Whether a world is one that it can be put into.
+//! Checks whether a snapshot of the springs fits a world.
 
 use crate::backend::rapier::body::{handle, joint_handle};
 use crate::backend::rapier::held::{fits, is_ours};
@@ -13,7 +13,7 @@ use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
 
 impl Kept {
-    /// What does not fit; nothing is changed.
+    /// Returns an error if the snapshot does not fit the world. Changes nothing.
     pub(crate) fn check(
         &self,
         world: &mut World,
@@ -55,7 +55,7 @@ impl Kept {
         self.check_orders(world, engine_went_back)
     }
 
-    /// Whether the engine has just those joints of ours that are known.
+    /// Checks that the engine has exactly those joints of the crate that the snapshot knows.
     fn check_engine(&self, world: &mut World) -> Result<(), SnapshotError> {
         let insides = self.elements.iter().filter_map(|e| e.inside.as_deref());
         let insides = || {
@@ -81,7 +81,7 @@ impl Kept {
         }
     }
 
-    /// Whether bodies and contexts have what is known of them, such as solver iterations, and not what came later.
+    /// Checks that bodies and contexts have the settings that the snapshot knows, such as solver iterations, and not later ones.
     fn check_orders(&self, world: &World, engine_went_back: bool) -> Result<(), SnapshotError> {
         let scene = world.get_resource::<Scene>().filter(|_| !engine_went_back);
         let as_known = |known: &KeptBody| {
@@ -102,7 +102,7 @@ impl Kept {
             let meanwhile = scene.and_then(|scene| scene.sweeps.get(&known.entity).copied());
             Some(known.sweeps.fits(now, meanwhile.unwrap_or_default()))
         };
-        // What no element moved then had nothing.
+        // Bodies that no element moved at the time of the snapshot had no changed settings.
         let then: EntityHashSet = self.bodies.iter().map(|body| body.entity).collect();
         let had_nothing = |row: &BodyRow| {
             let set = world.get::<RapierRigidBodySet>(row.rare.context)?;
@@ -111,7 +111,7 @@ impl Kept {
         };
         let new = scene.iter().flat_map(|scene| &scene.bodies);
         let mut new = new.filter(|row| !then.contains(&row.entity));
-        // Of what the engine does not know yet, nothing differs.
+        // A body or context that the engine does not know yet counts as fitting.
         let bodies = self.bodies.iter();
         let mut contexts = self.contexts.iter();
         if bodies.map(as_known).all(|fits| fits.unwrap_or(true))
@@ -124,7 +124,7 @@ impl Kept {
         }
     }
 
-    /// Leaves out what is in the engine: joints are made anew then.
+    /// Drops the data about joints and hidden bodies in the engine. Joints are then made anew.
     pub(crate) fn forget_engine(&mut self) {
         self.engine_stays = true;
         for element in &mut self.elements {
@@ -136,7 +136,7 @@ impl Kept {
     }
 }
 
-/// Whether all of it is in the engine, as ours.
+/// Whether all joints and hidden bodies of an element are in the engine, and the joints were made by the crate.
 pub(crate) fn is_in(
     inside: &KeptInside,
     set: &RapierRigidBodySet,

@@ -1,5 +1,5 @@
-//! Between the plain data of a snapshot and a world with Rapier: [`take`] reads it from the scene, [`put`] makes a scene of it
-//! again, if [`check`] finds that it fits; else springs begin [`anew`].
+//! Converts between the plain data of a snapshot and a world with Rapier. [`take`] reads the data from the scene. [`put`]
+//! restores a scene from it if [`check`] finds that it fits; otherwise [`anew`] lets springs start afresh.
 
 mod anew;
 mod check;

@@ -1,4 +1,4 @@
-//! Into a scene.
+//! Restores a scene from the data of a snapshot: makes all rows anew from the components, then fills in what was remembered.
 
 use super::anew::engine_went_back;
 use crate::backend::rapier::body::id;
@@ -19,7 +19,7 @@ use bevy::ecs::system::SystemState;
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
 
-/// What rows are made of.
+/// The system parameters that are needed to make rows.
 type Sources<'w, 's> = (
     Query<'w, 's, Parts, Acts>,
     Companions<'w, 's>,
@@ -28,7 +28,7 @@ type Sources<'w, 's> = (
 );
 
 impl Kept {
-    /// Has the springs of a world go on from there.
+    /// Restores the springs of a world to the state of the snapshot.
     pub(crate) fn put(&self, world: &mut World) -> Result<(), SnapshotError> {
         let engine_went_back = engine_went_back(world);
         let fits = self.check(world, engine_went_back);
@@ -59,14 +59,14 @@ impl Kept {
         kept.fill_groups(&mut scene);
         kept.fill_scene(&mut scene);
         kept.show(&scene, world);
-        // What was written so far is what there was: only what comes after is a change.
+        // Everything written so far belongs to the restored state. Only later writes count as changes.
         scene.since = Some(world.change_tick());
         world.insert_resource(scene);
         world.increment_change_tick();
         Ok(())
     }
 
-    /// The one context of a world of one context is that of a snapshot of one context.
+    /// If world and snapshot each have only one context, replaces the snapshot's context entity by the world's.
     fn name_contexts(&mut self, world: &mut World) {
         let mut contexts = world.query_filtered::<Entity, With<RapierContextSimulation>>();
         let mut contexts = contexts.iter(world);
@@ -82,11 +82,11 @@ impl Kept {
         }
     }
 
-    /// Rows as there are to be, before anything is known of their ends.
+    /// Makes the rows of the snapshot's elements and bodies, before their ends are found.
     fn place_rows(&mut self, scene: &mut Scene, world: &World) {
         if !self.engine_stays {
             scene.left.clear();
-            // Rows that are made anew add bodies whose elements are at fault now.
+            // Making the rows anew adds bodies whose elements have a fault now.
             scene.unloaded.clone_from(&self.unloaded);
         }
         let mut before = EntityHashMap::default();
@@ -99,7 +99,7 @@ impl Kept {
         for (index, kept) in self.elements.iter().enumerate() {
             let mut row = ElementRow::new(kept.entity);
             if let Some(before) = before.remove(&kept.entity) {
-                // What has been said of it is not said again.
+                // Faults that were reported are not reported again.
                 row.trouble = before.trouble;
                 row.flags
                     .insert(before.flags & ElementFlags::TOLD_UNRESOLVED);
@@ -170,7 +170,7 @@ impl Kept {
         add_up(&scene.elements, &mut scene.bodies);
     }
 
-    /// In the order in which they were, and with what was known of them.
+    /// Restores the order of components and of their members, and the remembered state of each component.
     fn fill_groups(&self, scene: &mut Scene) {
         let mut elements = vec![NONE; scene.elements.len()];
         for (place, kept) in self.elements.iter().enumerate() {
@@ -213,7 +213,7 @@ impl Kept {
     }
 
     fn fill_scene(&self, scene: &mut Scene) {
-        // Some have got an assembly.
+        // Some lone elements now have an assembly.
         scene.list_lone();
         scene.time = self.time;
         let stepped = self.contexts.iter().filter(|context| context.stepped);
@@ -227,7 +227,7 @@ impl Kept {
             scene.left = left
                 .map(|(context, inside)| (*context, inside.put(*context)))
                 .collect();
-            // What elements had that are at fault now.
+            // Joints and hidden bodies of elements that have a fault now.
             if let [context] = &self.contexts[..] {
                 for kept in &self.elements {
                     let row = scene.row_of.get(&kept.entity);
@@ -242,16 +242,16 @@ impl Kept {
             }
         }
         scene.still = default();
-        // Elements and bodies that the snapshot does not know.
+        // True if there are elements or bodies that the snapshot does not contain.
         scene.stale =
             scene.elements.len() != self.elements.len() || scene.bodies.len() != self.bodies.len();
         (scene.renewed, scene.shifted) = (false, false);
         (scene.loaded, scene.delivered) = (false, false);
-        // Or rows would be made anew after the next step, whatever their order.
+        // Otherwise rows would be made anew after the next step if their order differs from that of the readouts.
         scene.unordered = true;
     }
 
-    /// Shows on elements and bodies what they had.
+    /// Writes readouts, rest lengths and force shares into the components of elements and bodies.
     fn show(&self, scene: &Scene, world: &mut World) {
         for kept in &self.elements {
             if let Some(mut readout) = world.get_mut::<SpringReadout>(kept.entity) {
@@ -284,7 +284,7 @@ impl Kept {
 }
 
 impl KeptElement {
-    /// Gives a row its memory; says whether its component's numbers are others than acted last.
+    /// Fills a row with the remembered state. Returns whether the parameters in its component differ from those that acted last.
     fn fill(&self, row: &mut ElementRow, context: Option<Entity>) -> bool {
         let p = &mut row.numbers;
         let rest = p.rest_length.or(self.rest_length);
@@ -325,7 +325,7 @@ impl KeptBody {
         row
     }
 
-    /// Both shares of its force, without telling anyone: what is told wakes the body.
+    /// Writes both shares of the force without marking the component as changed, because a change would wake the body.
     fn show(&self, slot: usize, mut body: EntityWorldMut, now: Tick) {
         let [user, elements] =
             [self.user, self.elements].map(|[force, torque]| ExternalForce { force, torque });
@@ -342,7 +342,7 @@ impl KeptBody {
             body.insert(sum);
         }
         if let Some(mut force) = body.get_mut::<ExternalForce>() {
-            // Half of all ticks ago: before any system ran last.
+            // Half the range of ticks ago, so before the last run of any system.
             let long_ago = Tick::new(now.get().wrapping_sub(u32::MAX / 2));
             force.set_last_added(long_ago);
             force.set_last_changed(long_ago);
@@ -350,7 +350,7 @@ impl KeptBody {
     }
 }
 
-/// A rest length that was found once is not to be found again.
+/// Writes a remembered rest length into a component that has none, so that it is not captured again.
 fn write_rest(entity: Entity, rest: f32, world: &mut World) {
     macro_rules! write {
         ($($element:ident.$field:ident),*) => {$(

@@ -1,4 +1,4 @@
-//! From the scene.
+//! Reads the data of a snapshot from the scene.
 
 use crate::backend::Wrench;
 use crate::backend::rapier::forces::{SpringLoad, wrench};
@@ -11,7 +11,7 @@ use crate::scene::state::Scene;
 use bevy::prelude::*;
 
 impl Kept {
-    /// Reads all of it; nothing where there is no plugin.
+    /// Reads all data of the scene. Empty if there is no `CoiloverPlugin`.
     pub(crate) fn take(world: &World) -> Self {
         let Some(scene) = world.get_resource::<Scene>() else {
             return Self::default();
@@ -24,7 +24,7 @@ impl Kept {
         kept.take_contexts(scene);
         kept.bodies.reserve_exact(scene.bodies.len());
         kept.elements.reserve_exact(scene.elements.len());
-        // Indices among what is kept.
+        // For each body row, its index in `kept.bodies`.
         let mut places = vec![NONE; scene.bodies.len()];
         for group in scene.groups.list() {
             let members = scene.groups.members(group);
@@ -83,7 +83,7 @@ impl Kept {
 }
 
 fn take_element(row: &ElementRow, places: &[u32], world: &World) -> KeptElement {
-    // What is not kept is found anew from the components.
+    // Fields that are not kept are found anew from the components.
     let RareElement {
         ties: _,
         guide: _,
@@ -122,13 +122,13 @@ fn take_element(row: &ElementRow, places: &[u32], world: &World) -> KeptElement 
     }
 }
 
-/// All fields by their names, a line each, so that none of a body is forgotten.
+/// Reads a body. All fields are named, one per line, so that no field is forgotten.
 fn take_body(row: &BodyRow, world: &World) -> KeptBody {
     let BodyRow {
         entity,
         id: _,
         flags,
-        // Shown in the components when a tick is over.
+        // These are in the components when a tick is over.
         given: _,
         share_force: _,
         user_force: _,
