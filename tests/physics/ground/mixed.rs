@@ -8,14 +8,11 @@ use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
 
-/// ω·dt up to which a spring along an axis of the world may join two bodies here.
-const SOFT: f32 = 0.1;
-
 /// ω·dt up to which elements have laws, clamps and stops here. Stiffer ones do not keep what a blow of one step does.
 const BENT: f32 = 1.0;
 
-/// ω·dt up to which torsion elements and ball joints are beside them here; at 50, two of 150 scenes with joints win energy in a
-/// blow.
+/// ω·dt up to which torsion elements and ball joints are beside them here, and springs along axes of the world between bodies
+/// that turn; at 50, two of 150 scenes with joints and one with such a spring win energy in a blow.
 const LINKED: f32 = 10.0;
 
 /// A direction by chance.
@@ -59,8 +56,7 @@ fn won(seed: u64, omega_dt: f32, seconds: f64) -> f64 {
         let c = [0.0, 0.1, 1.0][dice.pick(3) as usize] * (k * mass.min(other_mass)).sqrt();
         let anchors = [0, 1].map(|_| direction(&mut dice) * dice.between(0.0, 0.3));
         let axis = match dice.pick(4) {
-            // Stiff ones between two bodies that turn do not keep energy: `docs/limits.md`.
-            0 if omega_dt <= SOFT || other_mass.is_infinite() => {
+            0 if omega_dt <= LINKED || other_mass.is_infinite() => {
                 Some(SpringAxis::World(direction(&mut dice)))
             }
             1 => Some(SpringAxis::BodyA(direction(&mut dice))),

@@ -3,6 +3,7 @@
 //! Each scene is one that a game has. Energy is kinetic, of gravity, and stored in springs, all from geometry.
 
 mod actuator;
+mod beside;
 mod bounce;
 mod bridge;
 mod ccd;

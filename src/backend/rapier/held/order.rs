@@ -2,6 +2,7 @@
 //! element; `write` puts its joints into Rapier.
 
 use crate::backend::BodyId;
+use crate::dynamics::body::Body;
 use crate::dynamics::element::Element;
 use crate::dynamics::guide::Guide;
 use crate::dynamics::line::Line;
@@ -10,7 +11,7 @@ use crate::dynamics::single;
 use crate::dynamics::soft::{self, Tangent};
 use crate::scene::held::{Along, SoftJoint, Turn, Wanted};
 use crate::scene::rows::{ElementRow, Held};
-use bevy::math::{DQuat, DVec3, Quat, Vec3};
+use bevy::math::{DMat3, DQuat, DVec3, Quat, Vec3};
 
 /// Least damping of a joint, in units of mass / substep. It counts as none, but must not be zero because the engine divides
 /// by it.
@@ -25,6 +26,17 @@ const SWIFTEST: f64 = 1e7;
 /// Pinned by `ground::mixed`.
 const TURNS: f64 = 1e-3;
 
+/// Share of the step by which a force is taken ahead that is fixed at the start of the step: from the midpoint rule, which keeps
+/// energy, to the implicit rule, which damps what a step cannot follow. Pinned by `ground::mixed`: below a half, energy is gained.
+const AHEAD: [f64; 2] = [0.5, 1.0];
+
+/// (ω·dt)² up to which such a force follows the midpoint rule, and from which on the implicit rule. Pinned by `ground::mixed`.
+const FOLLOWED: [f64; 2] = [1.0, 4.0];
+
+/// Stiffness · dt² · [`Order::axis_mobility`] up to which a spring along an axis of the world follows the length that Rapier
+/// measures within the step, and from which on its force is fixed at the start of the step. Pinned by `ground::beside`.
+const DRIFTS: [f64; 2] = [0.1, 1.0];
+
 /// One element that acts in this step.
 pub(crate) struct Order {
     /// Index of the element's row.
@@ -37,6 +49,9 @@ pub(crate) struct Order {
     pub facings: [DQuat; 2],
     /// Angular velocity of the body at each end, rad/s.
     pub spins: [DVec3; 2],
+    /// For an axis of the world: the inverse effective mass, 1/kg, of the body at each end if a force along the axis turned it at
+    /// the other end. None if elements cannot turn the body.
+    pub axis_mobility: [Option<f64>; 2],
     pub pieces: Pieces,
     /// How far its length may change over the step.
     pub reach: Outreach,
@@ -133,10 +148,13 @@ impl Order {
             if stiffness == 0.0 && damping == 0.0 && force == 0.0 {
                 continue;
             }
+            let ahead = self.drift(stiffness, time) * stiffness;
+            let stiffness = stiffness - ahead;
             let (middle, most) = piece.middle();
             let apart = self.apart && i == 0 && damping > 0.0 && most == f64::INFINITY;
             let left = Tangent {
-                damping: if apart { 0.0 } else { damping },
+                stiffness,
+                damping: self.ahead_damping(ahead, time) + if apart { 0.0 } else { damping },
                 ..piece.tangent
             };
             let acting = soft::damping(&left, [self.omega, self.lively], substep)
@@ -145,10 +163,10 @@ impl Order {
                 turn.damping = acting + if apart { damping } else { 0.0 };
             }
             // The joint of a linear element is the same in every step. All others measure from the present length or rotation.
-            let (target, offset) = match (law, self.turn.is_some()) {
-                (_, true) => (0.0, force),
-                (None, false) => (self.element.rest_length, 0.0),
-                (Some(_), false) => (self.from, force),
+            let (target, offset) = match law {
+                _ if self.turn.is_some() => (0.0, force),
+                None if ahead == 0.0 => (self.element.rest_length, 0.0),
+                _ => (self.from, force),
             };
             if apart {
                 wanted.damper = Some(joint([0.0, damping], target, [0.0, most]));
@@ -163,15 +181,53 @@ impl Order {
         (!wanted.is_empty()).then_some(wanted)
     }
 
-    /// Index of the end to which the axis of the joint is fixed: an end that elements cannot turn, otherwise end A unless end B
-    /// turns much less over the step.
-    fn turns_less(&self, time: f64) -> usize {
-        let [a, b] = self.spins.map(|spin| time * spin.length());
-        match self.line.holds.map(|hold| hold.body) {
-            [_, None] => 1,
-            [None, _] => 0,
-            _ => usize::from(a > TURNS && b < 0.5 * a),
+    /// Index of the end to which the axis of the joint is fixed: an end that elements cannot turn, else the end that turns much
+    /// less over the step, else the end that the element can turn less.
+    fn steadier(&self, time: f64) -> usize {
+        let spins = self.spins.map(|spin| time * spin.length());
+        let is_calm = |end: usize| {
+            let other = spins[1 - end];
+            other > TURNS && spins[end] < 0.5 * other
+        };
+        match self.axis_mobility {
+            [Some(_), None] => 1,
+            [None, Some(_)] => 0,
+            _ if is_calm(0) || is_calm(1) => usize::from(is_calm(1)),
+            [a, b] => usize::from(b < a),
         }
+    }
+
+    /// See the field of this name.
+    pub(crate) fn axis_mobility(
+        element: &Element,
+        line: &Line,
+        bodies: &[Body],
+    ) -> [Option<f64>; 2] {
+        let Guide::World(axis) = element.guide else {
+            return [None; 2];
+        };
+        let arm = (line.holds[1].position - line.holds[0].position).cross(axis);
+        line.holds.map(|hold| {
+            let inverse_inertia = bodies[hold.body?].inverse_inertia();
+            (inverse_inertia != DMat3::ZERO).then(|| arm.dot(inverse_inertia * arm))
+        })
+    }
+
+    /// Share of a stiffness whose force is fixed at the start of the step. An axis of the world turns in Rapier with a body within
+    /// the step. If elements turn that body and the other end is far away across the axis, Rapier measures a wrong length, and a
+    /// stiff spring that followed it could throw both bodies off.
+    fn drift(&self, stiffness: f64, time: f64) -> f64 {
+        let mobility = self.axis_mobility[self.steadier(time)].unwrap_or(0.0);
+        ramp(stiffness.abs() * mobility * time * time, DRIFTS)
+    }
+
+    /// Damping that makes a force implicit that is fixed at the start of a step, N s/m. With a share of a half, the force does
+    /// the work k s₀ Δs + ½ k dt ∫ṡ² dt. By the Cauchy–Schwarz inequality that is at least the change of the spring's energy, so
+    /// no motion within the step gains any.
+    fn ahead_damping(&self, stiffness: f64, time: f64) -> f64 {
+        let phase_squared = stiffness * self.line.inverse_mass * time * time;
+        let share = AHEAD[0] + (AHEAD[1] - AHEAD[0]) * ramp(phase_squared, FOLLOWED);
+        share * time * stiffness.max(0.0)
     }
 
     fn frame(&self, row: &ElementRow, holders: [BodyId; 2], time: f64) -> Frame {
@@ -195,7 +251,7 @@ impl Order {
             Guide::World(axis) => {
                 frame.along = Along::Apart;
                 // The joint's axis turns with its first body. It coincides with the world axis in the middle of the step.
-                let end = self.turns_less(time);
+                let end = self.steadier(time);
                 let half = DQuat::from_scaled_axis(0.5 * time * self.spins[end]);
                 let mut axis = (half * self.facings[end]).inverse() * axis;
                 if end == 1 {
@@ -216,4 +272,9 @@ impl Order {
         }
         frame
     }
+}
+
+/// Rises from 0 to 1 between two numbers.
+fn ramp(number: f64, [from, to]: [f64; 2]) -> f64 {
+    ((number - from) / (to - from)).clamp(0.0, 1.0)
 }

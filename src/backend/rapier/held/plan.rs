@@ -266,11 +266,13 @@ impl Plan {
             .ends
             .each_ref()
             .map(|end| end.angular_velocity(&self.bodies));
+        let axis_mobility = Order::axis_mobility(&element, &line, &self.bodies);
         Order {
             row,
             from,
             facings,
             spins,
+            axis_mobility,
             element,
             line,
             pieces: Pieces::default(),
