@@ -1,4 +1,4 @@
-//! One component through one step: gather, wake, integrate, deliver.
+//! Takes one component through a step: reads it, decides whether it is awake, integrates it, and gives the result to the engine.
 
 use crate::backend::{Engine, Push, Seen, Sight};
 use crate::dynamics::body::Body;
@@ -17,43 +17,43 @@ use std::sync::atomic::Ordering;
 /// A component with its bodies and elements, kept from tick to tick.
 #[derive(Default)]
 pub(crate) struct Assembly {
-    /// Tells its component from others.
+    /// Hash that identifies its component.
     pub(crate) signature: u64,
-    /// Index of the group whose it is.
+    /// Index of its group.
     pub(crate) group: usize,
     pub(crate) component: Component,
-    /// Its bodies at the start of the step.
+    /// The bodies at the start of the step.
     start: Vec<Body>,
     seen: Vec<Seen>,
-    /// What each of them is to be given.
+    /// The push for each body.
     orders: Vec<Push>,
     pub(crate) state: State,
-    /// It was found asleep.
+    /// Whether it was found asleep.
     asleep: bool,
-    /// Its bodies are to be woken, or kept awake.
+    /// Whether its bodies must be woken or kept awake.
     rouse: bool,
-    /// Some body of it has colliders that had none, or the other way round.
+    /// Whether one of its bodies gained or lost its colliders.
     pub(crate) touch_changed: bool,
-    /// Some body of it can be moved no more.
+    /// Whether one of its bodies can no longer be moved.
     pub(crate) stale: bool,
     pub(crate) outcome: Outcome,
     pub(crate) warm: WarmStart,
 }
 
-/// What there is to do.
+/// What to do with a component in this step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) enum State {
-    /// Nothing: asleep, or not to be stepped.
+    /// Nothing, because the component is asleep or is not stepped.
     #[default]
     Resting,
-    /// No element acts, so their shares are taken back.
+    /// No element acts. The forces that elements gave to the bodies are removed.
     Powerless,
-    /// To be advanced.
+    /// The component must be integrated.
     Ready,
 }
 
 impl Assembly {
-    /// How much work it is to advance.
+    /// Number of elements to integrate.
     pub(crate) fn load(&self) -> usize {
         if self.state == State::Ready {
             self.component.elements.len()
@@ -67,12 +67,12 @@ impl Assembly {
         self.asleep
     }
 
-    /// Has everything about its elements read again in its next step, whenever that is.
+    /// Makes the next step of the component read everything about its elements again.
     pub(crate) fn read_anew(&mut self) {
         self.component.forget_points();
     }
 
-    /// Readies it for another component.
+    /// Forgets everything about its component, so that it can take another one.
     pub(crate) fn forget(&mut self) {
         self.component.forget();
         self.asleep = false;
@@ -121,7 +121,7 @@ impl Assembly {
         };
     }
 
-    /// Reads its bodies; says whether all can be moved.
+    /// Reads the bodies. Returns whether all of them can be moved.
     fn gather_bodies(
         &mut self,
         step: &Step,
@@ -163,7 +163,7 @@ impl Assembly {
         true
     }
 
-    /// Reads its elements, whose bodies have been read; says whether anything has been done to them.
+    /// Reads the elements. The bodies must have been read before. Returns whether an element changed or an end moved.
     fn gather_elements(
         &mut self,
         step: &Step,
@@ -196,7 +196,7 @@ impl Assembly {
         disturbed
     }
 
-    /// Integrates over the step, and works out what takes the bodies there.
+    /// Integrates over the step and computes the push for each body.
     pub(crate) fn advance(&mut self, step: &Step, accuracy: Accuracy) {
         if self.state != State::Ready {
             return;
@@ -224,7 +224,7 @@ impl Assembly {
         self.orders.extend(pushes);
     }
 
-    /// Gives the engine what takes the bodies there.
+    /// Gives each body its push.
     pub(crate) fn deliver(
         &mut self,
         step: &Step,
@@ -239,7 +239,7 @@ impl Assembly {
         if take(&mut self.rouse) {
             rouse(bodies, members.bodies, engine);
         }
-        // Taken, so that the step of another context does not advance it again.
+        // Reset the state, so that the step of another context does not integrate the component again.
         let ready = take(&mut self.state) == State::Ready;
         if ready && self.component.is_warm {
             return self.deliver_warm(step, members, elements, bodies, engine);

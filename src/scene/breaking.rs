@@ -1,11 +1,11 @@
-//! Elements that break.
+//! Breaks overloaded elements, after their readouts are written.
 
 use crate::element::{Breakable, SpringBroke, WhenBroken};
 use crate::readout::SpringReadout;
 use bevy::ecs::entity_disabling::Disabled;
 use bevy::prelude::*;
 
-/// Breaks what is loaded or stretched too far.
+/// Breaks each element whose force or length exceeds the limits in its [`Breakable`].
 pub(crate) fn break_overloaded(
     elements: Query<(Entity, &Breakable, &SpringReadout)>,
     mut commands: Commands,
@@ -16,7 +16,7 @@ pub(crate) fn break_overloaded(
             continue;
         }
         if limit.force.is_nan() || limit.length.is_nan() {
-            // Told as a fault.
+            // A NaN limit is reported as a fault.
             continue;
         }
         commands.trigger(SpringBroke {
@@ -27,7 +27,7 @@ pub(crate) fn break_overloaded(
         match limit.then {
             WhenBroken::Despawn => commands.entity(entity).try_despawn(),
             WhenBroken::Disable => {
-                // What it shows would break it again before the next step, once it is mended.
+                // When the element is enabled again, its old readout would break it again before the next step.
                 let slack = SpringReadout::default();
                 commands.entity(entity).try_insert((Disabled, slack));
             }

@@ -1,4 +1,4 @@
-//! A row as the integrator's element.
+//! Converts the row of an element to the integrator's element.
 
 use crate::backend::Sight;
 use crate::dynamics::body::Body;
@@ -38,7 +38,8 @@ impl Step {
     }
 }
 
-/// The integrator's element, its rest length captured if need be; or none, with the fault noted.
+/// Returns the integrator's element, or none if it has a fault, which is then stored in the row.
+/// Captures the rest length if there is none.
 pub(crate) fn element(row: &mut ElementRow, ends: [End; 2], bodies: &[Body]) -> Option<Element> {
     row.trouble.set_passing(None);
     let p = row.numbers;

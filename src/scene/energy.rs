@@ -1,4 +1,4 @@
-//! Where an element's energy comes from and goes.
+//! The energy of an element: what it stores, what it turns into heat, and the work that is done on it.
 
 use crate::dynamics::element::{Element, End};
 use crate::dynamics::law::Elastic;
@@ -7,7 +7,7 @@ use crate::scene::rows::ElementRow;
 use bevy::math::DVec3;
 
 impl ElementRow {
-    /// Tension without damping at a length, its slope, and the stored energy.
+    /// Tension at a length without damping, its slope, and the stored energy.
     pub(crate) fn elastic(&self, length: f64) -> Elastic {
         let rest_length = f64::from(self.numbers.rest_length.unwrap_or(0.0));
         match &self.law {
@@ -24,7 +24,7 @@ impl ElementRow {
         }
     }
 
-    /// Tension that damping adds.
+    /// Tension of the damper.
     pub(crate) fn drag(&self, length: f64, rate: f64) -> f64 {
         let rest_length = f64::from(self.numbers.rest_length.unwrap_or(0.0));
         match &self.law {
@@ -33,7 +33,7 @@ impl ElementRow {
         }
     }
 
-    /// Length and rate of a guided element whose ends are and move like this; takes note of its turns.
+    /// Length and rate of an element with an axis, for the given position and motion of its ends. Also counts its full turns.
     pub(crate) fn guided_extent(&mut self, ends: [End; 2]) -> (f64, f64) {
         let mut element = Element {
             ends,
@@ -56,13 +56,14 @@ impl ElementRow {
         }
     }
 
-    /// Energy of a lone element's motion about the common centre of mass, in the outside forces, and stored.
+    /// Energy of a lone element, J: kinetic energy about the common centre of mass, potential energy
+    /// of outside forces, and stored energy.
     pub(crate) fn energy_of(&self, pair: &Pair, state: &Separation, length: f64) -> f64 {
         let motion = 0.5 * state.v.length_squared() - pair.outside.dot(state.d);
         self.elastic(length).energy + motion * pair.inverse_mass.recip()
     }
 
-    /// Whether a law of a user's own gives numbers, for ends that are and move apart like this.
+    /// Whether a custom law gives finite numbers for the separation `d` of the ends (m) and its rate `v` (m/s).
     pub(crate) fn is_sound(&self, v: DVec3, d: DVec3) -> bool {
         if self.law.is_none() {
             return true;
@@ -72,7 +73,7 @@ impl ElementRow {
         (elastic.force + elastic.stiffness + elastic.energy + drag).is_finite()
     }
 
-    /// Whether it can lose energy.
+    /// Whether the element can dissipate energy.
     pub(crate) fn is_damped(&self) -> bool {
         match &self.law {
             Some(law) => law.damps(),
@@ -80,7 +81,7 @@ impl ElementRow {
         }
     }
 
-    /// Slope of the spring's force as of the last step, N/m.
+    /// Slope of the spring's force at the length after the last step, N/m.
     pub(crate) fn slope(&self) -> f64 {
         if self.law.is_none() {
             return f64::from(self.numbers.stiffness);
@@ -88,8 +89,8 @@ impl ElementRow {
         self.elastic(self.length).stiffness
     }
 
-    /// Energy of an element both of whose ends are moved by something else, over a step to this length and at
-    /// this rate: all of it is their work.
+    /// Adds the heat and work of a step of `time` seconds to the given length and rate, for an element whose ends are both moved
+    /// by something else. All its energy is work of these ends.
     pub(crate) fn account_for_moved(&mut self, (length, rate): (f64, f64), time: f64) {
         let heat = self.drag(length, rate) * rate * time;
         let stored = self.elastic(length).energy - self.elastic(self.length).energy;
@@ -99,7 +100,7 @@ impl ElementRow {
         }
     }
 
-    /// Takes in that the game has put an end elsewhere since the last step, so that it is so long now.
+    /// Adds the work of the game if it moved an end since the last step, so that the element now has the given length.
     pub(crate) fn account_for_leap(&mut self, length: f64) {
         if self.rare.places[0].is_some() && self.numbers.rest_length.is_some() {
             let leap = self.elastic(length).energy - self.elastic(self.length).energy;
@@ -109,7 +110,7 @@ impl ElementRow {
         }
     }
 
-    /// Takes in other numbers; what that changes in stored energy is work that was done.
+    /// Applies a change of parameters. The change of the stored energy counts as work.
     pub(crate) fn change(&mut self, change: impl FnOnce(&mut Self)) {
         let acted = self.rare.places[0].is_some() && self.numbers.rest_length.is_some();
         let before = self.elastic(self.length).energy;

@@ -1,4 +1,5 @@
-//! The components of a world that nothing but elements holds, through the step: all is read, all is solved, all is written.
+//! Takes the free components of a context through the step: those that neither contacts nor joints hold. The engine is written to
+//! only after all of them are read and solved.
 
 use crate::backend::{Engine, Sight};
 use crate::scene::assembly::Assembly;
@@ -11,21 +12,21 @@ use crate::threads;
 use bevy::prelude::Entity;
 use std::mem::take;
 
-/// Room for the work of a step.
+/// Buffers that are reused from step to step.
 #[derive(Default)]
 pub(crate) struct Spare {
     workers: Vec<Worker>,
-    /// What has become of each lone element.
+    /// Result of each lone element.
     ways: Vec<Way>,
-    /// What lone elements are assembled in that need the general solver,
+    /// Assemblies of the lone elements that need the general solver in this step.
     general: Vec<Assembly>,
-    /// and the components that they are.
+    /// Group index of each assembly in `general` that is in use.
     groups: Vec<u32>,
     runs: Runs,
 }
 
 impl Scene {
-    /// Takes every component of a world that is not held through the step; says whether all of them are asleep.
+    /// Takes all free components of a context through the step. Returns whether all of them are asleep.
     pub(crate) fn step_free(
         &mut self,
         context: Entity,
@@ -34,18 +35,18 @@ impl Scene {
         spare: &mut Spare,
     ) -> bool {
         let lone = self.lone.iter().position(|lone| lone.context == context);
-        // Read,
+        // Read. Lone elements are solved here, too.
         let networks_asleep = self.gather_networks(context, step, engine, &mut spare.runs);
         let lone_asleep = lone.is_none_or(|lone| self.solve_lone(lone, step, engine, spare));
         let general = self.gather_general(lone, step, engine, spare);
-        // solve,
+        // Solve.
         self.noting |= general > 0 || !self.assemblies.is_empty();
         let accuracy = step.accuracy.shared(general);
         for assembly in &mut spare.general[..general] {
             assembly.advance(step, accuracy);
         }
         advance(&mut self.assemblies, step);
-        // and write.
+        // Write.
         let (elements, bodies) = (&mut self.elements, &mut self.bodies);
         if let Some(lone) = lone {
             let lone = &self.lone[lone];
@@ -68,7 +69,7 @@ impl Scene {
         networks_asleep && lone_asleep
     }
 
-    /// Reads what is solved in an assembly of its own; says whether all of that is asleep.
+    /// Reads the components that have an assembly. Returns whether all of them are asleep.
     fn gather_networks(
         &mut self,
         context: Entity,
@@ -100,7 +101,7 @@ impl Scene {
         all_asleep
     }
 
-    /// Reads lone elements and solves them; says whether all of them are asleep.
+    /// Reads and solves lone elements. Returns whether all of them are asleep.
     fn solve_lone(
         &mut self,
         lone: usize,
@@ -109,7 +110,7 @@ impl Scene {
         spare: &mut Spare,
     ) -> bool {
         let lone = &self.lone[lone].pairs;
-        // Each is written anew.
+        // Every entry gets a new route below.
         spare.ways.resize(lone.len(), Way::default());
         let count = pieces(lone.len());
         let each = lone.len().div_ceil(count).max(1);
@@ -134,7 +135,7 @@ impl Scene {
         routes.all(|route| matches!(route, Route::Asleep | Route::None))
     }
 
-    /// Reads lone elements that need the general solver in this step; says how many they are.
+    /// Reads the lone elements that need the general solver in this step. Returns their number.
     fn gather_general(
         &mut self,
         lone: Option<usize>,
@@ -168,7 +169,7 @@ impl Scene {
         spare.groups.len()
     }
 
-    /// Gives lone elements an assembly of their own that will need the general solver again.
+    /// Gives an assembly to each lone element that will need the general solver in later steps, too.
     fn promote(&mut self, lone: Option<usize>, ways: &[Way]) {
         let Some(Lone { pairs, .. }) = lone.map(|lone| &mut self.lone[lone]) else {
             return;
@@ -187,8 +188,8 @@ impl Scene {
     }
 }
 
-/// Integrates all assemblies, on several threads where that is worth it; each is on its own, so the
-/// result is the same.
+/// Integrates all assemblies, on several threads if there is enough work. They share no data, so the number
+/// of threads does not change the result.
 fn advance(assemblies: &mut [Assembly], step: &Step) {
     if assemblies.is_empty() {
         return;

@@ -1,4 +1,4 @@
-//! Which elements have to be solved together.
+//! Finds the components of a scene: the elements that must be solved together, because they share bodies.
 
 use crate::scene::assembly::Assembly;
 use crate::scene::order::Neighbours;
@@ -7,32 +7,33 @@ use bevy::platform::collections::HashMap;
 use bevy::prelude::Entity;
 use std::ops::Range;
 
-/// One component: elements that share bodies, and those bodies.
+/// One component: elements that are connected through bodies, and these bodies.
 #[derive(Clone, Debug)]
 pub(crate) struct Group {
     elements: Range<u32>,
     bodies: Range<u32>,
-    /// A hash of its bodies and elements.
+    /// Hash of its bodies and elements.
     signature: u64,
-    /// Rapier's context, in which all of it is.
+    /// Entity of the Rapier context that contains its bodies.
     pub context: Entity,
-    /// Index of what it is assembled in; none for a lone element on bodies that it does not turn.
+    /// Index of its assembly; none for a lone element that does not turn its bodies.
     pub assembly: Option<u32>,
-    /// Contacts or joints hold some body of it.
+    /// Whether contacts or joints hold one of its bodies.
     pub held: bool,
-    /// The engine solves its elements,
+    /// Whether the engine solves its elements.
     pub inside: bool,
-    /// and it was asleep in the last step.
+    /// Whether it was asleep when the backend last read it for the engine's solver.
     pub is_asleep: bool,
 }
 
 impl Group {
-    /// Whether it is in a context, and nothing but elements holds it.
+    /// Whether it is in `context`, and neither contacts nor joints hold it.
     pub(crate) fn is_free(&self, context: Entity) -> bool {
         self.context == context && !self.held
     }
 
-    /// Has it, of this index, assembled in this, all of it read anew.
+    /// Adds `assembly` to `assemblies` as the assembly of this group, which has the index `index`.
+    /// Its next step reads everything anew.
     fn take(&mut self, index: usize, mut assembly: Assembly, assemblies: &mut Vec<Assembly>) {
         assembly.group = index;
         self.assembly = u32::try_from(assemblies.len()).ok();
@@ -42,7 +43,7 @@ impl Group {
     }
 }
 
-/// All components, as runs of two flat arrays.
+/// All components, as ranges of two flat arrays.
 #[derive(Default)]
 pub(crate) struct Groups {
     elements: Vec<u32>,
@@ -62,7 +63,7 @@ fn is_sound(row: &&ElementRow) -> bool {
     row.trouble.lasting().is_none()
 }
 
-/// The bodies as a forest of parents: those that elements join have the same root.
+/// Returns the parent of each body in a union-find forest. Bodies that elements connect have the same root.
 fn join(elements: &[ElementRow], bodies: usize) -> Vec<usize> {
     let mut parent: Vec<usize> = (0..bodies).collect();
     for row in elements.iter().filter(is_sound) {
@@ -74,8 +75,8 @@ fn join(elements: &[ElementRow], bodies: usize) -> Vec<usize> {
     parent
 }
 
-/// An order of elements that does not depend on when they or their bodies were spawned; these are the places of bodies within
-/// their components.
+/// Sort key of an element. It does not depend on when elements or bodies were spawned, except that elements with the same bodies,
+/// anchors and numbers are sorted by entity. `places` are the places of bodies within their components.
 fn rank(row: &ElementRow, places: &[u32]) -> impl Ord + use<> {
     let p = row.parameters();
     let on = [0, 1].map(|end| row.movable(end).map(|b| places[b]));
@@ -97,7 +98,7 @@ impl Groups {
     /// Finds the components of a scene, in the order of their first bodies.
     pub(crate) fn find(&mut self, elements: &[ElementRow], bodies: &[BodyRow]) {
         let mut parent = join(elements, bodies.len());
-        // A root is the least of its component, so it is met first.
+        // A root has the least index in its component, so the loop reaches it first.
         let mut of_body = Vec::with_capacity(bodies.len());
         let mut count = 0;
         for body in 0..bodies.len() {
@@ -156,7 +157,7 @@ impl Groups {
         }
     }
 
-    /// Puts all components, and elements and bodies within each, into another order: by these places of theirs.
+    /// Sorts all components, and the elements and bodies of each, by new places: `elements` and `bodies` have one for each row.
     pub(crate) fn arrange(&mut self, elements: &[u32], bodies: &[u32], rows: &[ElementRow]) {
         for group in &mut self.list {
             let members = &mut self.elements[span(&group.elements)];
@@ -172,7 +173,7 @@ impl Groups {
         });
     }
 
-    /// Gives every group that needs one its assembly: the one that it had, if it was there before.
+    /// Gives an assembly to every group that needs one. A group that existed before keeps its assembly.
     pub(crate) fn assign_assemblies(
         &mut self,
         assemblies: &mut Vec<Assembly>,
@@ -205,7 +206,7 @@ impl Groups {
         }
     }
 
-    /// Notes whether contacts or joints hold some body of a group.
+    /// Stores whether contacts or joints hold a body of a group.
     pub(crate) fn set_held(&mut self, group: usize, held: bool, elements: &mut [ElementRow]) {
         if std::mem::replace(&mut self.list[group].held, held) != held {
             for e in self.members(&self.list[group]).elements {
@@ -214,7 +215,7 @@ impl Groups {
         }
     }
 
-    /// Gives a lone element's group an assembly of its own after all.
+    /// Gives the group of a lone element an assembly.
     pub(crate) fn promote(&mut self, group: usize, assemblies: &mut Vec<Assembly>) {
         self.list[group].take(group, Assembly::default(), assemblies);
     }
@@ -227,7 +228,7 @@ impl Groups {
         &mut self.list[group]
     }
 
-    /// Indices of a group's elements and bodies.
+    /// Row indices of a group's elements and bodies.
     pub(crate) fn members(&self, group: &Group) -> Members<'_> {
         Members {
             elements: &self.elements[span(&group.elements)],
@@ -240,7 +241,8 @@ fn span(range: &Range<u32>) -> Range<usize> {
     range.start as usize..range.end as usize
 }
 
-/// Counting sort of (index, group), stable; returns where each group begins, and last where all end.
+/// Sorts (index, group) pairs by group with a stable counting sort. Returns the start of each group,
+/// and the total number at the end.
 fn sort(
     count: usize,
     items: impl Iterator<Item = (usize, usize)> + Clone,

@@ -1,19 +1,19 @@
-//! The scene: elements and the bodies they act on, kept from step to step, and what a step does with them. It knows engines
-//! by what [`crate::backend`] says of them, and by nothing else.
+//! The scene: elements, the bodies on which they act, and the stages of a step. It is kept from step to step and knows
+//! engines only through [`crate::backend`].
 //!
-//! A step runs through these, in this order:
+//! A step has these stages, in this order:
 //!
-//! 1. *find*: is the scene still the one that is known? [`refresh`] takes in changed numbers and moved ends; [`renew`] makes
-//!    all [`rows`] anew, and [`group`] the components that are solved together.
-//! 2. *read*, *solve* and *write*, in [`free`]: [`lone`] elements by themselves, all others in an [`assembly`] (networks of points
-//!    go on from the last step: [`warm_start`]). All is read before anything is solved, and all is solved before anything is
-//!    written: [`push`] says what a body is given. [`sleep`] and [`still`] leave out what rests.
-//!    What contacts or joints [`held`] hold, the engine's own room has solved before.
+//! 1. *find*: checks whether the known scene is still valid. [`refresh`] reads changed parameters and moved ends. If that is not
+//!    enough, [`renew`] makes all [`rows`] anew, and [`group`] finds the components that must be solved together.
+//! 2. *read*, *solve* and *write*, in [`free`]: [`lone`] elements are solved by themselves, all others in an [`assembly`].
+//!    Networks of points continue from the last step ([`warm_start`]). The engine is written to only after everything is read and
+//!    solved; [`push`] computes what each body is given. [`sleep`] and [`still`] skip what is at rest. Components that contacts
+//!    or joints hold ([`held`]) have been solved before, by the backend.
 //! 3. The engine steps.
-//! 4. *observe*: where has it taken everything? [`observe`], and [`energy`] says where the energy went.
-//! 5. *show*: readouts, and what was found: [`show`], [`report`], [`breaking`].
+//! 4. *observe*: [`observe`] reads where bodies and ends are now, and [`energy`] computes where the energy went.
+//! 5. *show*: [`show`] writes readouts, [`report`] reports faults, and [`breaking`] breaks overloaded elements.
 //!
-//! [`state`] holds it all, [`step`] is what all stages of a step share, [`kept`] is what snapshots keep.
+//! [`state`] holds the data of the scene, [`step`] what all components share within a step, and [`kept`] the data of snapshots.
 
 pub(crate) mod assembly;
 pub(crate) mod breaking;

@@ -1,4 +1,4 @@
-//! After the engine's step: where it has taken bodies, and with them the ends of each element.
+//! Runs after the engine's step. It reads where bodies are now, and with them the ends of each element.
 
 use crate::backend::{BodyId, Seen, Sight, Worlds};
 use crate::dynamics::element::{End, Path};
@@ -11,25 +11,25 @@ use bevy::math::{DQuat, DVec3};
 use bevy::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Rows above which it is worth waking other threads. Pinned by the benchmark `own/isolated`.
+/// Number of rows from which on several threads are worth their start-up time. Pinned by the benchmark `own/isolated`.
 const WORTH_SHARING: usize = 2048;
 
-/// What sees where stepped bodies are.
+/// Read access to the bodies after the step.
 struct Eyes<'a, W: Worlds> {
     worlds: &'a W,
-    /// The only world in which elements move bodies, if it is the only one.
+    /// The bodies of the only context in which elements move bodies; none if there may be several such contexts.
     only: Option<&'a W::Sight>,
-    /// Seconds of the step.
+    /// Duration of the step, s.
     time: f64,
-    /// The scene is not what it was thought to be.
+    /// Whether a body can no longer be moved, so that all rows must be made anew.
     stale: AtomicBool,
 }
 
-/// Position and velocity.
+/// Position (m) and velocity (m/s) of a point.
 type Moving = (DVec3, DVec3);
 
 impl Scene {
-    /// Finds where the step has taken everything.
+    /// Reads the new state of all bodies and elements.
     pub(crate) fn observe(&mut self, worlds: &impl Worlds) {
         let only = match &self.lone[..] {
             [lone] if self.assemblies.is_empty() => worlds.of(lone.context),
@@ -58,7 +58,7 @@ impl Scene {
     }
 }
 
-/// How many rows a piece of work has.
+/// Number of rows in each piece of work, of `rows` in all.
 pub(crate) fn share_of(rows: usize) -> usize {
     if rows < WORTH_SHARING {
         return rows.max(1);
@@ -74,7 +74,7 @@ impl<'a, W: Worlds> Eyes<'a, W> {
         self.worlds.of(context)?.see(body)
     }
 
-    /// A body that elements move.
+    /// State of a body that elements move.
     #[inline(always)]
     fn see(&self, row: &BodyRow) -> Option<Seen> {
         let world = match self.only {
@@ -82,14 +82,14 @@ impl<'a, W: Worlds> Eyes<'a, W> {
             None => self.worlds.of(row.rare.context),
         };
         let seen = world.and_then(|world| world.see(row.id));
-        // The engine takes bodies out that it cannot step.
+        // The engine removes or disables bodies that it cannot step.
         if seen.as_ref().is_none_or(|seen| !seen.is_movable) {
             self.stale.store(true, Ordering::Relaxed);
         }
         seen
     }
 
-    /// Notes where a body is that several elements may ask for.
+    /// Stores the position and velocity of a body, because several elements may read them.
     fn note(&self, row: &mut BodyRow) {
         let known = row.has(BodyFlags::NOTED) && !row.has(BodyFlags::FRESH);
         if known || row.has(BodyFlags::IS_ALONE) {
@@ -106,7 +106,7 @@ impl<'a, W: Worlds> Eyes<'a, W> {
 }
 
 impl ElementRow {
-    /// Whether anything about it can have changed in the step.
+    /// Whether the element can have changed in the step.
     #[inline(always)]
     pub(crate) fn is_seen(&self, bodies: &[BodyRow], stepped: &Stepped) -> bool {
         let acts = self.has(ElementFlags::ACTIVE) || self.moves() == 0;
@@ -114,13 +114,13 @@ impl ElementRow {
             && (!stepped.some_rest || self.has_acted(bodies, stepped))
     }
 
-    /// Finds its length and rate after the step, and notes where its ends are.
+    /// Updates the length and rate of the element, and stores where its ends are.
     fn observe(&mut self, bodies: &[BodyRow], eyes: &Eyes<impl Worlds>) {
         let led = self.moves() == 0 && self.rare.places[0].is_some();
-        // Each by itself, not as an array that is filled: this is asked of every element.
+        // Two calls are faster than a loop that fills an array, and this runs for every element.
         let points = [self.point(0, bodies, eyes), self.point(1, bodies, eyes)];
         if self.numbers.rest_length.is_none() {
-            // No movable body: it took no part in the solve.
+            // An element without a movable body is not solved, so its rest length is captured only here.
             let length = self.extent(points, eyes.worlds).0;
             self.numbers.rest_length = Some(length as f32);
             self.flags.insert(ElementFlags::CAPTURED);
@@ -130,7 +130,7 @@ impl ElementRow {
         }
         let wound = self.rare_angle();
         let (length, rate) = self.extent(points, eyes.worlds);
-        // In a step that its solver loses, Rapier gives kinematic bodies a velocity that is no number.
+        // If Rapier's solver fails in a step, kinematic bodies get a velocity that is not finite.
         let seen = (length, if rate.is_finite() { rate } else { 0.0 });
         let seen = match &self.inside {
             None => seen,
@@ -142,7 +142,7 @@ impl ElementRow {
         (self.length, self.rate) = seen;
     }
 
-    /// Notes where its ends are, which may have moved.
+    /// Stores where the ends of the element are after the step.
     fn note_places(&mut self, points: [Moving; 2], worlds: &impl Worlds) {
         let placed = !self.is_any_watched() && self.moves() == 2;
         self.flags.set(ElementFlags::PLACED, placed);
@@ -187,7 +187,7 @@ impl ElementRow {
         }
     }
 
-    /// Length and its rate; of a guided element the distance along its axis, or its twist, whose turns are counted.
+    /// Length and rate. For an element with an axis these are the distance along the axis, or the twist with full turns counted.
     #[inline(always)]
     fn extent(&mut self, [a, b]: [Moving; 2], worlds: &impl Worlds) -> (f64, f64) {
         if !self.has(ElementFlags::IS_PLAIN) && self.rare.guide != Guide::Centres {
@@ -208,7 +208,7 @@ impl ElementRow {
         (length, (b.1 - a.1).dot(direction))
     }
 
-    /// Last twist; of what has none nobody asks.
+    /// Last twist, rad; 0 for a plain element, which has none.
     fn rare_angle(&self) -> f64 {
         if self.has(ElementFlags::IS_PLAIN) {
             0.0
@@ -217,7 +217,8 @@ impl ElementRow {
         }
     }
 
-    /// Takes in how a step inside the engine's solver went: there the rate is that of the length, not the engine's.
+    /// Updates the element after a step inside the engine's solver. Returns its length and its mean rate over the step, because
+    /// the engine's velocities are those of its last substep.
     fn arrive(
         &mut self,
         (length, rate): (f64, f64),
@@ -257,14 +258,14 @@ impl ElementRow {
     }
 }
 
-/// Rotation and angular velocity of what holds an end, after the step.
+/// Rotation and angular velocity (rad/s), after the step, of the body that holds an end.
 fn frame(held: &Held, worlds: &impl Worlds) -> (DQuat, DVec3) {
     let Held::Body { body, context, .. } = *held else {
         return (DQuat::IDENTITY, DVec3::ZERO);
     };
     let body = worlds.of(context).and_then(|world| world.see(body));
     body.map_or((DQuat::IDENTITY, DVec3::ZERO), |body| {
-        // Not where it is going: the step is over.
+        // The present angular velocity counts, not that of a coming step.
         (body.facing(), body.spin.as_dvec3())
     })
 }

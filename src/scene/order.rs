@@ -1,24 +1,24 @@
-//! The order in which bodies of a component stand: what elements join stands close together in memory, and when anything was
-//! spawned changes nothing.
+//! Finds the order of bodies within a component. Bodies that elements connect are close together in memory, and the order does
+//! not depend on when anything was spawned.
 //!
-//! Breadth first from a body at the rim, as E. Cuthill and J. McKee (1969) number the rows of a sparse matrix; where they leave
-//! a choice, a body's rank decides.
+//! The order is breadth first from a body at the rim, as E. Cuthill and J. McKee (1969) number the rows of a sparse matrix. Where
+//! their method leaves a choice, the rank of a body decides.
 
 use super::rows::{BodyRow, ElementRow};
 
-/// Which bodies elements join.
+/// The neighbours of each body: the bodies to which elements connect it.
 pub(crate) struct Neighbours {
-    /// Where those of a body begin among all.
+    /// Start of each body's neighbours in `all`.
     starts: Vec<u32>,
     all: Vec<u32>,
-    /// Which walk over its component has met a body last.
+    /// Number of the last walk that reached each body.
     met: Vec<u32>,
     walk: u32,
     queue: Vec<u32>,
 }
 
 impl Neighbours {
-    /// Of these rows, as far as they are `sound`.
+    /// Finds the neighbours of all bodies. Only elements for which `sound` returns true count.
     pub(crate) fn of(
         elements: &[ElementRow],
         bodies: &[BodyRow],
@@ -61,12 +61,12 @@ impl Neighbours {
         self.starts[body] as usize..self.starts[body + 1] as usize
     }
 
-    /// Puts the bodies of a component, the one of least rank first, into their order.
+    /// Sorts the bodies of a component. On entry, the body of least rank must be the first.
     pub(crate) fn arrange(&mut self, component: &mut [u32]) {
         let Some(first) = component.first().copied() else {
             return;
         };
-        // The last one met is far from the first: at the rim.
+        // The body that the walk reaches last is far from the first body, so it is at the rim.
         self.go(first);
         if let Some(rim) = self.queue.last().copied() {
             self.go(rim);
@@ -76,7 +76,7 @@ impl Neighbours {
         }
     }
 
-    /// Meets all bodies of a component, the nearest first.
+    /// Walks over the component of a body, nearest bodies first, and fills the queue with the bodies in that order.
     fn go(&mut self, from: u32) {
         self.walk += 1;
         self.queue.clear();

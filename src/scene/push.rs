@@ -1,4 +1,4 @@
-//! What a body has to be given to end the step where the integrator did.
+//! Computes what a body must be given so that the engine's step ends where the integrator's step ended.
 
 use super::rows::{BodyFlags, BodyRow};
 use super::step::Step;
@@ -13,21 +13,21 @@ use bevy::math::{DVec3, Vec3};
 #[derive(Clone, Copy)]
 pub(crate) struct Terms {
     pub schedule: Schedule,
-    /// It is given a second substep for that.
+    /// Whether the body must be given a second substep for this schedule.
     pub second_substep: bool,
 }
 
-/// What a body is given that is moved and not turned.
+/// What is given to a body that is moved but not turned.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Given {
-    /// At the start of the step, m/s.
+    /// Velocity at the start of the step, m/s.
     pub velocity: Vec3,
-    /// Over it, N.
+    /// Force over the step, N.
     pub force: Vec3,
 }
 
 impl Given {
-    /// What the engine is told; `restless`: the body has to be kept awake.
+    /// Returns the push for the engine. `restless` says whether the body must be kept awake.
     #[inline(always)]
     pub(crate) fn push(&self, restless: bool, second_substep: bool) -> Push {
         Push {
@@ -53,14 +53,14 @@ impl From<Push> for Given {
     }
 }
 
-/// In single precision, and finite whatever it was.
+/// Rounds to single precision. Numbers that are too large become the largest finite number.
 fn finite(v: DVec3) -> Vec3 {
     Vec3::from(v.to_array().map(single))
 }
 
 impl Step {
-    /// The velocity that a body is given for the start of the step, and the acceleration that it must have over
-    /// it, to move so far and reach such a velocity.
+    /// Returns the velocity at the start of the step and the constant acceleration over the step with which a body moves by
+    /// `displacement` and ends with the velocity `reached`.
     #[inline(always)]
     fn straight(
         &self,
@@ -73,13 +73,13 @@ impl Step {
         let wanted = schedule.reach(displacement - time * velocity, reached - velocity);
         let planned = schedule.capped(wanted, velocity, self.plan.fastest);
         let given = (velocity + planned.jump).as_vec3();
-        // The engine's velocity is rounded; the force makes up for it.
+        // The engine stores velocities in single precision. The force corrects the rounding error.
         let rounding = velocity + planned.jump - given.as_dvec3();
         let rate = planned.rate + rounding * schedule.per_time;
         (given, rate)
     }
 
-    /// What takes a body on that is moved and not turned, and asks for so many substeps more than others.
+    /// The push of a body that is moved but not turned. `more` is the number of extra substeps for which the body asks.
     #[inline(always)]
     pub(crate) fn push_point(&self, more: usize, point: &FreePoint, flight: &Flight) -> Push {
         let terms = self.terms(more);
@@ -101,7 +101,7 @@ impl Step {
         }
     }
 
-    /// What takes a body from its start to its end.
+    /// The push that takes a body from `start` to `end` over the step.
     pub(crate) fn push(&self, seen: &Seen, start: &Body, end: &Body) -> Push {
         let terms = self.terms(seen.more_substeps);
         let (velocity, linear) = self.straight(
@@ -141,7 +141,7 @@ impl Step {
 }
 
 impl BodyRow {
-    /// The centre of mass of a body that nothing locks, before a step.
+    /// The centre of mass of a body without locked axes, before a step.
     #[inline(always)]
     pub(crate) fn point(&self, seen: &Seen) -> FreePoint {
         let inverse_mass = f64::from(seen.inverse_mass);
@@ -153,7 +153,7 @@ impl BodyRow {
         }
     }
 
-    /// Gives the body what elements push it with over the coming step, if their force and torque are numbers.
+    /// Gives the body the push of its elements for the coming step. If force or torque is not finite, both are replaced by zero.
     #[inline(always)]
     pub(crate) fn give(&mut self, push: &Push, tick: u32, engine: &mut impl Engine) {
         let Wrench { force, torque } = push.share;

@@ -1,4 +1,4 @@
-//! Changed numbers and moved ends, taken into rows that are otherwise the same.
+//! Updates existing rows at the start of a step if only parameters have changed or ends have moved.
 
 use crate::backend::{Finder, Place};
 use crate::input::check::{Fault, Parameters, Ties};
@@ -10,7 +10,7 @@ use crate::scene::state::Scene;
 use bevy::ecs::entity::EntityHashSet;
 use bevy::prelude::*;
 
-/// Takes in changed numbers and moved ends; says whether the rows still fit the elements.
+/// Reads changed parameters and moved ends. Returns whether the rows still fit the elements; if not, they must be made anew.
 pub(crate) fn refresh(
     scene: &mut Scene,
     elements: &Query<Parts, Acts>,
@@ -29,7 +29,7 @@ pub(crate) fn refresh(
         shifted,
         ..
     } = scene;
-    // What changes while nothing is stepped is kept for the step that comes.
+    // A change while the context is not stepped is kept until its next step.
     marked.retain(|index| {
         let row = &mut rows[*index];
         let waits = !row.has_acted(bodies, stepped);
@@ -40,7 +40,7 @@ pub(crate) fn refresh(
         *shifted = false;
     }
     for entity in changed.chain(companions.touched.iter().copied()) {
-        // Anchors and companions can stand where no element is.
+        // Anchors and companion components may be on an entity that is no element.
         let Ok(parts) = elements.get(entity) else {
             continue;
         };
@@ -71,7 +71,7 @@ pub(crate) fn refresh(
     })
 }
 
-/// Gives an element new numbers and laws; says whether its row can be as it is otherwise.
+/// Gives an element new parameters and laws. Returns whether the rest of its row is still valid.
 fn refit(
     row: &mut ElementRow,
     (companion, parameters): (Companion, Parameters),
@@ -95,7 +95,8 @@ fn refit(
     true
 }
 
-/// Looks for an end again; says whether it is still the same kind of end, and if it has moved.
+/// Looks for an end again and updates the row if the end has moved; then also sets `shifted`. Returns
+/// whether the row is still valid.
 fn follow(
     row: &mut ElementRow,
     end: usize,
@@ -126,7 +127,7 @@ fn follow(
             }),
         ) if *body == now_on && *context == now_in => {
             if *local != now_at {
-                // Whether it turns the body may have changed.
+                // The element may turn the body now.
                 if on.is_some_and(|b| !bodies[b].has(BodyFlags::TURNS)) {
                     return false;
                 }
@@ -136,7 +137,7 @@ fn follow(
             true
         }
         (Held::Path { from, to }, Ok(Place::Point(now))) => {
-            // Where it was after the last step.
+            // The path begins where the end was after the last step.
             *from = row.rare.places[end].unwrap_or(now);
             *to = now;
             *shifted |= from != to;
@@ -146,7 +147,7 @@ fn follow(
     }
 }
 
-/// Looks at an inert element again; says whether it still is.
+/// Checks an element with a fault again and reports its present fault. Returns false if the element has no fault any more.
 pub(crate) fn still_faulty(
     row: &mut ElementRow,
     companions: &Companions,
@@ -167,7 +168,7 @@ pub(crate) fn still_faulty(
     }
 }
 
-/// What is wrong with an inert element now.
+/// Checks an element that has a fault as if it were new. Returns an error if it still has a fault.
 fn judge(
     row: &mut ElementRow,
     companions: &Companions,

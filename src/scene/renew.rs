@@ -1,4 +1,4 @@
-//! All rows anew: elements and bodies entered, what was known of both carried over.
+//! Makes the rows of all elements and bodies anew, and keeps what is remembered of both.
 
 use crate::backend::{Finder, Found, Place};
 use crate::dynamics::guide::Guide;
@@ -16,8 +16,8 @@ use bevy::prelude::*;
 use std::mem::take;
 
 impl Scene {
-    /// Makes all rows anew. Bodies stand in the order of their entities, and within a component elements
-    /// in an order of their own, so that the order in which elements were spawned changes nothing.
+    /// Makes all rows anew. Bodies are in the order of their entities. The order of elements within a component does not depend
+    /// on the order in which they were spawned.
     pub(crate) fn renew(
         &mut self,
         elements: &Query<Parts, Acts>,
@@ -34,7 +34,7 @@ impl Scene {
         for (index, parts) in elements.iter().enumerate() {
             let is_new = self.place_row(parts.entity, index);
             let row = &mut self.elements[index];
-            // What changed while nothing was stepped has yet to act.
+            // A change while the context is not stepped still has to act.
             let waits =
                 row.has(ElementFlags::CHANGED) && !row.has_acted(&self.bodies, &self.stepped);
             let changed = waits
@@ -70,7 +70,7 @@ impl Scene {
         self.number_groups();
     }
 
-    /// Ties rows of elements to those of their bodies.
+    /// Connects rows of elements with the rows of their bodies.
     fn hold_ends(&mut self, found_all: &[Option<Found>]) {
         for (index, (row, found)) in self.elements.iter_mut().zip(found_all).enumerate() {
             let Some(found) = found else { continue };
@@ -93,23 +93,23 @@ impl Scene {
         }
     }
 
-    /// Notices bodies that other elements act on than before, when these were their signatures.
+    /// Marks bodies on which other elements act than before. `before` are the earlier signatures of the bodies.
     fn notice_other_elements(&mut self, before: &[u64]) {
         for (body, before) in self.bodies.iter_mut().zip(before) {
             if *before != body.rare.signature {
                 body.flags.insert(BodyFlags::DISTURBED);
-                // Other elements may push it elsewhere.
+                // Other elements may push the body elsewhere, so contacts must be looked for again.
                 body.clear = 0;
             }
         }
     }
 
-    /// What moves nothing any more is in no component.
+    /// Cleans up elements that move no body any more and therefore are in no component.
     fn leave_what_moves_nothing(&mut self) {
         for row in &mut self.elements {
             if row.moves() == 0 {
                 self.left.extend(row.take_inside());
-                // Nothing solves it, so nothing can go wrong in that.
+                // The element is not solved, so it cannot have a fault from solving.
                 row.trouble.set_passing(None);
             }
         }
@@ -119,7 +119,7 @@ impl Scene {
             .any(|row| row.trouble.lasting().is_none() && row.moves() == 0);
     }
 
-    /// Tells bodies of their components, and gives these what they are solved in.
+    /// Stores in each body the index of its component, and gives components their assemblies.
     pub(crate) fn number_groups(&mut self) {
         self.handles.clear();
         for (g, group) in self.groups.list().iter().enumerate() {
@@ -147,7 +147,8 @@ impl Scene {
         });
     }
 
-    /// Brings the row of an element to its place, after all those before it; says whether it is a new one.
+    /// Moves the row of an element to `index`. All rows before it must be in place already. Makes a row for a new
+    /// element. Returns whether the element is new.
     fn place_row(&mut self, entity: Entity, index: usize) -> bool {
         let rows = &mut self.elements;
         if rows.get(index).is_some_and(|row| row.entity == entity) {
@@ -164,8 +165,8 @@ impl Scene {
         known.is_none()
     }
 
-    /// Rows of all movable bodies: those that there are, if they are still the same. Returns which elements acted on each
-    /// before, as a hash.
+    /// Makes the rows of all movable bodies. The row of a body that is still the same is kept. Returns for each body a hash of
+    /// the elements that acted on it before.
     fn enter_bodies(&mut self, found_all: &[Option<Found>], modified: &EntityHashSet) -> Vec<u64> {
         let mut wanted: Vec<_> = found_all.iter().flatten().flat_map(Wanted::of).collect();
         wanted.sort_unstable_by_key(|body| body.entity);
@@ -184,13 +185,13 @@ impl Scene {
             if modified.contains(&row.entity) {
                 row.flags.insert(BodyFlags::DISTURBED);
             }
-            // A new one is disturbed anyway.
+            // A new body has no earlier signature. It is marked as disturbed anyway.
             take(&mut row.rare.signature)
         })
         .collect()
     }
 
-    /// Rows of these bodies; of one that no element moves any more it is noted what it has besides forces.
+    /// Replaces the rows of bodies. If no element moves a body any more, its changed settings are stored, to be restored later.
     fn replace_bodies(&mut self, wanted: &[Wanted]) {
         self.index.clear();
         let before = take(&mut self.bodies);
@@ -217,14 +218,14 @@ impl Scene {
 }
 
 impl ElementRow {
-    /// Whether what it has in the engine's solver is in another world than its ends.
+    /// Whether its joints in the engine's solver are in another context than one of its ends.
     fn is_elsewhere(&self, found: &Found) -> bool {
         let inside = self.inside.as_ref().and_then(|inside| inside.context);
         let is_other = |place: &Place| matches!(place, Place::OnBody { context, .. } if Some(*context) != inside);
         inside.is_some() && found.places.iter().any(is_other)
     }
 
-    /// Reads an element's components as if it were new; says where its ends are, or what is wrong with it.
+    /// Reads the components of an element as if it were new. Returns where its ends are, or its fault.
     fn read_anew(
         &mut self,
         parts: &PartsItem,
@@ -234,14 +235,14 @@ impl ElementRow {
         commands: &mut Commands,
     ) -> Result<Found, Fault> {
         let entity = parts.entity;
-        // Its coefficients have been worked out, and no step has been since.
+        // Whether its coefficients were computed in an earlier tick and there was no step since.
         let waits = self.has(ElementFlags::TUNED);
         self.reset();
         let parameters = parts
             .parameters()
             .inspect_err(|_| self.set_parameters(Parameters::NONE))?;
         if !parameters.ties.is_held_like(&self.rare.ties) {
-            // What is remembered belongs to other ends.
+            // The remembered state belongs to other ends.
             self.rare.places = [None; 2];
             self.rare.scales = [None; 2];
             self.set_direction(None);

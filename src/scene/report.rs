@@ -1,11 +1,11 @@
-//! What is wrong with an element, or too stiff in it, is said once.
+//! Reports faults of elements, and elements that are too stiff. Each is reported once.
 
 use crate::element::{AwaitsEnds, EndNames, SpringFault};
 use crate::input::say::{Stays, say};
 use crate::scene::rows::ElementRow;
 use bevy::prelude::*;
 
-/// Says once what is wrong with an element, and takes it back once it is mended.
+/// Reports a new fault of an element once. When the fault is gone, removes its [`SpringFault`].
 pub(crate) fn report(row: &mut ElementRow, commands: &mut Commands) {
     let Some(news) = row.trouble.news() else {
         return;
@@ -27,7 +27,7 @@ pub(crate) fn report(row: &mut ElementRow, commands: &mut Commands) {
     let mut element = commands.entity(row.entity);
     element.queue_silenced(move |mut element: EntityWorldMut| {
         say(&mut element, fault, stays);
-        // An end that went is looked for by its name again.
+        // If an end was despawned, look for it by its name again.
         let is_gone = |end| element.world().get_entity(end).is_err();
         if stays == Stays::UntilMended
             && element.contains::<EndNames>()
@@ -38,10 +38,10 @@ pub(crate) fn report(row: &mut ElementRow, commands: &mut Commands) {
     });
 }
 
-/// Names in one message.
+/// Greatest number of elements that one message names.
 const MOST_NAMED: usize = 3;
 
-/// Says of elements that they are too stiff to be followed: one message for all that were found in a step.
+/// Reports elements whose vibration is too stiff to be followed, in one message for all that were found in a step.
 pub(crate) fn report_unresolved(elements: Vec<Entity>, commands: &mut Commands) {
     if elements.is_empty() {
         return;

@@ -1,4 +1,4 @@
-//! Runs of networks that share no rows with other runs, so that several threads read them.
+//! Divides networks into runs. Two runs share no rows, so several threads can read them.
 
 use crate::scene::assembly::Assembly;
 use crate::scene::group::Groups;
@@ -6,25 +6,26 @@ use crate::scene::rows::{BodyRow, Cut, ElementRow};
 use crate::threads;
 use std::mem::take;
 
-/// Elements of networks that are about to be read or solved, above which it is worth waking other threads. Pinned by the benchmark
-/// `own/isolated/turning`.
+/// Number of elements in networks from which on several threads are worth their start-up time, to read or to solve them. Pinned
+/// by the benchmark `own/isolated/turning`.
 pub(crate) const WORTH_SHARING: usize = 256;
 
-/// Runs for each thread: what one has done sooner, another need not wait for.
+/// Number of runs per thread. With several runs, a thread that is done early can take work from others.
 const RUNS: usize = 4;
 
-/// Places among the rows of elements and of bodies.
+/// Indices into the rows of elements and of bodies.
 type Places = [usize; 2];
 
-/// Where each run ends.
+/// Division of networks and rows into runs.
 #[derive(Default)]
 pub(crate) struct Runs {
+    /// End of each run.
     ends: Vec<End>,
-    /// First rows of each network and all that come after it.
+    /// For each network, from the last to the first: the least rows of this network and all later ones.
     firsts: Vec<Places>,
 }
 
-/// Where one ends among the networks and the rows.
+/// End of a run: index after its last network, and after its last rows.
 #[derive(Clone, Copy)]
 struct End {
     network: usize,
@@ -32,8 +33,7 @@ struct End {
 }
 
 impl Runs {
-    /// Finds the runs. Where rows of networks lie between those of others, they are in one; how many there are changes nothing
-    /// of what comes out.
+    /// Finds the runs. Networks whose rows interleave are in the same run. The number of runs does not change the result.
     pub(crate) fn find(&mut self, assemblies: &[Assembly], groups: &Groups) {
         self.ends.clear();
         let members = |assembly: &Assembly| groups.members(&groups.list()[assembly.group]);
@@ -80,7 +80,7 @@ impl Runs {
         });
     }
 
-    /// Cuts networks and rows there.
+    /// Splits networks and rows at the ends of the runs.
     pub(crate) fn cut<'a>(
         &'a self,
         mut assemblies: &'a mut [Assembly],

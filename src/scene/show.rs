@@ -1,4 +1,4 @@
-//! What an element shows after a step.
+//! Writes the results of a step into the components of elements: readouts, captured rest lengths and computed coefficients.
 
 use crate::dynamics::single;
 use crate::element::{Spring, SpringDamper, SpringTuning, TorsionSpring, TorsionSpringDamper};
@@ -13,14 +13,14 @@ use bevy::ecs::change_detection::ContiguousMut;
 use bevy::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// What was found of an element and is to be written into its components.
+/// Flags of an element that has results to write into its components.
 const FOUND: ElementFlags = ElementFlags::TUNED.union(ElementFlags::CAPTURED);
 
-/// ω·dt of a micro-step beyond which an element's own vibration is not followed, rad: the closed form turns by half a
-/// period there. Pinned by `what_cannot_be_followed_is_told_once`.
+/// ω·dt of a micro-step above which an element's own vibration is not followed, rad. There a step of the closed form is half a
+/// period. Pinned by `what_cannot_be_followed_is_told_once`.
 const UNRESOLVED: f32 = 2.0;
 
-/// What a captured rest length or angle is written into.
+/// Components into which a captured rest length or angle and computed coefficients are written.
 pub(crate) type Springs<'a> = (
     Option<&'a mut Spring>,
     Option<&'a mut SpringDamper>,
@@ -29,11 +29,11 @@ pub(crate) type Springs<'a> = (
     Option<&'a SpringTuning>,
 );
 
-/// What elements show.
+/// Readouts of all elements.
 pub(crate) type Readouts<'w, 's> = Query<'w, 's, (Entity, &'static mut SpringReadout), Acts>;
 
 impl Scene {
-    /// Writes readouts, captured rest lengths, and faults found while solving.
+    /// Writes readouts and captured values, and reports faults found while solving.
     pub(crate) fn show(
         &mut self,
         readouts: &mut Readouts,
@@ -70,8 +70,8 @@ impl Scene {
         self.stale |= seen.is_unordered && !self.unordered;
     }
 
-    /// Writes the readouts of rows that stand in the query's order. If something came, went or got other components since they
-    /// were made, there are others, and the rows are made anew.
+    /// Writes the readouts of rows that are in the order of the query. If elements appeared, disappeared or got other components
+    /// since the rows were made, some rows are out of order. Then all rows are made anew.
     fn show_in_order(&self, readouts: &mut Readouts) -> SeenInOrder {
         let (time, mut rest) = (self.time, &self.elements[..]);
         let (bodies, stepped) = (&self.bodies, &self.stepped);
@@ -108,7 +108,7 @@ impl Scene {
         let is_unordered = is_unordered.into_inner();
         let is_incomplete = is_unordered || !rest.is_empty();
         SeenInOrder {
-            // What was not met may have some.
+            // A row that was not reached may have news, too.
             has_news: has_news.into_inner() || is_incomplete,
             is_unordered,
             is_incomplete,
@@ -116,13 +116,13 @@ impl Scene {
     }
 }
 
-/// What there was where rows and readouts were gone through side by side.
+/// Result of writing readouts in the order of the query.
 struct SeenInOrder {
-    /// Some element has something to tell.
+    /// Whether some element has something to report or to write back.
     has_news: bool,
-    /// Some readout was not that of the row in its place.
+    /// Whether some readout was not at the place of its row.
     is_unordered: bool,
-    /// Some rows have not met their readouts.
+    /// Whether the readouts of some rows were not written.
     is_incomplete: bool,
 }
 
@@ -133,19 +133,19 @@ impl ElementRow {
         self.flags.intersects(FOUND) || self.trouble.has_news()
     }
 
-    /// Whether its own vibration is too fast for the micro-steps that it may have.
+    /// Whether its own vibration is too fast for the micro-steps that it may take.
     #[inline(always)]
     fn is_unresolved(&self, readout: &SpringReadout) -> bool {
         self.solved.unresolved && readout.omega_dt > UNRESOLVED * readout.microsteps as f32
     }
 
-    /// Whether it is, and that was not said before.
+    /// Whether its own vibration is too fast and that was not reported before.
     #[inline(always)]
     fn is_unresolved_news(&self, readout: &SpringReadout) -> bool {
         self.is_unresolved(readout) && !self.has(ElementFlags::TOLD_UNRESOLVED)
     }
 
-    /// Tells what was found in this tick: faults, captured rest lengths, coefficients that were worked out.
+    /// Reports faults, and writes back rest lengths that were captured and coefficients that were computed in this tick.
     fn tell(&mut self, springs: &mut Query<Springs, IsElement>, commands: &mut Commands) {
         report(self, commands);
         if !self.flags.intersects(FOUND) {
@@ -161,13 +161,13 @@ impl ElementRow {
         }
     }
 
-    /// Writes a captured rest length into the element's component, and coefficients that were worked out.
+    /// Writes a captured rest length and computed coefficients into the element's component.
     fn write_back(&self, tuned: bool, springs: &mut Query<Springs, IsElement>) {
         let Ok((spring, pair, torsion, torsion_pair, tuning)) = springs.get_mut(self.entity) else {
             return;
         };
         let p = &self.numbers;
-        // What a sag makes of the rest length is found anew with the stiffness.
+        // With `Sag` the rest length is computed again together with the stiffness, so the present one is not written.
         let again = tuned && self.has(ElementFlags::TUNED_AGAIN);
         let passing = again && matches!(tuning, Some(SpringTuning::Sag { .. }));
         let write = |rest: &mut Option<f32>, stiffness: &mut f32, damping: Option<&mut f32>| {
@@ -199,7 +199,7 @@ impl ElementRow {
         }
     }
 
-    /// What it shows after a step of `time` seconds.
+    /// The readout after a step of `time` seconds.
     #[inline(always)]
     fn read_out(&self, time: f64) -> SpringReadout {
         let (length, rate) = (self.length, self.rate);

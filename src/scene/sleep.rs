@@ -1,34 +1,36 @@
-//! A body may sleep only where it would really stay.
+//! Decides when bodies of a component may fall asleep: only where they would really stay.
 //!
-//! Rapier puts a body to sleep after half a second below a speed that a slow spring never exceeds, and
-//! a body at its turning point is slow too. So bodies of a component have their timers set back until
-//! each has been at rest, and at the same place, for longer than a turning point lasts; and one that is
-//! disturbed is woken as a whole.
+//! Rapier puts a body to sleep after half a second below a certain speed. A slow spring never exceeds that speed, and a body at
+//! its turning point is slow, too. So the sleep timers of a component's bodies are reset until each body has rested at the same
+//! place for longer than a turning point lasts. If a component is disturbed, all its bodies are woken.
 
 use crate::backend::{Engine, Seen, Sight};
 use crate::dynamics::body::Body;
 use crate::scene::rows::{BodyFlags, BodyRow, ElementRow, Members, Rest, Rows, RowsMut, take};
 use crate::scene::step::Step;
 
-/// Speed (m/s, rad/s; times the engine's length unit) that counts as rest.
+/// Speed below which a body counts as resting: m/s, times the engine's length unit, and rad/s.
 const REST: f32 = 2e-4;
 
-/// Speed that counts as rest of what contacts or joints hold, m/s. Pinned by `ground::heap`.
+/// Speed below which a body that contacts or joints hold counts as resting, m/s, times the engine's
+/// length unit. Pinned by `ground::heap`.
 const HELD_REST: f32 = 2e-2;
 
-/// Speed at which a body counts as resting that contacts press, or that hangs in balance between such bodies: under a
-/// lasting side load Rapier's friction lets them creep on for ever. Pinned by `ground::heap`.
+/// Mean speed up to which a body with [`BodyFlags::CREEPS`] counts as resting, m/s, times the engine's length unit. Contacts
+/// press such a body, or springs in balance or joints make it follow such bodies. Under a lasting side load, Rapier's friction
+/// lets these bodies creep for ever. Pinned by `ground::heap`.
 const CREEP: f32 = 1e-2;
 
-/// How long it has to last, s. At a turning point of amplitude A and frequency ω it lasts
-/// 2·REST/(A ω²), so what falls asleep has accelerations below REST·2/QUIET.
+/// Time for which a body must rest before it may sleep, s. At a turning point with amplitude A and frequency ω a body rests for
+/// 2·REST/(A ω²), so a body that falls asleep has an acceleration below 2·REST/QUIET.
 const QUIET: f32 = 2.0;
 
-/// Rounding of a position that is not motion, in units of its last place: a stiff spring answers each
-/// of them with a speed of ω times that.
+/// Change of a position that counts as rounding and not as motion, in units of the last place. A stiff spring answers a rounding
+/// error with a speed of ω times the error.
 const ROUNDING: f32 = 4.0;
 
-/// Whether a body is so slow that it may rest. `omega` is the natural frequency of the stiffest element on it, `size` the body's.
+/// Whether a body is so slow that it may rest. `rest` is the speed that counts as rest, `size` the radius (m) with which its
+/// angular velocity is multiplied, and `omega` the natural frequency of the stiffest element on it, rad/s.
 fn is_slow(body: &Seen, rest: f32, size: f32, omega: f32, length_unit: f32) -> bool {
     let place = body.origin.abs().max_element() * f32::EPSILON;
     let noise = ROUNDING * omega;
@@ -47,7 +49,7 @@ fn is_restless(
 ) -> bool {
     let (position, rotation) = (body.origin, body.rotation);
     let place = position.abs().max_element() * f32::EPSILON;
-    // Of what is held only its place tells: the engine's velocities are those of its last substep.
+    // The velocities of a held body are those of the engine's last substep, so mainly its position decides.
     let rest = if row.has(BodyFlags::LINGERS) {
         HELD_REST
     } else {
@@ -67,7 +69,7 @@ fn is_restless(
             ..Rest::default()
         };
     }
-    // Trembling may be rounding; going somewhere is not.
+    // Trembling may be rounding, but a body that moves away does not rest.
     let creep = if row.has(BodyFlags::CREEPS) {
         CREEP
     } else {
@@ -83,7 +85,8 @@ fn is_restless(
     rest.seconds += time;
     rest.rate = rest.position.distance(position) / rest.seconds;
     if rest.seconds >= QUIET {
-        // Others may have to come to rest yet: what has gone far in many such spans has not moved in any.
+        // Start again from the present position. Other bodies may need longer to come to rest, and a body that creeps a long way
+        // in many such periods still rests in each of them.
         *rest = Rest {
             position,
             rotation,
@@ -95,21 +98,21 @@ fn is_restless(
     !row.has(BodyFlags::RESTS_LONG)
 }
 
-/// Whether a step would set a sleeping body moving: an acceleration that within a second is not rest.
+/// Whether a step would set a sleeping body in motion: with its acceleration it would exceed the speed of rest within a second.
 fn is_set_moving(start: &Body, end: &Body, time: f64, length_unit: f32) -> bool {
     let rest = f64::from(REST) * time;
     (end.velocity - start.velocity).length() > rest * f64::from(length_unit)
         || (end.angular_velocity() - start.angular_velocity()).length() > rest
 }
 
-/// Natural frequency of an element on its own ends, as of the last step.
+/// Natural frequency of an element between its own ends, as of the last step, rad/s.
 pub(crate) fn omega_of(row: &ElementRow) -> f32 {
     (row.slope() * row.inverse_mass).sqrt() as f32
 }
 
 impl Step {
-    /// Whether a body may be so slow that it rests, from the square of its speed, the largest coordinate of its place and the
-    /// square of its elements' natural frequency; [`Self::is_restless`] knows. Free of roots, for it is asked of every body.
+    /// Whether a body may be so slow that it rests; then [`Self::is_restless`] decides. `place` is the largest coordinate of its
+    /// position. This test takes squares to avoid square roots, because it runs for every body.
     #[inline(always)]
     pub(crate) fn may_rest(&self, speed_square: f32, place: f32, omega_square: f32) -> bool {
         let rest = REST * self.plan.length_unit;
@@ -118,7 +121,7 @@ impl Step {
         speed_square < 2.0 * (rest * rest + omega_square * noise * noise)
     }
 
-    /// Whether all of a component that was asleep is so still, and nothing that holds it has moved.
+    /// Whether all bodies of a component that was asleep still sleep, and no end of its elements has moved.
     pub(crate) fn is_left_alone(
         &self,
         members: &Members,
@@ -134,7 +137,7 @@ impl Step {
                 .any(|e| self.has_moved(&elements[*e as usize], sight))
     }
 
-    /// Whether a body that is awake moves, or has not rested long enough yet.
+    /// Whether an awake body moves, or has not rested long enough yet.
     pub(crate) fn is_restless(
         &self,
         row: &mut BodyRow,
@@ -142,14 +145,15 @@ impl Step {
         omega: f32,
         sight: &impl Sight,
     ) -> bool {
-        // A small body that turns in what holds it does not go far by that.
+        // The surface of a small held body moves little when it turns, so its size counts.
         let held = row.has(BodyFlags::LINGERS);
         let size = if held { sight.size(row.id) } else { 1.0 };
         let time = self.plan.time as f32;
         is_restless(row, body, size, omega, time, self.plan.length_unit)
     }
 
-    /// A sleeping body is no wall: where the step would set it moving, it and the others wake.
+    /// Wakes all bodies of a component if the step would set a sleeping body in motion. Otherwise
+    /// that body would act like a wall.
     pub(crate) fn wake_the_moved(
         &self,
         rows: &[BodyRow],
@@ -172,8 +176,8 @@ impl Step {
         }
     }
 
-    /// Whether there is anything to do for a component, and whether all its bodies are to be [roused](rouse). `omega` is the
-    /// natural frequency of the stiffest element.
+    /// Returns whether there is anything to do for a component, and whether all its bodies must be [roused](rouse). `omega` is
+    /// the natural frequency of its stiffest element, rad/s.
     pub(crate) fn is_awake(
         &self,
         rows: &mut (impl RowsMut<BodyRow> + ?Sized),
@@ -200,7 +204,7 @@ impl Step {
     }
 }
 
-/// Wakes the bodies of a component, or keeps them awake.
+/// Wakes the bodies of a component and keeps them awake.
 pub(crate) fn rouse(rows: &[BodyRow], members: &[u32], engine: &mut impl Engine) {
     for b in members {
         let body = rows[*b as usize].id;

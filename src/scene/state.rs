@@ -12,86 +12,88 @@ use bevy::ecs::entity::{EntityHashMap, EntityHashSet};
 use bevy::platform::collections::HashMap;
 use bevy::prelude::*;
 
-/// The scene as the engine's step sees it. It has a field for all that one stage of a step leaves for another, and no more:
-/// a stage takes those that it needs by their names.
+/// The scene as the engine's step sees it. Each field is data that one stage of a step leaves for another. A stage
+/// borrows only the fields that it needs.
 #[derive(Resource, Default)]
 pub struct Scene {
-    /// In the order of the query that finds them, inert ones too.
+    /// Rows of all elements, in the order of the query that finds them, including elements with a fault.
     pub(crate) elements: Vec<ElementRow>,
-    /// Indices of the elements.
+    /// Row index of each element.
     pub(crate) row_of: EntityHashMap<u32>,
-    /// Elements that changed since the last step.
+    /// Row indices of elements that changed since the last step.
     pub(crate) changed: Vec<usize>,
-    /// Elements that take no part.
+    /// Row indices of elements with a fault, which do not act.
     pub(crate) faulty: Vec<usize>,
-    /// Elements with an end that is watched, and that end.
+    /// Row index of an element and index of its end, for each end that must be looked for in every tick.
     pub(crate) followed: Vec<(usize, usize)>,
-    /// In the order of their entities.
+    /// Rows of the bodies that elements can move, in the order of their entities.
     pub(crate) bodies: Vec<BodyRow>,
+    /// Row index of each body.
     pub(crate) index: EntityHashMap<u32>,
-    /// Indices of the bodies by what the engine calls them.
+    /// Row index of each body, by context and engine handle.
     pub(crate) handles: HashMap<(Entity, BodyId), u32>,
-    /// Bodies that hold elements, but that these cannot move.
+    /// Bodies that hold an element but that elements cannot move.
     pub(crate) walls: EntityHashSet,
     pub(crate) groups: Groups,
     pub(crate) assemblies: Vec<Assembly>,
-    /// What needs no assembly, world by world.
+    /// Elements that need no assembly, one list per context.
     pub(crate) lone: Vec<Lone>,
-    /// Components of which contacts or joints may hold some body: indices of their groups.
+    /// Indices of the groups in which contacts or joints may hold a body.
     pub(crate) tangible: Vec<u32>,
-    /// These have to be found anew: some body has colliders that had none, or the other way round.
+    /// Whether `tangible` must be found anew, because the groups are new or a body gained or lost its colliders.
     pub(crate) touch_changed: bool,
-    /// There were joints when they were found last.
+    /// Whether the engine had joints when `tangible` was last found.
     pub(crate) had_joints: bool,
     /// Number of the tick.
     pub(crate) tick: u32,
     pub(crate) stepped: Stepped,
-    /// Seconds that the engine will step in this tick; 0 if it will not.
+    /// Simulated time of this tick, s; 0 if the engine does not step.
     pub(crate) time: f64,
-    /// A body or an element that it knows has lost a component, or a body is another one: look at everything again.
+    /// Whether an element or body of the scene gained or lost a component that matters. Then all rows are made anew.
     pub(crate) disturbed: bool,
-    /// Elements that have lost a companion since the last tick.
+    /// Elements that lost a companion component since the last tick.
     pub(crate) left_behind: Vec<Entity>,
-    /// Something was found amiss after the scene was prepared: look at everything again.
+    /// Whether the rows were found to be out of date after the tick was prepared. Then they are made anew in the next tick.
     pub(crate) stale: bool,
-    /// A user's force on some body changed in this tick.
+    /// Whether the user's force or torque on some body changed in this tick.
     pub(crate) loaded: bool,
-    /// Some body was given something in this tick whose place several elements may ask for afterwards.
+    /// Whether positions of bodies must be stored after this step, because several elements may read them. Not
+    /// necessary if only lone elements are solved.
     pub(crate) noting: bool,
-    /// Some body was given something in this tick.
+    /// Whether some body was given a push in this tick.
     pub(crate) delivered: bool,
-    /// Some followed end was not where it had been.
+    /// Whether an end in `followed` has moved since the last step.
     pub(crate) shifted: bool,
     pub(crate) still: Still,
-    /// Some element has no end that elements can move.
+    /// Whether some element without a fault has no end that elements can move.
     pub(crate) immovable: bool,
-    /// The readouts stand in another order than the rows even when these have just been made.
+    /// Whether the readouts are in another order than the rows even if the rows are new.
     pub(crate) unordered: bool,
-    /// The rows were made anew in this tick.
+    /// Whether the rows were made anew in this tick, or in earlier ticks without a step in between.
     pub(crate) renewed: bool,
-    /// What elements that are gone have left in the engine's solver, and in which context.
+    /// Context and data of joints and hidden bodies that must still be removed from the engine, as their element no longer acts.
     pub(crate) left: Vec<(Entity, Box<Inside>)>,
-    /// Bodies that no element moves any more, and what they have besides forces.
+    /// Context and handle of bodies that no element moves any more, with the settings that must still be restored.
     pub(crate) unloaded: Vec<(Entity, BodyId, Raised)>,
-    /// What contexts have been told besides.
+    /// Number of solver sweeps that each context was given.
     pub(crate) sweeps: EntityHashMap<Sweeps>,
-    /// The rows are those of a snapshot, put there at that tick: what changed before is none of theirs.
+    /// Change tick at which the rows were restored from a snapshot, until they are next prepared. Earlier changes are ignored.
     pub(crate) since: Option<Tick>,
-    /// Rapier's snapshot was put back since the last step, and springs' was not yet.
+    /// Whether Rapier's snapshot was restored since the last step, but the springs' snapshot not yet.
     pub(crate) engine_went_back: bool,
-    /// Elements whose components are others than a snapshot says.
+    /// Elements whose components must be read in the next tick, because they differ from the restored snapshot.
     pub(crate) pending: Vec<Entity>,
 }
 
 impl Scene {
-    /// Whether it is an element or a body that holds one.
+    /// Whether an entity is an element, or a body that holds one.
     pub(crate) fn knows(&self, entity: Entity) -> bool {
         self.index.contains_key(&entity)
             || self.walls.contains(&entity)
             || self.row_of.contains_key(&entity)
     }
 
-    /// Forgets what was so of the last step alone.
+    /// Resets what belongs to the last step only, and counts the tick.
     pub(crate) fn begin(&mut self) {
         self.time = 0.0;
         self.tick = self.tick.wrapping_add(1).max(1);
@@ -102,7 +104,7 @@ impl Scene {
         self.engine_went_back = false;
     }
 
-    /// Forgets what has been left in worlds that are gone.
+    /// Forgets contexts that no longer exist.
     pub(crate) fn forget_worlds(&mut self, is_there: impl Fn(Entity) -> bool) {
         self.left.retain(|(context, _)| is_there(*context));
         self.unloaded.retain(|(context, ..)| is_there(*context));
@@ -110,7 +112,7 @@ impl Scene {
         self.still.retain(is_there);
     }
 
-    /// Finds the components of which contacts may hold some body, or joints, where there are any.
+    /// Finds `tangible` again if that is necessary. If the engine has any joints, all groups belong to it.
     pub(crate) fn find_tangible(&mut self, any_joints: bool) {
         let changed = std::mem::replace(&mut self.had_joints, any_joints) != any_joints;
         if !(changed || self.touch_changed) {
@@ -136,7 +138,7 @@ impl Scene {
         self.tangible.extend(found.map(|(g, _)| g as u32));
     }
 
-    /// The row of a body that says it stands at `slot`.
+    /// The row at `slot`, if it is the row of `entity`.
     pub(crate) fn body(&mut self, slot: usize, entity: Entity) -> Option<&mut BodyRow> {
         self.bodies.get_mut(slot).filter(|row| row.entity == entity)
     }

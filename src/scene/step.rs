@@ -1,4 +1,4 @@
-//! What holds for every component of a context in this step, and what they all need.
+//! Data that all components of a context share in a step, and questions about ends and bodies that depend on it.
 
 use super::push::Terms;
 use super::rows::{ElementRow, Held};
@@ -10,29 +10,30 @@ use crate::settings::CoiloverSettings;
 use bevy::math::{DQuat, DVec3};
 use std::sync::atomic::AtomicBool;
 
-/// Distance that a path may begin apart from where the last one ended and still go on from there, as a share of its coordinates
-/// and of a metre at least: so much may come of the engine's f32. Pinned by `carried`.
+/// Distance between the end of the last path and the start of the next one up to which the path counts as continuous, as a share
+/// of its largest coordinate, but of at least 1 m. Rounding to f32 in the engine causes such distances. Pinned by `carried`.
 const LEAP: f64 = 1e-6;
 
-/// A context about to step.
+/// A context before its step.
 pub(crate) struct Step {
     pub plan: StepPlan,
-    /// The substeps of a body that asks for no more than others.
+    /// Substeps of a body that asks for no extra substeps.
     pub schedule: Schedule,
     pub accuracy: Accuracy,
-    /// Most substeps of a step for what the engine solves.
+    /// Greatest number of substeps in a step for components that the engine solves.
     pub most_substeps: u32,
-    /// All bodies are stepped as finely as the one that asks for most, which asks for so many substeps more.
+    /// If the engine steps all bodies as finely as the one that asks for most: the number of extra substeps that all bodies get.
     pub alike: Option<usize>,
-    /// Nothing but their own bodies and moved ends can have woken what sleeps.
+    /// Whether nothing has changed since the last step apart from bodies and moved ends, so that nothing else
+    /// can have woken a sleeping component.
     pub quiet: bool,
-    /// Its number, counted on from tick to tick.
+    /// Number of the tick.
     pub tick: u32,
-    /// Something was given to some body.
+    /// Whether some body was given a push.
     pub delivered: AtomicBool,
 }
 
-/// Rotation and angular velocity of what holds an end that elements cannot turn.
+/// Rotation now, and angular velocity over the step (rad/s), of the body at an end that elements cannot turn.
 pub(crate) fn facing(held: &Held, time: f64, sight: &impl Sight) -> (DQuat, DVec3) {
     let turning = match held {
         Held::Body { body, .. } => sight.turning(*body, time),
@@ -55,7 +56,7 @@ impl Step {
         }
     }
 
-    /// A body as it may be moved; one that may not be any more makes the scene stale.
+    /// State of a body that can be moved. If the body can no longer be moved, sets `stale`, so that the rows are made anew.
     #[inline(always)]
     pub(crate) fn movable(
         &self,
@@ -68,7 +69,7 @@ impl Step {
         seen
     }
 
-    /// Where a point is that elements cannot move, and where it will be after the step.
+    /// Positions, now and after the step, of an end that elements cannot move.
     pub(crate) fn path(&self, held: &Held, sight: &impl Sight) -> [DVec3; 2] {
         match *held {
             Held::Path { from, to } => [from, to],
@@ -78,10 +79,11 @@ impl Step {
         }
     }
 
-    /// Whether an end moves or turns, or is not where or as it was after the last step.
+    /// Whether an end moves or turns in this step, or was moved or turned since the last step. Motion of
+    /// bodies that elements move does not count.
     pub(crate) fn has_moved(&self, row: &ElementRow, sight: &impl Sight) -> bool {
         if !row.is_any_watched() && row.moves() == 2 {
-            // Held by what elements move, and where it says.
+            // Elements move both ends, and its anchors are fixed points of the bodies.
             return false;
         }
         (0..2).any(|end| {
@@ -99,7 +101,7 @@ impl Step {
         })
     }
 
-    /// Whether an end that goes along a path from here begins elsewhere than the last step's path ended.
+    /// Whether the path of an end, which begins at `from`, begins elsewhere than the last step's path ended.
     pub(crate) fn has_leapt(row: &ElementRow, end: usize, from: DVec3) -> bool {
         row.rare.places[end].is_some_and(|last| {
             let size = last.abs().max(from.abs()).max_element().max(1.0);
@@ -107,8 +109,8 @@ impl Step {
         })
     }
 
-    /// Whether an end that elements cannot turn turns, or is not turned as after the last step, where its element has an
-    /// axis of its own.
+    /// Whether an end that elements cannot turn turns in this step, or was turned since the last step.
+    /// Counts only for an element with an axis.
     fn has_turned(&self, row: &ElementRow, end: usize, sight: &impl Sight) -> bool {
         if row.rare.guide == Guide::Centres || row.rare.places[end].is_none() {
             return false;
@@ -117,7 +119,7 @@ impl Step {
         turning != DVec3::ZERO || rotation != row.rare.facings[end]
     }
 
-    /// The engine's equal substeps of a body that asks for so many more than others.
+    /// Substeps of a body that asks for `more` extra substeps.
     fn substeps(&self, more: usize) -> Schedule {
         match self.alike.unwrap_or(more) {
             0 => self.schedule,
@@ -125,7 +127,7 @@ impl Step {
         }
     }
 
-    /// How far the engine turns a body in this step, rad.
+    /// Greatest rotation of a body by the engine in this step, rad.
     pub(crate) fn farthest_turn(&self, seen: &Seen) -> f64 {
         if seen.turns_fast {
             f64::INFINITY
@@ -135,10 +137,10 @@ impl Step {
         }
     }
 
-    /// How the engine is to step a body that asks for so many substeps more than others.
+    /// How the engine must step a body that asks for `more` extra substeps.
     #[inline(always)]
     pub(crate) fn terms(&self, more: usize) -> Terms {
-        // One substep has room for a force or an impulse, not for both.
+        // In a single substep, force and impulse have the same effect, so position and velocity cannot both be reached.
         let second_substep =
             self.plan.substeps * self.plan.calls as usize == 1 && more == 0 && self.alike.is_none();
         Terms {

@@ -1,27 +1,27 @@
-//! A world in which everything that holds elements sleeps is not looked at.
+//! Skips contexts in which all components sleep.
 //!
-//! What sleeps is woken by the engine's step, after which its bodies are among the active ones, or by
-//! somebody who changes the engine's bodies, which the ECS tells.
+//! Only two things can wake a sleeping body: the engine's step, after which the engine has active bodies, or other code that
+//! changes the engine's bodies, which the ECS detects.
 
 use bevy::ecs::change_detection::Tick;
 use bevy::ecs::entity::EntityHashMap;
 use bevy::prelude::*;
 
-/// What is stepped in this tick.
+/// Contexts that are stepped in this tick.
 #[derive(Default)]
 pub(crate) struct Stepped {
     pub worlds: Vec<Entity>,
-    /// Some world is not.
+    /// Whether some context is not stepped.
     pub some_rest: bool,
 }
 
-/// Contexts whose every component was found asleep in their last step, and when their bodies had been
-/// changed last at the end of that tick.
+/// Contexts in which all components were asleep in the last step. For each, the tick of the last change of its
+/// bodies, as of the end of that step's tick.
 #[derive(Default)]
 pub(crate) struct Still(EntityHashMap<Option<Tick>>);
 
 impl Still {
-    /// At the end of a tick, after all that changes bodies in every tick.
+    /// Stores the ticks of the last changes. Call it at the end of a tick, after the systems that change bodies in every tick.
     pub(crate) fn mark(&mut self, changed: impl Fn(Entity) -> Option<Tick>) {
         for (context, tick) in &mut self.0 {
             *tick = changed(*context);
@@ -32,7 +32,7 @@ impl Still {
         self.0.retain(|context, _| is_there(*context));
     }
 
-    /// Keeps in mind what a step has found.
+    /// Stores whether all components of a context were asleep in its step.
     pub(crate) fn note(&mut self, context: Entity, all_asleep: bool) {
         if all_asleep {
             self.0.insert(context, None);
@@ -41,8 +41,8 @@ impl Still {
         }
     }
 
-    /// Whether all slept in the last step, and nobody has moved a body since, of a context whose bodies were changed then
-    /// last.
+    /// Whether all components of a context were asleep in the last step and its bodies have not been changed since.
+    /// `changed` is the tick of their last change.
     pub(crate) fn holds(&self, context: Entity, changed: Tick) -> bool {
         self.0.get(&context) == Some(&Some(changed))
     }

@@ -1,4 +1,4 @@
-//! The bodies that there are to be rows of.
+//! The bodies that need a row.
 
 use crate::backend::{BodyId, Found, Movable, Place};
 use crate::scene::rows::BodyRow;
@@ -15,7 +15,7 @@ pub(crate) struct Wanted {
 }
 
 impl Wanted {
-    /// Whether this is its row.
+    /// Whether `row` is the row of this body.
     pub(crate) fn is(&self, row: &BodyRow) -> bool {
         row.entity == self.entity && row.id == self.id && row.rare.context == self.context
     }

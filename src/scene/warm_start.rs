@@ -1,5 +1,5 @@
-//! A network of points that only the engine has moved since its last step goes on as it is: no more is read
-//! than where its bodies are, and no more written than what they are given.
+//! Continues a network of points from its last step, if only the engine has moved it since. Then only the state of its bodies is
+//! read, and only their pushes are written.
 
 use crate::backend::{Engine, Sight};
 use crate::dynamics::points::{FreePoint, Points};
@@ -11,59 +11,59 @@ use crate::threads::{PIECE, beside, each, share};
 use bevy::math::{DVec3, Vec3};
 use std::sync::atomic::Ordering;
 
-/// What is known of such a network.
+/// What is known of a network of points from its last step.
 #[derive(Default)]
 pub(crate) struct WarmStart {
-    /// Ends that elements cannot move: which element's within the component, and which of its two.
+    /// Ends that elements cannot move: index of the element in the component, and index of the end.
     pub ends: Vec<(usize, usize)>,
-    /// Natural frequency of the stiffest element.
+    /// Natural frequency of the stiffest element, rad/s.
     pub omega: f32,
-    /// Where each body's centre of mass is in its own frame.
+    /// Centre of mass of each body in its own frame, m.
     pub centers: Vec<Vec3>,
     in_memory: InMemory,
-    /// What each body is given.
+    /// Velocity and force for each body.
     given: Vec<Given>,
-    /// Some body has not rested for long.
+    /// Whether some body has not rested long enough to sleep.
     restless: bool,
-    /// Something else than elements can have changed what it has.
+    /// Whether something other than elements may have changed the energy of the network.
     pub perturbed: bool,
 }
 
-/// Bodies and elements in the order of their rows, which is that of the engine's memory: large networks are read and written in
-/// that.
+/// Bodies and elements in the order of their rows, which is also the order of the engine's memory. Large
+/// networks are read and written in this order.
 #[derive(Default)]
 struct InMemory {
-    /// Places of bodies within the component,
+    /// Indices of the bodies within the component, in the order of their rows.
     bodies: Vec<u32>,
-    /// and of elements.
+    /// Indices of the elements within the component, in the order of their rows.
     elements: Vec<u32>,
-    /// Of each body of the component its place here.
+    /// For each body of the component, its place in `bodies`.
     place_of: Vec<u32>,
-    /// Acceleration of each body by everything but elements in the last step.
+    /// For each body in `bodies`, its acceleration by everything but elements in the last step, m/s².
     pulls: Vec<DVec3>,
-    /// How each is now,
+    /// For each body in `bodies`, its state before the step.
     met: Vec<Met>,
-    /// and what was noted of each piece of them.
+    /// Facts about each piece of `bodies`.
     noted: Vec<Noted>,
 }
 
-/// A body of it before a step.
+/// State of a body before the step.
 #[derive(Clone, Copy, Debug, Default)]
 struct Met {
     point: FreePoint,
-    /// Substeps beyond those of all.
+    /// Number of extra substeps for which the body asks.
     more: u32,
 }
 
-/// What was noted of bodies of it before a step.
+/// Facts about some bodies of the network before the step.
 #[derive(Clone, Copy, Debug, Default)]
 struct Noted {
-    /// Some of them needs the general solver.
+    /// Whether some body needs the general solver.
     stops: bool,
     /// See [`WarmStart`].
     restless: bool,
     perturbed: bool,
-    /// Something was done to some of them.
+    /// Whether some body was disturbed.
     disturbed: bool,
     touch_changed: bool,
 }
@@ -77,8 +77,8 @@ impl Noted {
         self.touch_changed |= other.touch_changed;
     }
 
-    /// Takes a note of a body whose centre of mass was there in its own frame and that was pulled so. None if it needs the
-    /// general solver.
+    /// Reads a body and adds the facts about it. `center` is its centre of mass in its own frame as of the last step, `pull` its
+    /// acceleration in that step. Returns none if the body needs the general solver.
     #[inline(always)]
     fn meet(
         &mut self,
@@ -98,7 +98,7 @@ impl Noted {
         let point = row.point(&body);
         self.perturbed |= row.was_perturbed(&body, point.position);
         if std::mem::replace(pull, point.acceleration) != point.acceleration {
-            // Written only then: it lies apart from what every step needs.
+            // Written only if it differs, because `rare` is not in the memory that every step reads.
             row.rare.pulled = pull_mark(point.acceleration);
             self.perturbed = true;
         }
@@ -112,7 +112,7 @@ impl Noted {
 }
 
 impl InMemory {
-    /// Takes in which bodies there are, and how they were at the start of the last step.
+    /// Finds the order of bodies and elements, and copies the accelerations of the last step.
     fn line_up(&mut self, members: &Members, points: &Points) {
         for (places, rows) in [
             (&mut self.bodies, members.bodies),
@@ -134,13 +134,13 @@ impl InMemory {
         );
     }
 
-    /// How a body of the component is.
+    /// State of a body of the component.
     fn met(&self, slot: usize) -> &Met {
         &self.met[self.place_of[slot] as usize]
     }
 }
 
-/// Pieces of such an order of these rows, each with the rows themselves, cut off those of the next.
+/// Divides `order` into pieces and returns each with its rows. `rows` are the row indices of all members of the component.
 fn pieces<'a, T>(
     order: &'a [u32],
     rows: &'a [u32],
@@ -155,7 +155,7 @@ fn pieces<'a, T>(
 }
 
 impl WarmStart {
-    /// Reads all bodies; how many threads there are changes nothing of what comes out.
+    /// Reads all bodies. The number of threads does not change the result.
     fn meet(
         &mut self,
         step: &Step,
@@ -192,7 +192,7 @@ impl WarmStart {
         all
     }
 
-    /// Forgets what was known of its bodies: they are read anew.
+    /// Forgets the bodies before they are read anew.
     pub(crate) fn begin(&mut self) {
         self.centers.clear();
         self.in_memory.bodies.clear();
@@ -200,7 +200,7 @@ impl WarmStart {
 }
 
 impl Assembly {
-    /// Takes the network in, if it can go on as it is.
+    /// Reads the network, if it can continue from its last step. Returns whether it can.
     pub(crate) fn continue_warm(
         &mut self,
         step: &Step,
@@ -217,7 +217,7 @@ impl Assembly {
         let mut disturbed = false;
         let goes_on = self.place(step, members, elements, bodies, sight, &mut disturbed);
         if goes_on.is_none() {
-            // What has been taken note of is not lost.
+            // Reading the bodies has cleared their flags, so set the flag again on one of them.
             if let Some(first) = members.bodies.first() {
                 let row = &mut bodies[*first as usize];
                 if disturbed {
@@ -233,7 +233,7 @@ impl Assembly {
         true
     }
 
-    /// Places bodies and ends; none if some body needs the general solver.
+    /// Places bodies and ends. Returns none if the network cannot continue from its last step.
     fn place(
         &mut self,
         step: &Step,
@@ -267,7 +267,7 @@ impl Assembly {
             *disturbed |= has_moved;
             let [from, to] = step.path(&row.rare.held[*end], sight);
             if has_moved && (from == to || Step::has_leapt(row, *end, from)) {
-                // It has leapt: what work that was is to be found.
+                // The end has leapt. Only the general solver computes the work of that.
                 return None;
             }
             points.place_end(index, from, (to - from) / time);
@@ -275,7 +275,7 @@ impl Assembly {
         Some(())
     }
 
-    /// Gives the engine what takes the bodies on.
+    /// Gives each body its push, and stores the results of the elements.
     pub(crate) fn deliver_warm(
         &mut self,
         step: &Step,

@@ -1,24 +1,24 @@
-//! An element as soft constraints of an engine's own solver, in numbers.
+//! Describes an element as soft constraints for an engine's own solver. The backend makes joints from these numbers.
 
 use crate::backend::{BodyId, JointId};
 use crate::dynamics::pieces::MOST;
 use bevy::math::{Quat, Vec3};
 
-/// What a joint acts along.
+/// The coordinate on which a joint acts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) enum Along {
-    /// From anchor to anchor.
+    /// Distance from anchor to anchor.
     Distance,
-    /// The x axis of the first frame, both bodies pushed at the second anchor.
+    /// Distance along the x axis of the first frame. Both bodies are pushed at the second anchor.
     Slide,
-    /// The x axis of the first frame, each body pushed at its own anchor.
+    /// Distance along the x axis of the first frame. Each body is pushed at its own anchor.
     Apart,
-    /// About the x axis of the first frame.
+    /// Angle about the x axis of the first frame.
     Twist,
 }
 
-/// One joint, in numbers.
+/// The numbers of one joint. For [`Along::Twist`], angles (rad) replace lengths and torques (N m) replace forces.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct SoftJoint {
@@ -26,59 +26,60 @@ pub(crate) struct SoftJoint {
     pub anchors: [Vec3; 2],
     pub rotations: [Quat; 2],
     pub along: Along,
-    /// Substep, s.
+    /// Duration of a substep, s.
     pub substep: f32,
     /// N/m, or N m/rad.
     pub stiffness: f32,
-    /// N s/m that act in all.
+    /// Total damping that acts, N s/m.
     pub damping: f32,
-    /// Length without force, m.
+    /// Length at which the elastic force is `force`, m.
     pub target: f32,
-    /// Force there and at rest, N.
+    /// Force at the length `target` without damping, N.
     pub force: f32,
     /// Greatest force, N.
     pub most: f32,
 }
 
-/// A joint of ours in the engine, as snapshots have it.
+/// A joint of the crate in the engine, as a snapshot stores it.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct KeptJoint {
-    /// Which one of its element's.
+    /// Index of the joint among those of its element: 0 is the damper, then come the springs.
     pub place: u8,
     pub id: JointId,
     pub joint: SoftJoint,
 }
 
-/// Joints of an engine that are such.
+/// The set of joints of an engine.
 pub(crate) trait SoftJoints {
-    /// Puts one in.
+    /// Inserts a joint.
     fn put(&mut self, joint: &SoftJoint) -> JointId;
 
-    /// Gives one other numbers; says whether it is there.
+    /// Changes the numbers of a joint. Returns whether the joint exists.
     fn change(&mut self, joint: JointId, numbers: &SoftJoint) -> bool;
 
-    /// Takes one out.
+    /// Removes a joint.
     fn remove(&mut self, joint: JointId);
 
-    /// Whether one is there.
+    /// Whether a joint exists.
     fn has(&self, joint: JointId) -> bool;
 }
 
-/// Joints of one element besides its damper: for each piece of its force a spring, and what moves the middle of its range.
+/// Greatest number of joints of an element besides its damper: for each piece of its force a spring, and a motor
+/// that shifts the middle of its range.
 const SPRINGS: usize = 2 * MOST;
 
 type Known = Option<(JointId, SoftJoint)>;
 
-/// The joints of one element: its damper alone, where that is to be solved before all springs, and its springs with the
-/// damper otherwise.
+/// The joints of one element. `damper` is used only if the damper must be solved before all springs.
+/// Otherwise the damper is part of the springs.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Joints {
     damper: Known,
     springs: [Known; SPRINGS],
 }
 
-/// What an element's joints are to be.
+/// The joints that an element needs.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Wanted {
     pub damper: Option<SoftJoint>,
@@ -87,7 +88,7 @@ pub(crate) struct Wanted {
 }
 
 impl Wanted {
-    /// One more, to be solved after those before it.
+    /// Adds a spring, which is solved after the springs that were added before.
     pub(crate) fn push(&mut self, spring: SoftJoint) {
         self.springs[self.count] = Some(spring);
         self.count += 1;
@@ -127,7 +128,7 @@ fn update(set: &mut impl SoftJoints, known: &mut Known, wanted: &Option<SoftJoin
 }
 
 impl Joints {
-    /// Each of them, and which one it is.
+    /// All joints with their indices, for a snapshot.
     pub(crate) fn kept(&self) -> impl Iterator<Item = KeptJoint> {
         let places = self.all().enumerate();
         places.filter_map(|(place, known)| {
@@ -137,7 +138,7 @@ impl Joints {
         })
     }
 
-    /// As they were.
+    /// Restores the joints from a snapshot.
     pub(crate) fn of(kept: &[KeptJoint]) -> Self {
         let mut joints = Self::default();
         for known in kept {
@@ -156,12 +157,12 @@ impl Joints {
         [&self.damper].into_iter().chain(&self.springs)
     }
 
-    /// How many there are.
+    /// Number of joints.
     pub(crate) fn count(&self) -> usize {
         self.all().flatten().count()
     }
 
-    /// Whether other numbers are all that these need.
+    /// Whether all wanted joints exist already, so that only their numbers must be changed.
     pub(crate) fn fit(&self, wanted: &Wanted, set: &impl SoftJoints) -> bool {
         let there = |known: &Known| known.is_none_or(|(joint, _)| set.has(joint));
         let orders = [&wanted.damper].into_iter().chain(&wanted.springs);
@@ -170,7 +171,7 @@ impl Joints {
             .all(|(known, wanted)| fits(known, wanted) && there(known))
     }
 
-    /// Takes them out of the engine.
+    /// Removes all joints from the engine.
     pub(crate) fn remove(&mut self, set: &mut impl SoftJoints) {
         let springs = self.springs.iter_mut().filter_map(Option::take);
         for (joint, _) in self.damper.take().into_iter().chain(springs) {
@@ -178,12 +179,12 @@ impl Joints {
         }
     }
 
-    /// A damper that is solved before all springs.
+    /// Inserts the damper that is solved before all springs, if one is wanted.
     pub(crate) fn put_damper(&mut self, wanted: &Wanted, set: &mut impl SoftJoints) {
         self.damper = insert(set, &wanted.damper);
     }
 
-    /// Its springs, the first one last if they are to be.
+    /// Inserts the springs. If `reversed`, the first spring is inserted last.
     pub(crate) fn put_springs(
         &mut self,
         wanted: &Wanted,
@@ -196,7 +197,7 @@ impl Joints {
         }
     }
 
-    /// Other numbers.
+    /// Changes the numbers of all joints.
     pub(crate) fn update(&mut self, wanted: &Wanted, set: &mut impl SoftJoints) {
         update(set, &mut self.damper, &wanted.damper);
         for (known, wanted) in self.springs.iter_mut().zip(&wanted.springs) {

@@ -1,4 +1,4 @@
-//! What an element has inside the engine's solver: the engine's room decides about it.
+//! Data of an element that the engine's own solver solves. The backend decides when that is necessary (`rapier::held`).
 
 mod joint;
 mod twist;
@@ -13,52 +13,54 @@ use crate::dynamics::pieces::Pieces;
 use bevy::math::{DQuat, DVec3};
 use bevy::prelude::Entity;
 
-/// What an element has inside the engine's solver.
+/// Data of an element inside the engine's solver.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Inside {
     pub joints: Joints,
-    /// Bodies of the engine that stand for ends which are none.
+    /// Hidden bodies in the engine that stand for ends without a rigid body.
     pub hidden: [Option<BodyId>; 2],
-    /// The context in which that is.
+    /// The context that contains the joints and hidden bodies.
     pub context: Option<Entity>,
-    /// It acts in the coming step.
+    /// Whether the element acts in the coming step.
     pub active: bool,
     pub pieces: Pieces,
-    /// Length at the start of the step.
+    /// Length at the start of the step, m; twist of a torsion element, rad.
     pub from: f64,
     pub direction: DVec3,
-    /// Where its ends were then, and how what holds them was turned.
+    /// Positions of its ends at the start of the step, m.
     pub places: [DVec3; 2],
+    /// Rotations, at the start of the step, of the bodies at its ends.
     pub facings: [DQuat; 2],
-    /// Mean rates over the last step and the one before.
+    /// Mean rates of its length over the last step and over the step before that, m/s.
     pub rates: Option<[f64; 2]>,
-    /// Energy that its bodies have been given beyond what the law has, J.
+    /// Energy that its bodies got beyond what its law gives, J. Later steps take it back.
     pub debt: f64,
     pub turn: Option<Turn>,
-    /// Its twist is not what the bodies show: see [`twist`].
+    /// Whether its twist differs from the rotation of its bodies: see [`twist`].
     pub slipped: bool,
     pub leeway: Leeway,
 }
 
-/// What joints and contacts have left of an element's inverse mass.
+/// Inverse effective mass of an element whose bodies joints and contacts hold.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Leeway {
-    /// 1/kg.
+    /// Inverse effective mass that joints and contacts leave, 1/kg.
     pub left: f64,
-    /// Share of it that joints alone would leave.
+    /// Share of the inverse mass of the free element that joints alone would leave.
     pub jointed: f64,
-    /// It is that of a step in which all that holds it was known.
+    /// Whether these numbers are final. Before its first step they are not, because the engine does not know the contacts yet.
     pub known: bool,
-    /// What held its ends then,
+    /// For each end, whether a joint held it and whether a contact pressed it when the numbers were computed.
     pub by: [(bool, bool); 2],
-    /// and how many steps ago that was.
+    /// Number of steps since the numbers were computed.
     pub age: u32,
 }
 
-/// Steps after which it is looked for anew, for what holds an element shifts; and after how few, where something has let
-/// go of it: a foot that drums does so in every other step.
+/// Number of steps after which a [`Leeway`] is computed again in any case, because joints and contacts of an element shift.
 const OLD: u32 = 64;
+/// Least number of steps before a [`Leeway`] is computed again after a joint or contact let go. A
+/// drumming foot lets go in every other step.
 const YOUNG: u32 = 8;
 
 impl Default for Leeway {
@@ -74,7 +76,8 @@ impl Default for Leeway {
 }
 
 impl Leeway {
-    /// Takes a step; says whether it is to be looked for anew, with such holds.
+    /// Counts a step. Returns whether the numbers must be computed again. `by` says what holds each end now,
+    /// and `known` whether contacts are known.
     pub(crate) fn is_due(&mut self, by: [(bool, bool); 2], known: bool) -> bool {
         self.age += 1;
         let mut ends = self.by.iter().zip(by);
@@ -89,7 +92,7 @@ impl Leeway {
 }
 
 impl Inside {
-    /// Notes what it is to do.
+    /// Stores the state of the element at the start of a step, and its force over the step.
     pub(crate) fn begin(&mut self, from: f64, pieces: Pieces, line: &Line, facings: [DQuat; 2]) {
         self.facings = facings;
         self.from = from;
@@ -98,8 +101,8 @@ impl Inside {
         self.places = line.holds.map(|hold| hold.position);
     }
 
-    /// The length after a step that seems to have led there, with what holds both ends turned like this: that of a
-    /// torsion element is what it has been wound up to.
+    /// Returns the length after a step: for a torsion element its twist, for others the measured length `seen`. `facings` are the
+    /// rotations of the bodies at its ends now, `energy` gives the stored energy at a twist.
     pub(crate) fn wound(
         &mut self,
         facings: [DQuat; 2],
@@ -117,12 +120,13 @@ impl Inside {
         length
     }
 
-    /// Whether its twist is another than its bodies show.
+    /// Whether its twist differs from the rotation of its bodies.
     pub(crate) fn has_slipped(&self) -> bool {
         self.slipped
     }
 
-    /// How far an end has been moved over the step that is there now, or what holds it has been turned.
+    /// Displacement of an end over the step, m, or for a torsion element the rotation of its body, rad. Returns none if that is
+    /// zero. `place` and `facing` are the position of the end and the rotation of its body now.
     pub(crate) fn moved(&self, end: usize, place: DVec3, facing: DQuat) -> Option<DVec3> {
         let by = match &self.turn {
             Some(_) => shortest(facing * self.facings[end].inverse()).to_scaled_axis(),

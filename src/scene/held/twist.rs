@@ -1,9 +1,9 @@
 //! Torsion inside the engine's solver.
 //!
-//! Rapier turns two bodies about an axis that is fixed to the first. What a torsion element acts about is the gradient of
-//! its twist, which follows both bodies; so it is the gradient in the middle of the step that is ordered. What the bodies
-//! have really twisted beyond what was ordered is taken in afterwards, as far as that is true: where they are tilted by
-//! nearly half a turn a twist has no meaning, and there the spring slips rather than win energy.
+//! A joint of Rapier acts about an axis that is fixed to the first body. A torsion element acts about the gradient of its twist,
+//! which follows both bodies. So the joint gets the gradient at the middle of the step. After the step, the element takes over
+//! the twist that the bodies show, as far as it is valid. If the bodies are tilted by nearly half a turn, a twist has no meaning.
+//! There the spring slips instead of gaining energy.
 
 use crate::dynamics::body::{Body, shortest, turn};
 use crate::dynamics::element::Element;
@@ -12,40 +12,40 @@ use crate::functions::asin;
 use bevy::math::{DQuat, DVec3};
 use std::f64::consts::TAU;
 
-/// Greatest leverage of a gradient, reached at 140° of tilt: beyond it turns faster than a step can follow.
-/// Pinned by `ground::torsion`.
+/// Greatest leverage of a gradient, reached at 140° of tilt. Beyond that, the gradient turns faster than a step can
+/// follow. Pinned by `ground::torsion`.
 const LEVERAGE: f64 = 3.0;
 
-/// Damping of a torsion element for each radian that its bodies turn across its axis in a step, in units of
-/// stiffness · step: the gradient changes its direction meanwhile, and a stiff element would win by that.
-/// Pinned by `ground::torsion`.
+/// Damping of a torsion element for each radian that its bodies turn across its axis in a step, in units of stiffness · step. The
+/// gradient changes its direction during the step, by which a stiff element would gain energy. Pinned by `ground::torsion`.
 const ACROSS: f64 = 1.0;
 
-/// Leverage up to which a twist is true whatever it is: 120° of tilt. Pinned by `ground::torsion`.
+/// Leverage up to which a twist is always valid: 120° of tilt. Pinned by `ground::torsion`.
 const UPRIGHT: f64 = 2.0;
 
-/// Share of the energy of the bodies' turning that a step may be off by, whatever it was. Pinned by `ground::torsion`.
+/// Energy that a step may gain in any case, as a share of the energy of the bodies' relative
+/// rotation. Pinned by `ground::torsion`.
 const SURE: f64 = 1e-3;
 
-/// What a torsion element is to do in a step.
+/// Data of a torsion element for one step.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Turn {
-    /// Rotation of body B in the frame of body A, at the start.
+    /// Rotation of body B in the frame of body A, at the start of the step.
     pub relative: DQuat,
-    /// What it acts about, a unit vector in the frame of body A.
+    /// Axis of the joint, a unit vector in the frame of body A.
     pub axis: DVec3,
-    /// Twist for each radian about it.
+    /// Change of the twist per rotation about the axis, rad/rad.
     pub leverage: f64,
-    /// How far the bodies turn across it in the step, rad.
+    /// Relative rotation of the bodies across the axis in the step, rad.
     across: f64,
-    /// Energy of their turning, J.
+    /// Energy of the relative rotation of the bodies, J.
     motion: f64,
-    /// Damping that is ordered, N m s/rad.
+    /// Damping with respect to the twist that the joint was given, N m s/rad.
     pub damping: f64,
 }
 
 impl Turn {
-    /// The gradient of an element's twist in the middle of a step; none where it has no meaning.
+    /// Data for an element from the gradient of its twist at the middle of a step. Returns none if the twist has no meaning.
     pub(crate) fn of(element: &Element, line: &Line, bodies: &[Body], time: f64) -> Option<Self> {
         let [a, b] = element
             .ends
@@ -69,19 +69,20 @@ impl Turn {
         })
     }
 
-    /// Least damping in units of stiffness, s.
+    /// Least damping divided by the stiffness, s. `time` is the duration of the step.
     pub(crate) fn across_damping(&self, time: f64) -> f64 {
         ACROSS * self.across * self.leverage * time
     }
 
-    /// How far the bodies have turned about what was ordered, rad, now that B stands like this in the frame of A.
+    /// Rotation of the bodies about the joint's axis in the step, rad. `relative` is the rotation of B in the frame of A now.
     fn turned(&self, relative: DQuat) -> f64 {
         let by = shortest(relative * self.relative.inverse());
         2.0 * asin(by.xyz().dot(self.axis).clamp(-1.0, 1.0))
     }
 
-    /// The twist after a step that began with `before`, where it now seems to be `seen` within some turns, and whether it
-    /// still is another one. `slipped` if it was before the step; `energy` is what the element stores at a twist.
+    /// Returns the twist after a step, and whether it counts as slipped: it differs from the rotation of the bodies, or their
+    /// tilt is too large to be sure. `before` is the twist at the start of the step, `seen` the twist that the bodies show, up to
+    /// full turns. `slipped` is the state before the step; `energy` gives the stored energy at a twist.
     pub(crate) fn arrive(
         &self,
         [before, seen]: [f64; 2],
@@ -95,7 +96,7 @@ impl Turn {
         let off = seen - carried;
         let off = off - TAU * (off / TAU).round();
         let whole = carried + off;
-        // What would be won has to come from what its damping took.
+        // The energy that the element would gain must come from the energy that its damping took.
         let won = energy(whole) - energy(carried);
         let taken = self.damping * (self.leverage * by).powi(2) / time;
         let upright = self.leverage <= UPRIGHT;

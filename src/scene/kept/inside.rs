@@ -1,4 +1,4 @@
-//! What an element has in the engine's solver, to and fro.
+//! Converts an element's data in the engine's solver to the data of a snapshot, and back.
 
 use crate::scene::held::{Inside, Joints};
 use crate::scene::kept::KeptInside;
@@ -6,7 +6,7 @@ use bevy::prelude::Entity;
 
 impl KeptInside {
     pub(crate) fn of(inside: &Inside) -> Self {
-        // The rest is found anew before each step.
+        // Fields that are not kept are found anew before each step.
         let Inside {
             joints,
             hidden,

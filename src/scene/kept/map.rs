@@ -1,11 +1,11 @@
-//! Whose memory it is: entities, which another world calls otherwise.
+//! Maps the entities in a snapshot to those of another world.
 
 use crate::scene::kept::Kept;
 use bevy::ecs::entity::{EntityMapper, MapEntities};
 use bevy::prelude::Entity;
 
 impl Kept {
-    /// Every entity that is named, contexts first, then bodies, then elements.
+    /// All entities in the snapshot: first contexts, then bodies, then elements.
     pub(crate) fn entities(&self) -> impl Iterator<Item = Entity> {
         let left = self.left.iter().map(|(context, _)| *context);
         let unloaded = self.unloaded.iter().map(|(context, ..)| *context);

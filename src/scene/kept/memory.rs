@@ -1,4 +1,4 @@
-//! What an element remembers, back into its row.
+//! Writes what an element remembers back into its row.
 
 use crate::scene::kept::Memory;
 use crate::scene::rows::ElementRow;

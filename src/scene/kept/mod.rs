@@ -1,8 +1,9 @@
-//! All that the springs' next step depends on and that no component says, as plain data.
+//! The data of a snapshot: everything on which the next step of the springs depends and that is not
+//! in the components of entities.
 //!
-//! Going back, rows are made anew from the components, as they are for elements that are new, and then given what they
-//! remembered. So only memory is kept: laws, ends, components of the scene and coefficients come out the same to the last
-//! bit.
+//! To restore a snapshot, all rows are made anew from the components, as for new elements, and then get what they
+//! remembered. So a snapshot needs only that memory. Laws, ends, the components of the scene and the coefficients of
+//! solvers come out the same to the last bit.
 
 mod inside;
 mod map;
@@ -17,27 +18,27 @@ use crate::scene::rows::{BodyFlags, ElementFlags, EnergyLedger, Raised, Rest, Sw
 use bevy::math::{DQuat, DVec3, Vec3};
 use bevy::prelude::Entity;
 
-/// No body.
+/// Index that stands for no body.
 pub(crate) const NONE: u32 = u32::MAX;
 
-/// What is kept of a scene.
+/// The data of a scene.
 #[derive(Clone, Debug, Default)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Kept {
     pub(crate) contexts: Vec<KeptContext>,
-    /// Component by component, in the order in which each solves them; then those that are in none.
+    /// Elements, component by component, in the order in which each component solves them; then elements in no component.
     pub(crate) elements: Vec<KeptElement>,
-    /// Likewise.
+    /// Bodies, component by component, in the order within each component.
     pub(crate) bodies: Vec<KeptBody>,
-    /// Components of which more is known than their elements and bodies.
+    /// Components that have data besides that of their elements and bodies.
     pub(crate) groups: Vec<KeptGroup>,
-    /// What elements that are gone have left in the engine, and in which context.
+    /// Context and data of joints and hidden bodies that must still be removed from the engine, as their element no longer acts.
     pub(crate) left: Vec<(Entity, KeptInside)>,
-    /// Bodies that no element moves any more, and what they have besides forces.
+    /// Context and handle of bodies that no element moves any more, with the settings that must still be restored.
     pub(crate) unloaded: Vec<(Entity, BodyId, Raised)>,
-    /// Seconds that the engine stepped in the last tick.
+    /// Simulated time of the last tick, s.
     pub(crate) time: f64,
-    /// The engine has not gone back: what it has of ours is that of the world.
+    /// Whether the engine is not restored with the springs, so that it keeps its present joints and settings.
     pub(crate) engine_stays: bool,
 }
 
@@ -46,7 +47,7 @@ pub(crate) struct Kept {
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct KeptContext {
     pub(crate) entity: Entity,
-    /// It was stepped in the last tick.
+    /// Whether it was stepped in the last tick.
     pub(crate) stepped: bool,
     pub(crate) sweeps: Sweeps,
 }
@@ -56,10 +57,11 @@ pub(crate) struct KeptContext {
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct KeptElement {
     pub(crate) entity: Entity,
-    /// Indices of the bodies that it moves, or [`NONE`].
+    /// Indices in [`Kept::bodies`] of the bodies that it moves, or [`NONE`].
     pub(crate) on: [u32; 2],
-    /// Stiffness and damping that acted last, N/m and N s/m, and the rest length, m.
+    /// Stiffness (N/m) and damping (N s/m) that acted last.
     pub(crate) numbers: [f32; 2],
+    /// Rest length that acted last, m.
     pub(crate) rest_length: Option<f32>,
     pub(crate) flags: ElementFlags,
     pub(crate) ledger: EnergyLedger,
@@ -72,18 +74,18 @@ pub(crate) struct KeptElement {
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Memory {
-    /// Last direction from end A to end B that was well defined.
+    /// Last well-defined direction from end A to end B.
     pub(crate) direction: Option<DVec3>,
-    /// Last length or twist.
+    /// Last length, m, or twist, rad.
     pub(crate) length: f64,
     pub(crate) controller: Controller,
-    /// Where its ends were after the last step.
+    /// Positions of its ends after the last step, as in the element's row.
     pub(crate) places: [Option<DVec3>; 2],
-    /// Last twist, full turns counted.
+    /// Last twist with full turns counted, rad.
     pub(crate) angle: f64,
-    /// How what holds its ends was turned then.
+    /// Rotations, after the last step, of the bodies at its ends.
     pub(crate) facings: [DQuat; 2],
-    /// The bodies' scales.
+    /// Scales of the bodies at its ends.
     pub(crate) scales: [Option<DVec3>; 2],
 }
 
@@ -94,18 +96,19 @@ pub(crate) struct KeptBody {
     pub(crate) entity: Entity,
     pub(crate) rank: u64,
     pub(crate) flags: BodyFlags,
-    /// Its second substep is ours.
+    /// Whether the crate gave it a second substep.
     pub(crate) raised_iterations: bool,
-    /// s.
+    /// Time for which it still counts as held, s.
     pub(crate) lingers: f32,
     pub(crate) clear: u8,
-    /// Force (N) and torque (N m) of the user's, and of elements.
+    /// Force (N) and torque (N m) of the user.
     pub(crate) user: [Vec3; 2],
+    /// Force (N) and torque (N m) of elements.
     pub(crate) elements: [Vec3; 2],
     pub(crate) now: (DVec3, Vec3),
     pub(crate) rest: Rest,
     pub(crate) raised: Raised,
-    /// s.
+    /// Substep with which the engine last solved its component, s.
     pub(crate) substep: f64,
     pub(crate) pulled: u64,
     pub(crate) turned: u64,
@@ -115,15 +118,15 @@ pub(crate) struct KeptBody {
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct KeptGroup {
-    /// Index of one of its bodies.
+    /// Index of one of its bodies in [`Kept::bodies`].
     pub(crate) body: u32,
     pub(crate) held: bool,
     pub(crate) is_asleep: bool,
-    /// Of one that is solved in an assembly of its own.
+    /// Memory of its assembly, if it has one.
     pub(crate) assembly: Option<Box<Remembered>>,
 }
 
-/// What an element has in the engine's solver.
+/// Data of an element in the engine's solver.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct KeptInside {
@@ -137,7 +140,7 @@ pub(crate) struct KeptInside {
 }
 
 impl Kept {
-    /// Bytes that it takes in memory.
+    /// Size in memory, bytes.
     pub(crate) fn bytes(&self) -> usize {
         let insides = self.elements.iter().filter_map(|e| e.inside.as_deref());
         let insides = insides.chain(self.left.iter().map(|(_, inside)| inside));

@@ -1,5 +1,5 @@
-//! What no lane is for: force laws, stiff springs and strong dampers, accuracy by tolerance, rest lengths yet to be found, ends that
-//! meet.
+//! Solves a lone element that cannot be solved in a lane: one with a force law, a stiff spring or a strong damper, without a
+//! captured rest length, with ends that meet, or under a tolerance.
 
 use super::Way;
 use crate::dynamics::body::is_within;
@@ -12,22 +12,22 @@ use crate::dynamics::tolerance::{Method, Outcome};
 use crate::scene::rows::{ElementFlags, ElementRow, Solved};
 use crate::scene::step::Step;
 
-/// An element about to be solved by itself.
+/// A lone element before it is solved by itself.
 pub(super) struct Alone {
     pub points: [FreePoint; 2],
-    /// Substeps beyond those of all of the bodies at both ends; none of an end that it does not move.
+    /// Number of extra substeps for which the body at each end asks; none at an end that the element does not move.
     pub more: [Option<usize>; 2],
 }
 
 impl Alone {
-    /// Takes an element through the step; false if that is not for here: its direction or its law means nothing, or the
-    /// engine would not fly a body so fast. Captures its rest length if need be.
+    /// Takes an element through the step. Captures its rest length if there is none. Returns false if the general solver is
+    /// needed: its direction or law is undefined, or a body would be faster than the engine allows.
     pub(super) fn solve(&self, step: &Step, row: &mut ElementRow, way: &mut Way) -> bool {
         let Some((pair, start)) = pair_of(row, &self.points) else {
             return false;
         };
         row.inverse_mass = pair.inverse_mass;
-        // What is lost is what its damper took: exact for a linear one at any damping.
+        // The energy that is lost is the heat of the damper. For a linear damper that is exact at any damping.
         let damped = row.is_damped();
         let before = damped.then(|| row.energy_of(&pair, &start, row.length));
         let (outcome, end) = drive(step, row, &pair, start);
@@ -47,7 +47,7 @@ impl Alone {
         true
     }
 
-    /// Finds what both bodies are to be given; false if one of them would fly faster than the engine lets it.
+    /// Computes the pushes of both bodies. Returns false if one of them would be faster than the engine allows.
     fn arrive(
         &self,
         step: &Step,
@@ -57,7 +57,7 @@ impl Alone {
         way: &mut Way,
     ) -> bool {
         let time = step.plan.time;
-        // What the element adds to the free motion of the separation.
+        // Change of the separation and of its rate by the element, beyond free motion.
         let moved = end.d - start.d - time * (start.v + 0.5 * time * pair.outside);
         let sped = end.v - start.v - time * pair.outside;
         let mass = pair.inverse_mass.recip();
@@ -65,7 +65,7 @@ impl Alone {
         for (end, point) in self.points.iter().enumerate() {
             let sign = if end == 0 { -1.0 } else { 1.0 };
             let Some(more) = self.more[end] else {
-                // What holds this end moves it against what the other end is given.
+                // The motion of this end does work against the impulse that the other end gets.
                 work -= (sign * mass * sped).dot(point.velocity);
                 continue;
             };
@@ -87,7 +87,7 @@ impl Alone {
     }
 }
 
-/// The element and its motion; none where its direction or its law means nothing.
+/// Returns the element and its relative motion; none if its direction or its law is undefined.
 fn pair_of(row: &mut ElementRow, [a, b]: &[FreePoint; 2]) -> Option<(Pair, Separation)> {
     let (d, v) = (b.position - a.position, b.velocity - a.velocity);
     let rounding = rounding(a.position, b.position);
@@ -117,7 +117,7 @@ fn pair_of(row: &mut ElementRow, [a, b]: &[FreePoint; 2]) -> Option<(Pair, Separ
     Some((pair, Separation::new(d, v, row.direction())))
 }
 
-/// Goes over the step.
+/// Integrates over the step.
 fn drive(
     step: &Step,
     row: &mut ElementRow,

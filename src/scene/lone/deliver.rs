@@ -1,4 +1,4 @@
-//! Gives the bodies of lone elements what takes them where these do.
+//! Gives the bodies of lone elements their pushes.
 
 use super::{Lone, Route, Way};
 use crate::backend::Engine;
@@ -8,7 +8,7 @@ use crate::scene::step::Step;
 use std::sync::atomic::Ordering;
 
 impl Lone {
-    /// Gives all bodies theirs. Says whether some body has colliders now that had none, or the other way round.
+    /// Gives the bodies of all solved elements their pushes. Returns whether some body gained or lost its colliders.
     pub(crate) fn deliver(
         &self,
         step: &Step,

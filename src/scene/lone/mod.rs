@@ -1,8 +1,9 @@
-//! Elements that share their bodies with no other and turn neither: each is the closed form of [`crate::dynamics::pair`].
+//! Lone elements: they share their bodies with no other element and do not turn them. The closed form of
+//! [`crate::dynamics::pair`] solves each of them.
 //!
-//! Most elements of most scenes are of this kind. All of them are read and solved first, several at a time and on all threads
-//! ([`solve`]), and then what they have come to is given to their bodies ([`deliver`]). One that has anything special (locked
-//! axes, ends that coincide, one of two bodies asleep) is left to [`super::assembly`] for a step.
+//! Most elements of most scenes are of this kind. First all of them are read and solved, several at a time and on all threads
+//! ([`solve`]). Then their bodies get the results ([`deliver`]). An element with a special case is left to [`super::assembly`]:
+//! for one step if its ends coincide or one of two bodies is asleep, for good if a body has locked axes.
 
 mod alone;
 mod deliver;
@@ -17,26 +18,26 @@ use crate::threads;
 use bevy::prelude::Entity;
 pub(crate) use solve::{Piece, Worker};
 
-/// The lone elements of a world of the engine.
+/// The lone elements of a context.
 pub(crate) struct Lone {
     pub context: Entity,
     /// In the order of their rows.
     pub pairs: Vec<Pair>,
 }
 
-/// One lone element, and what it moves. All that is needed of it to begin to read; what is read next is known soon enough to
-/// come from memory in time.
+/// One lone element and the bodies that it moves: all that is needed to begin to read it. So the processor knows early
+/// which rows it must load from memory.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Pair {
     /// Index of its row.
     pub element: u32,
-    /// Indices of the rows of the bodies that it moves, or [`NONE`],
+    /// Row indices of the bodies that it moves, or [`NONE`].
     bodies: [u32; 2],
-    /// and what the engine calls those.
+    /// Engine handles of the bodies that it moves.
     ids: [BodyId; 2],
 }
 
-/// No body.
+/// Index that stands for no body.
 const NONE: u32 = u32::MAX;
 
 impl Pair {
@@ -53,14 +54,14 @@ impl Pair {
         pair
     }
 
-    /// Index of the row of the body that it moves at an end, and what the engine calls that.
+    /// Row index and engine handle of the body at an end, if the element moves it.
     #[inline(always)]
     pub(crate) fn movable(&self, end: usize) -> Option<(usize, BodyId)> {
         let body = self.bodies[end];
         (body != NONE).then_some((body as usize, self.ids[end]))
     }
 
-    /// Index of its component.
+    /// Index of its group.
     pub(crate) fn group(&self, bodies: &[BodyRow]) -> Option<u32> {
         let body = self.movable(0).or(self.movable(1))?;
         Some(bodies[body.0].rare.group)
@@ -70,44 +71,44 @@ impl Pair {
 /// How a lone element goes through the step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) enum Route {
-    /// It has nothing to do with this step.
+    /// Not solved here, because contacts or joints hold its component.
     #[default]
     None,
-    /// Solved; its bodies are to be given what that takes.
+    /// Solved. Its bodies must be given their pushes.
     Solved,
-    /// It has no body any more that it could move.
+    /// Not solved, because one of its bodies can no longer be moved.
     Gone,
     /// Asleep.
     Asleep,
-    /// By the general solver in this step.
+    /// Needs the general solver in this step.
     GeneralOnce,
-    /// By the general solver for as long as can be seen.
+    /// Needs the general solver in this step and in later ones.
     General,
 }
 
-/// What has become of a lone element in the step.
+/// Result of a lone element in a step.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Way {
-    /// For the bodies at both ends.
+    /// Velocity and force for the body at each end.
     pub given: [Given; 2],
     pub route: Route,
-    /// Each of them may be slow enough to be at rest.
+    /// Whether the body at each end may be slow enough to rest.
     pub slow: [bool; 2],
-    /// Each of them has colliders.
+    /// Whether the body at each end has colliders.
     pub can_touch: [bool; 2],
-    /// The engine takes one substep alone, and so a second one.
+    /// Whether the bodies must be given a second substep, because the engine would take only one.
     pub second_substep: bool,
-    /// Something was done to it: its bodies must not fall asleep.
+    /// Whether the element or one of its ends was changed, so that its bodies must not fall asleep.
     pub disturbed: bool,
 }
 
-/// Elements above which it is worth waking other threads. Pinned by the benchmark `own/isolated`.
+/// Number of elements from which on several threads are worth their start-up time. Pinned by the benchmark `own/isolated`.
 const WORTH_SHARING: usize = 1024;
 
-/// Pieces for each thread: what one has done sooner, another need not wait for.
+/// Number of pieces per thread. With several pieces, a thread that is done early can take work from others.
 const PIECES: usize = 4;
 
-/// Into how many pieces lone elements are cut.
+/// Number of pieces into which `elements` lone elements are divided.
 pub(crate) fn pieces(elements: usize) -> usize {
     if elements < WORTH_SHARING {
         return 1;
@@ -118,7 +119,7 @@ pub(crate) fn pieces(elements: usize) -> usize {
     }
 }
 
-/// Lists the lone elements of every world; `is_lone` says which rows are.
+/// Lists the lone elements of every context. `is_lone` says which of the plain elements are lone.
 pub(crate) fn list(
     elements: &[ElementRow],
     bodies: &[BodyRow],

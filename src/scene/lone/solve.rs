@@ -1,4 +1,4 @@
-//! Reads lone elements and solves them. Nothing is written but their own rows and what has become of them.
+//! Reads lone elements and solves them. Only their own rows and results are written.
 
 use super::alone::Alone;
 use super::{Pair, Route, Way};
@@ -14,61 +14,62 @@ use crate::scene::rows::{BodyFlags, BodyRow, Cut, ElementFlags, ElementRow, Solv
 use crate::scene::step::Step;
 use pulp::{Simd, WithSimd};
 
-/// Lanes that are filled before they go: what has just been put into one cannot be taken out as a vector at once.
+/// Number of groups of lanes that are filled before the first group is solved. Numbers that were just written one by one
+/// cannot be loaded as a vector at once.
 const GROUPS: usize = 2;
 
-/// How many are read before they are solved.
+/// Number of elements that are read before they are solved.
 const BATCH: usize = GROUPS * LANES;
 
-/// An element that goes through the step in a lane beside others.
+/// An element in a lane beside others.
 #[derive(Clone, Copy)]
 struct InLane {
-    /// Its place among those of the worker.
+    /// Index among the elements of the worker's piece.
     at: u32,
-    /// It moves the body at each end.
+    /// Whether the element moves the body at each end.
     moves: [bool; 2],
 }
 
-/// What reads and solves a piece of all lone elements, kept from step to step.
+/// Reads and solves a piece of all lone elements. It is kept from step to step.
 #[derive(Default)]
 pub(crate) struct Worker {
     lanes: [Lanes; GROUPS],
-    /// What is in its lanes.
+    /// The elements in its lanes.
     taken: Vec<InLane>,
-    /// Some body can be moved no more.
+    /// Whether some body can no longer be moved.
     pub stale: bool,
 }
 
-/// The step, as each lane takes it.
+/// Data of a step that is the same for all lanes.
 #[derive(Clone, Copy)]
 pub(super) struct Pace {
     pub(super) stride: Stride,
-    /// A micro-step, s.
+    /// Duration of a micro-step, s.
     micro: f64,
-    /// An element that so many do not resolve may take more.
+    /// Whether an element may take more micro-steps if these do not resolve it.
     may_resolve: bool,
     solved: Solved,
 }
 
-/// What is at an end of a lone element: a body that it moves, or a point that it does not.
+/// State of an end of a lone element: of a body that it moves, or of a point that it does not move.
 #[derive(Clone, Copy, Default)]
 struct Found {
     point: FreePoint,
-    /// Substeps beyond those of all; none of what it does not move.
+    /// Number of extra substeps for which the body asks; none for a point that the element does not move.
     more: Option<usize>,
     is_asleep: bool,
     is_locked: bool,
     can_touch: bool,
     is_disturbed: bool,
     speed_square: f32,
-    /// Largest coordinate of its place, m.
+    /// Largest coordinate of its position, m.
     place: f32,
 }
 
 /// A piece of all lone elements.
 pub(crate) struct Piece<'a, S> {
     pub lone: &'a [Pair],
-    /// The rows that they are among.
+    /// Rows that include those of the piece.
     pub rows: Cut<'a, ElementRow>,
     pub bodies: &'a [BodyRow],
     pub ways: &'a mut [Way],
@@ -101,7 +102,7 @@ impl Worker {
         }
     }
 
-    /// Reads an element, and solves it or puts it into a lane.
+    /// Reads an element, and solves it or puts it into a lane. If neither is possible, returns its route.
     #[inline(always)]
     fn take(
         &mut self,
@@ -168,7 +169,7 @@ impl Worker {
         }
     }
 
-    /// What is at an end.
+    /// Reads an end of an element.
     #[inline(always)]
     fn find(
         &mut self,
@@ -186,7 +187,7 @@ impl Worker {
                 velocity: (to - from) / step.plan.time,
                 ..FreePoint::default()
             };
-            // It is slow whatever it does.
+            // A point that the element does not move counts as slow at any speed.
             return Ok(Found {
                 point,
                 ..Found::default()
@@ -209,7 +210,7 @@ impl Worker {
         })
     }
 
-    /// Solves what is in the lanes.
+    /// Solves the elements in the lanes.
     #[inline(always)]
     fn finish<S: Simd>(
         &mut self,
@@ -251,7 +252,7 @@ impl Worker {
                         force: push.force,
                     };
                 } else {
-                    // What holds this end moves it against what the other end is given.
+                    // The motion of this end does work against the impulse that the other end gets.
                     row.ledger.work -= push.work;
                 }
             }
@@ -260,7 +261,7 @@ impl Worker {
     }
 }
 
-/// A worker about to go.
+/// A worker, the step and a piece, to be run with vector instructions.
 struct Going<'a, 'b, V>(&'a mut Worker, &'a Step, Piece<'b, V>);
 
 impl<V: Sight> WithSimd for Going<'_, '_, V> {
@@ -273,7 +274,8 @@ impl<V: Sight> WithSimd for Going<'_, '_, V> {
 }
 
 impl Step {
-    /// How lanes take the step; none if a step is not like any other.
+    /// Data of the step for lanes; none if lanes cannot be used, because of a tolerance,
+    /// extrapolation or other substeps than usual.
     pub(super) fn pace(&self) -> Option<Pace> {
         let count = self.accuracy.plain()?;
         if self.alike.is_some() || self.terms(0).second_substep {
@@ -295,7 +297,8 @@ impl Step {
     }
 }
 
-/// Stiffness and rest length, and the poles of a linear element that a lane is for.
+/// Returns stiffness and rest length, and the poles, if a lane can solve the element. It must be
+/// linear, with a rest length above zero.
 #[inline(always)]
 pub(super) fn plain(
     row: &mut ElementRow,
@@ -325,7 +328,7 @@ fn sleeps(row: &ElementRow, bodies: &[BodyRow], sight: &impl Sight) -> bool {
         .all(|body| sight.is_asleep(bodies[body].id))
 }
 
-/// The route of an element with a body that is asleep.
+/// Returns the route of an element with a body that is asleep.
 #[cold]
 fn rests(
     step: &Step,

@@ -1,4 +1,4 @@
-//! In a lane beside others, an element goes as it would alone.
+//! Tests that an element has the same result in a lane beside others as alone.
 
 use super::Way;
 use super::alone::Alone;
@@ -15,7 +15,7 @@ use bevy::math::{DVec3, Vec3};
 use bevy::prelude::Entity;
 use pulp::{Simd, WithSimd};
 
-/// A step in so many micro-steps.
+/// A step with the given number of micro-steps.
 fn step(microsteps: u32) -> Step {
     let plan = StepPlan {
         time: 1.0 / 60.0,
@@ -38,7 +38,7 @@ fn step(microsteps: u32) -> Step {
     }
 }
 
-/// Numbers between 0 and 1, the same in each run.
+/// Pseudo-random numbers between 0 and 1, the same in each run.
 struct Dice(u64);
 
 impl Dice {
@@ -55,12 +55,12 @@ impl Dice {
         DVec3::new(each(), each(), each())
     }
 
-    /// As the engine has it.
+    /// A random vector in the engine's single precision.
     fn rounded(&mut self, size: f64) -> DVec3 {
         self.vector(size).as_vec3().as_dvec3()
     }
 
-    /// An element, and its two ends; one of some elements does not move.
+    /// A random element, its two ends, and whether each end moves. In every fourth lane the first end does not move.
     fn element(&mut self, lane: usize) -> (ElementRow, [FreePoint; 2], [bool; 2]) {
         let mut row = ElementRow::new(Entity::PLACEHOLDER);
         row.numbers = Numbers {
@@ -69,7 +69,7 @@ impl Dice {
             rest_length: Some((0.1 + self.number()) as f32),
         };
         let moves = [lane % 4 != 1, true];
-        // Some are fast enough to leave the engine's bounds.
+        // Some ends are faster than the engine allows.
         let speed = if self.number() < 0.02 { 900.0 } else { 20.0 };
         let place = self.rounded(100.0);
         let apart = self.rounded(if lane % 4 == 3 { 0.2 } else { 2.0 });

@@ -1,4 +1,4 @@
-//! The engine.
+//! The test engine.
 
 use crate::backend::{BodyId, Engine, Push, Seen, Sight, StepPlan, Worlds, Wrench};
 use crate::dynamics::body::{Body, Spin};
@@ -6,10 +6,10 @@ use crate::dynamics::delivery::{Delivery, Spinning};
 use bevy::math::{DMat3, DQuat, DVec3, Mat3, Quat};
 use bevy::prelude::*;
 
-/// Seconds of a step.
+/// Duration of a step, s.
 pub(super) const DT: f64 = 1.0 / 60.0;
 
-/// A body, as entities name it and as the engine has it.
+/// A body: the component of its entity, and its state in the engine.
 #[derive(Component, Clone, Copy)]
 pub(super) struct Brick {
     pub index: u32,
@@ -28,20 +28,20 @@ pub(super) struct Own {
     pub substeps: usize,
 }
 
-/// Inverse inertia in the world.
+/// Inverse inertia in the world frame.
 fn inverse_inertia(rotation: Quat, inertia: Vec3) -> Mat3 {
     let frame = Mat3::from_quat(rotation);
     frame * Mat3::from_diagonal(inertia.recip()) * frame.transpose()
 }
 
-/// Turns a brick by its spin for a while; its momentum stays.
+/// Turns a brick by its spin for `time` seconds; its angular momentum is constant.
 fn turn_on(rotation: Quat, spin: Vec3, inertia: Vec3, time: f32) -> (Quat, Vec3) {
     let momentum = inverse_inertia(rotation, inertia).inverse() * spin;
     let turned = (Quat::from_scaled_axis(time * spin) * rotation).normalize();
     (turned, inverse_inertia(turned, inertia) * momentum)
 }
 
-/// What the engine tells of it: see `TurnRule`.
+/// How the engine integrates rotation: see `TurnRule`.
 fn turn(spinning: &Spinning, spin: DVec3, delivery: &Delivery) -> (DQuat, DVec3) {
     let (body, schedule) = (spinning.body, spinning.schedule);
     let mut state = (body.rotation.as_quat(), (spin + delivery.jump).as_vec3());
@@ -70,7 +70,7 @@ impl Own {
     pub fn step(&mut self) {
         let h = DT as f32 / self.substeps as f32;
         for b in &mut self.bricks {
-            // What a torque gives is worked out once a step, as in most engines.
+            // The angular acceleration by the torque is computed once per step, as in most engines.
             let pull = inverse_inertia(b.rotation, b.inertia) * b.wrench.torque;
             for _ in 0..self.substeps {
                 b.velocity += h * (self.gravity + b.wrench.force / b.mass);
@@ -165,7 +165,7 @@ impl Engine for Own {
     fn wake(&mut self, _: BodyId) {}
 }
 
-/// The one world that there is.
+/// The only context of the tests.
 pub(super) struct Only<'a>(pub &'a Own);
 
 impl Worlds for Only<'_> {

@@ -1,7 +1,8 @@
-//! Scene and solver with an engine of a few lines in place of Rapier: what they need of an engine is no more than that.
+//! Tests of scene and solver with a small engine in place of Rapier. They show that the crate needs
+//! no more of an engine than that.
 //!
-//! Its bricks fly in equal substeps, in single precision, under the velocity and the force that they are given. It turns them
-//! its own way: by the exponential of the spin, with the angular momentum kept.
+//! The engine moves bodies ("bricks") in equal substeps, in single precision, with the velocity and the force that they are
+//! given. It turns them by the exponential of the spin, with constant angular momentum.
 
 mod engine;
 
@@ -24,7 +25,7 @@ use bevy::math::{DVec3, Quat};
 use bevy::prelude::*;
 use engine::{Brick, Only, Own};
 
-/// Ends are bricks, or points of the world.
+/// Finds ends, which are bricks or points of the world.
 #[derive(SystemParam)]
 struct Ends<'w, 's> {
     bricks: Query<'w, 's, &'static Brick>,
@@ -94,7 +95,7 @@ impl Finder for Ends<'_, '_> {
     }
 }
 
-/// A world with that engine.
+/// A world with the test engine.
 struct Lab {
     world: World,
     engine: Own,
@@ -142,7 +143,7 @@ impl Lab {
         self.world.spawn(brick).id()
     }
 
-    /// Finds what there is: before the first tick alone, for nothing comes and goes here.
+    /// Makes all rows. It runs only before the first tick, because nothing appears or disappears in these tests.
     fn find(&mut self) {
         let find = |mut scene: ResMut<Scene>,
                     elements: Query<Parts, Acts>,
@@ -155,7 +156,7 @@ impl Lab {
         self.world.run_system_cached(find).expect("a system");
     }
 
-    /// One step: read, solve, write, the engine's own, observe, show.
+    /// One step: read, solve, write, step the engine, observe, show.
     fn tick(&mut self) {
         let Self {
             world,
@@ -181,8 +182,8 @@ impl Lab {
         world.run_system_cached(show).expect("a system");
     }
 
-    /// Runs along a reference of which a row is a quarter of a tick; returns how far bricks are from it at most, and the
-    /// readout of an element from their distance.
+    /// Steps `ticks` times and compares bricks with a reference that has four rows per tick. `at` has the index of each brick,
+    /// and the columns of its coordinates. Returns the greatest distance of a brick from the reference, m.
     fn follow(&mut self, rows: &str, ticks: usize, at: &[(usize, [Option<usize>; 3])]) -> f64 {
         self.find();
         let mut worst = 0.0_f64;
@@ -214,7 +215,7 @@ fn an_elastic_pendulum_swings_in_any_engine_as_in_rapier() {
             .with_rest_length(1.0);
         let spring = lab.world.spawn(spring).id();
         let worst = lab.follow(text, 600, &[(0, [Some(1), Some(2), None])]);
-        // As `elastic_pendulum` asks of Rapier.
+        // `elastic_pendulum` has the same limit for Rapier.
         assert!(worst < 5e-5, "{substeps} substeps: {worst} m");
         let readout = lab.world.get::<SpringReadout>(spring).expect("it is shown");
         let length = lab.engine.bricks[0].at.length();
@@ -261,7 +262,7 @@ fn a_dumbbell_tumbles_in_any_engine_as_in_rapier() {
             (1, [Some(4), Some(5), Some(6)]),
         ];
         let worst = lab.follow(text, 180, &at);
-        // With one, what it is with Rapier: see the report.
+        // With one micro-step, the error is the same as with Rapier: see the report.
         assert!(worst < bar, "{microsteps} micro-steps: {worst} m");
     }
 }

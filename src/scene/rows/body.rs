@@ -1,4 +1,4 @@
-//! What is kept of a body from step to step.
+//! The row of a body: what is kept of it from step to step.
 
 use super::flags::BodyFlags;
 use super::marks::turning_mark;
@@ -7,69 +7,69 @@ use crate::backend::{BodyId, Seen, Wrench};
 use bevy::math::{DVec3, Quat, Vec3};
 use bevy::prelude::Entity;
 
-/// A body at rest: for how long, and where it has been so.
+/// For how long and where a body has been at rest.
 #[derive(Clone, Copy, Debug, Default)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Rest {
     pub position: Vec3,
     pub rotation: Quat,
     pub seconds: f32,
-    /// How fast it has gone away from there, m/s.
+    /// Mean speed at which the body has moved away from `position`, m/s.
     pub rate: f32,
 }
 
-/// One movable body that elements act on: what every step needs, in one line of memory. Thousands of rows do not fit into the
-/// processor's cache, and what is not read need not come.
+/// One movable body on which elements act: the data that every step needs, in one cache line. Thousands of rows do not fit into
+/// the processor's cache, and data that is not read need not be loaded.
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
 pub(crate) struct BodyRow {
     pub entity: Entity,
     pub id: BodyId,
     pub flags: BodyFlags,
-    /// Number of the tick in which it was given its share.
+    /// Number of the tick in which it was last given its share of force.
     pub given: u32,
-    /// The user's force, N,
+    /// Force of the user, N.
     pub user_force: Vec3,
-    /// and that of elements over the coming step.
+    /// Force of elements over the coming step, N.
     pub share_force: Vec3,
-    /// For so many steps nothing can come near its component. It stands here and not there so that components that are found anew
-    /// do not forget it.
+    /// Number of steps in which nothing can come near its component. It is stored in the body, so that it is not
+    /// lost when components are found anew.
     pub clear: u8,
     pub rare: Box<RareBody>,
 }
 
-/// What not every step needs of a body.
+/// Data of a body that not every step needs.
 #[derive(Clone, Debug)]
 pub(crate) struct RareBody {
-    /// The world of the engine in which it is.
+    /// Entity of the engine's world that contains the body.
     pub context: Entity,
-    /// Index of its component,
+    /// Index of its group.
     pub group: u32,
-    /// and its own within that.
+    /// Index of the body within its component.
     pub slot: u32,
-    /// Its place among the bodies of its component: see [`crate::backend::Movable::rank`].
+    /// Sort key within its component: see [`crate::backend::Movable::rank`].
     pub rank: u64,
-    /// Which elements act on it, as a hash; a change wakes it.
+    /// Hash of the elements that act on it. A change wakes the body.
     pub signature: u64,
-    /// Since when and where it has been at rest, if it is.
+    /// For how long and where it has been at rest, if it is at rest.
     pub rest: Rest,
-    /// For so long it still counts as held, s.
+    /// Time for which it still counts as held, s.
     pub lingers: f32,
-    /// The user's torque, N m,
+    /// Torque of the user, N m. Valid only with [`BodyFlags::USER_TORQUE`].
     pub user_torque: Vec3,
-    /// and that of elements.
+    /// Torque of elements, N m. Valid only with [`BodyFlags::SHARES_TORQUE`].
     pub share_torque: Vec3,
-    /// What it has been lent besides forces.
+    /// Settings of the engine's body that the crate has changed for a time.
     pub raised: Raised,
-    /// Of all its elements, N/m.
+    /// Total stiffness of its elements without torsion elements, N/m. Infinite if an element has a force law.
     pub stiffness: f64,
-    /// The engine's substep in the last step, s.
+    /// Substep with which the engine last solved its component, s.
     pub substep: f64,
-    /// Centre of mass after the last step that was noted, and its velocity.
+    /// Position (m) and velocity (m/s) of the centre of mass when they were last stored after a step.
     pub now: (DVec3, Vec3),
-    /// Acceleration by everything but elements in the last step, as a hash.
+    /// Hash of its acceleration by everything but elements in the last step.
     pub pulled: u64,
-    /// Rotation and angular velocity after the last step that was noted, of a body that elements turn, as a hash.
+    /// Hash of rotation and angular velocity when `now` was stored, for a body that elements turn.
     pub turned: u64,
 }
 
@@ -107,7 +107,7 @@ impl BodyRow {
         self.flags.contains(flags)
     }
 
-    /// Notes whether it has colliders; says whether that is new.
+    /// Stores whether the body has colliders. Returns whether that has changed.
     #[inline(always)]
     pub(crate) fn notice_colliders(&mut self, can_touch: bool) -> bool {
         let new = self.has(BodyFlags::CAN_TOUCH) != can_touch;
@@ -115,7 +115,7 @@ impl BodyRow {
         new
     }
 
-    /// Force and torque of the user's.
+    /// Force and torque of the user.
     #[inline(always)]
     pub(crate) fn user(&self) -> Wrench {
         let torque = if self.has(BodyFlags::USER_TORQUE) {
@@ -138,7 +138,7 @@ impl BodyRow {
         }
     }
 
-    /// What it was given in a tick, if it was.
+    /// Force and torque of elements, if the body was given them in the tick with this number.
     #[inline(always)]
     pub(crate) fn share(&self, tick: u32) -> Option<Wrench> {
         let torque = if self.has(BodyFlags::SHARES_TORQUE) {
@@ -152,13 +152,13 @@ impl BodyRow {
         })
     }
 
-    /// Whether something else than the engine's step has moved it, now that its centre of mass is here.
+    /// Whether something other than the engine's step may have moved the body. `at` is its centre of mass now.
     pub(crate) fn was_displaced(&self, at: DVec3) -> bool {
         !self.has(BodyFlags::NOTED) || self.rare.now.0 != at
     }
 
-    /// Whether something else than elements and the engine's step can have changed its energy since the last step,
-    /// now that its centre of mass is here; but for what acts on it.
+    /// Whether something other than elements and the engine's step may have changed its energy since the last step. Outside
+    /// forces are not considered. `at` is its centre of mass now.
     pub(crate) fn was_perturbed(&self, body: &Seen, at: DVec3) -> bool {
         let turns = self.has(BodyFlags::TURNS);
         let goes_on = !self.was_displaced(at)
@@ -167,7 +167,7 @@ impl BodyRow {
         !goes_on || self.has(BodyFlags::DISTURBED)
     }
 
-    /// Position and velocity of its centre of mass after the last step that was noted.
+    /// Position and velocity of its centre of mass when they were last stored.
     pub(crate) fn place(&self) -> (DVec3, DVec3) {
         (self.rare.now.0, self.rare.now.1.as_dvec3())
     }

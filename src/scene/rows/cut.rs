@@ -1,32 +1,32 @@
-//! Rows cut apart, so that several threads write to them.
+//! Divides rows into runs, so that several threads can write to them.
 
 use std::mem::{replace, take};
 use std::ops::{Index, IndexMut};
 
-/// Rows, by their places among all rows.
+/// Rows that are accessed by their indices among all rows.
 pub(crate) trait Rows<T>: Index<usize, Output = T> {}
 
 impl<T, R: Index<usize, Output = T> + ?Sized> Rows<T> for R {}
 
-/// Rows that are written to.
+/// Rows that can be written to.
 pub(crate) trait RowsMut<T>: IndexMut<usize, Output = T> {}
 
 impl<T, R: IndexMut<usize, Output = T> + ?Sized> RowsMut<T> for R {}
 
-/// A run of rows.
+/// A run of consecutive rows.
 pub(crate) struct Cut<'a, T> {
     rows: &'a mut [T],
-    /// Place of the first among all.
+    /// Index of the first row of the run among all rows.
     first: usize,
 }
 
 impl<'a, T> Cut<'a, T> {
-    /// All of them.
+    /// A run of all rows.
     pub(crate) fn all(rows: &'a mut [T]) -> Self {
         Self { rows, first: 0 }
     }
 
-    /// The same, for a while.
+    /// Borrows the run again.
     pub(crate) fn again(&mut self) -> Cut<'_, T> {
         Cut {
             rows: self.rows,
@@ -34,7 +34,7 @@ impl<'a, T> Cut<'a, T> {
         }
     }
 
-    /// Takes off those before this place.
+    /// Splits off the rows before the index `end` and returns them.
     pub(crate) fn take_before(&mut self, end: usize) -> Self {
         let end = end.clamp(self.first, self.first + self.rows.len());
         let (rows, others) = take(&mut self.rows).split_at_mut(end - self.first);

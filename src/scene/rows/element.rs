@@ -1,4 +1,4 @@
-//! What is kept of an element from step to step.
+//! The row of an element: what is kept of it from step to step.
 
 use super::body::BodyRow;
 use super::flags::ElementFlags;
@@ -17,16 +17,16 @@ use bevy::prelude::*;
 use std::num::NonZeroU32;
 use std::sync::Arc;
 
-/// Where an element is held.
+/// What holds an end of an element.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Held {
-    /// On a rigid body, movable or not, at a point of its own frame.
+    /// A rigid body, movable or not. `local` is the held point in the body's frame, m.
     Body {
         body: BodyId,
         context: Entity,
         local: DVec3,
     },
-    /// A plain entity's path over the coming step: it goes where the game has just put it.
+    /// An entity without a rigid body. Over the coming step the end moves to where the game has just put the entity.
     Path { from: DVec3, to: DVec3 },
 }
 
@@ -37,27 +37,27 @@ impl Held {
     };
 }
 
-/// Since the element began to act, J.
+/// Energies since the element began to act, J.
 #[derive(Clone, Copy, Debug, Default)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct EnergyLedger {
-    /// Turned into heat.
+    /// Energy that the element turned into heat.
     pub dissipated: f64,
-    /// Done on it by changes of its parameters and by ends that something else moves.
+    /// Work that changes of its parameters, and ends that something else moves, did on the element.
     pub work: f64,
 }
 
 /// How an element was solved.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Solved {
-    /// Kicks, or the engine's substeps.
+    /// Number of kicks, or of the engine's substeps.
     pub microsteps: u32,
-    /// Estimate of the error of position that the step added, m; 0 where nobody asked.
+    /// Estimate of the position error that the step added, m; 0 without a tolerance.
     pub error: f32,
     pub method: Method,
-    /// A cap kept the step from being as fine or as exact as was asked.
+    /// Whether a cap kept the step from being as fine or as exact as was asked.
     pub capped: bool,
-    /// A motion of what it was solved with was to be followed, and more micro-steps would have been needed than may be.
+    /// Whether the stiffest motion of its component should be followed but needs more micro-steps than allowed.
     pub unresolved: bool,
 }
 
@@ -73,7 +73,7 @@ impl From<Outcome> for Solved {
     }
 }
 
-/// A row of a body, as a number that takes no more room where there is none.
+/// Row index of a body, stored so that an `Option` of it needs no more memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct BodyIndex(NonZeroU32);
 
@@ -88,8 +88,8 @@ impl BodyIndex {
     }
 }
 
-/// One element: what every step needs, in three lines of memory. Thousands of rows do not fit into the processor's cache, and what is
-/// not read need not come.
+/// One element: the data that every step needs, in three cache lines. Thousands of rows do not fit into the processor's cache,
+/// and data that is not read need not be loaded.
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
 pub(crate) struct ElementRow {
@@ -98,47 +98,48 @@ pub(crate) struct ElementRow {
     on: [Option<BodyIndex>; 2],
     pub flags: ElementFlags,
     pub solved: Solved,
-    /// Inverse of the effective mass of its ends along the line in the last step, 1/kg.
+    /// Inverse effective mass of its ends along the line in the last step, 1/kg.
     pub inverse_mass: f64,
-    /// Last length or twist,
+    /// Last length, m, or twist, rad.
     pub length: f64,
-    /// and its rate.
+    /// Rate of the length, m/s, or of the twist, rad/s.
     pub rate: f64,
     pub law: Option<Arc<Law>>,
     pub trouble: Trouble,
-    /// What it has in the engine's solver, while that solves it.
+    /// Its data in the engine's solver, while the engine solves it.
     pub inside: Option<Box<Inside>>,
     pub rare: Box<RareElement>,
     pub ledger: EnergyLedger,
-    /// Last direction from end A to end B that was well defined; zero before.
+    /// Last well-defined direction from end A to end B; zero if there was none yet.
     direction: DVec3,
-    /// The last coefficients.
+    /// Last coefficients of the closed form.
     pub memo: Memo,
 }
 
-/// What not every step needs of an element.
+/// Data of an element that not every step needs.
 #[derive(Clone, Debug)]
 pub(crate) struct RareElement {
     pub ties: Ties,
     pub guide: Guide,
     pub held: [Held; 2],
-    /// Where its ends were after the last step: a body's own point if elements can move it, else a point
-    /// of the world.
+    /// Positions of its ends after the last step, m: in the body's frame if elements can move the
+    /// body, otherwise in the world frame.
     pub places: [Option<DVec3>; 2],
-    /// How what holds its ends was turned then, where elements cannot turn it and that matters.
+    /// Rotations, after the last step, of the bodies at its ends. Valid only for an element with an axis,
+    /// at an end that elements cannot move.
     pub facings: [DQuat; 2],
-    /// Last twist, full turns counted.
+    /// Last twist with full turns counted, rad.
     pub angle: f64,
-    /// The bodies' scales, held against the rounding noise of their transforms.
+    /// Scales of the bodies at its ends. They ignore the rounding noise of transforms.
     pub scales: [Option<DVec3>; 2],
     pub controller: Controller,
 }
 
-/// Which flag says that an end is watched.
+/// For each end, the flag that says that it must be looked for in every tick.
 const WATCHED: [ElementFlags; 2] = [ElementFlags::A_IS_WATCHED, ElementFlags::B_IS_WATCHED];
 
 impl ElementRow {
-    /// An inert row.
+    /// A row of an element that does not act yet.
     pub(crate) fn new(entity: Entity) -> Self {
         Self {
             entity,
@@ -172,30 +173,30 @@ impl ElementRow {
         self.flags.contains(flags)
     }
 
-    /// Index of the body that it moves at an end.
+    /// Row index of the body at an end, if the element moves it.
     #[inline(always)]
     pub(crate) fn movable(&self, end: usize) -> Option<usize> {
         self.on[end].map(BodyIndex::get)
     }
 
-    /// Indices of all bodies that it moves.
+    /// Row indices of all bodies that it moves.
     pub(crate) fn all_movable(&self) -> impl Iterator<Item = usize> {
         self.on.into_iter().flatten().map(BodyIndex::get)
     }
 
-    /// Its ends that it moves, and the indices of the bodies there.
+    /// Indices of the ends that it moves, with the row indices of the bodies there.
     #[inline(always)]
     pub(crate) fn movable_ends(&self) -> impl Iterator<Item = (usize, usize)> {
         let ends = self.on.into_iter().enumerate();
         ends.filter_map(|(end, on)| Some((end, on?.get())))
     }
 
-    /// Whether it moves both of its ends, one, or none.
+    /// Number of its ends that it moves.
     pub(crate) fn moves(&self) -> usize {
         self.on.iter().flatten().count()
     }
 
-    /// Whether its context is among those that were stepped.
+    /// Whether its context was stepped. An element without a context acts if any context was stepped.
     pub(crate) fn has_acted(&self, bodies: &[BodyRow], stepped: &Stepped) -> bool {
         let stepped = &stepped.worlds;
         if let Some(body) = self.movable(0).or(self.movable(1)) {
@@ -208,18 +209,18 @@ impl ElementRow {
         context.map_or(!stepped.is_empty(), |context| stepped.contains(context))
     }
 
-    /// Whether an end has to be looked for in every tick.
+    /// Whether an end must be looked for in every tick.
     pub(crate) fn is_watched(&self, end: usize) -> bool {
         self.has(WATCHED[end])
     }
 
-    /// Whether some end has.
+    /// Whether any end must be looked for in every tick.
     #[inline(always)]
     pub(crate) fn is_any_watched(&self) -> bool {
         self.flags.intersects(WATCHED[0].union(WATCHED[1]))
     }
 
-    /// Last direction from end A to end B that was well defined.
+    /// Last well-defined direction from end A to end B.
     #[inline(always)]
     pub(crate) fn direction(&self) -> Option<DVec3> {
         (self.direction != DVec3::ZERO).then_some(self.direction)
@@ -230,7 +231,7 @@ impl ElementRow {
         self.direction = direction.unwrap_or(DVec3::ZERO);
     }
 
-    /// All its numbers.
+    /// Its ends, anchors and numbers.
     pub(crate) fn parameters(&self) -> Parameters {
         Parameters {
             ties: self.rare.ties,
@@ -243,22 +244,22 @@ impl ElementRow {
         self.rare.ties = parameters.ties;
     }
 
-    /// What stands beside it makes that of it.
+    /// Sets the law and the guide that result from its companion components.
     pub(crate) fn set_companion(&mut self, companion: Companion) {
         self.law = companion.law;
         self.rare.guide = companion.guide;
     }
 
-    /// What it has in the engine's solver, and in which context.
+    /// Takes its data in the engine's solver out of the row. Also returns the context.
     pub(crate) fn take_inside(&mut self) -> Option<(Entity, Box<Inside>)> {
         let inside = self.inside.take()?;
         Some((inside.context?, inside))
     }
 
-    /// Makes it an inert one but for what is known of the element.
+    /// Resets the row before its components are read anew. Keeps what is remembered of the element.
     pub(crate) fn reset(&mut self) {
         if self.trouble.lasting().is_some() {
-            // Where its ends were when it last acted would make a leap of today's place.
+            // The ends may have moved while the element had a fault. That must not count as a leap.
             self.rare.places = [None; 2];
         }
         self.rare.held = [Held::NOWHERE; 2];
@@ -276,7 +277,7 @@ impl ElementRow {
         self.solved = Solved::default();
     }
 
-    /// Holds an end where it was found.
+    /// Connects an end to the place where it was found. `index` has the row index of each body.
     pub(crate) fn hold(&mut self, end: usize, place: &Place, index: &EntityHashMap<u32>) {
         self.rare.held[end] = match *place {
             Place::OnBody {

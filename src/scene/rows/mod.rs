@@ -14,7 +14,7 @@ pub(crate) use flags::{BodyFlags, ElementFlags, take};
 pub(crate) use marks::{mix, pull_mark, turning_mark};
 pub(crate) use raised::{Raised, Sweeps};
 
-/// The rows of one component within the scene's.
+/// Row indices of the elements and bodies of one component.
 pub(crate) struct Members<'a> {
     pub elements: &'a [u32],
     pub bodies: &'a [u32],

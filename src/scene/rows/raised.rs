@@ -1,23 +1,25 @@
-//! What bodies and contexts of an engine are lent besides forces, and what their user had ordered instead.
+//! Settings of the engine's bodies and contexts that the crate changes for a time, and the user's
+//! values, which are restored later.
 
-/// Sweeps over all joints and contacts in a substep that a context has been told, and what stood there before.
+/// Number of sweeps over all joints and contacts per substep that the crate has set in a context, and the user's number.
 #[derive(Clone, Copy, Debug, Default)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Sweeps(Option<Replaced<usize>>);
 
 impl Sweeps {
-    /// Has a context's substeps make so many, or as many as its user asks for.
+    /// Sets the number of sweeps `now` to `wanted`, or to the user's number if that is greater.
     pub(crate) fn raise(&mut self, now: &mut usize, wanted: usize) {
         *now = Replaced::order(&mut self.0, *now, wanted);
     }
 
-    /// Whether this is what a context had been told when its substeps made so many; `meanwhile` it was told that.
+    /// Whether a context with the number of sweeps `now` has the setting that this value records, and not one
+    /// that the crate set later (`meanwhile`).
     pub(crate) fn fits(&self, now: usize, meanwhile: Self) -> bool {
         Replaced::fits(self.0, now, meanwhile.0)
     }
 }
 
-/// What a body has been lent, and what stood there before.
+/// Settings of a body that the crate has changed, and the user's values.
 #[derive(Clone, Copy, Debug, Default)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Raised {
@@ -33,7 +35,8 @@ struct Replaced<T> {
 }
 
 impl<T: Copy + Default + PartialEq + PartialOrd> Replaced<T> {
-    /// Notes what stands there now, and says what is to stand there.
+    /// Returns the value to set: `wanted`, or the user's value if that is greater. `now` is the present value; if it is not the
+    /// crate's, it is the user's. Updates `known`.
     fn order(known: &mut Option<Self>, now: T, wanted: T) -> T {
         let users = match *known {
             Some(known) if known.ours == now => known.users,
@@ -44,7 +47,7 @@ impl<T: Copy + Default + PartialEq + PartialOrd> Replaced<T> {
         ours
     }
 
-    /// Whether `known` tells of what stands there now, and not what was noted `meanwhile`.
+    /// Whether `now` is the value that `known` records, and not one that the crate set later (`meanwhile`).
     fn fits(known: Option<Self>, now: T, meanwhile: Option<Self>) -> bool {
         match (known, meanwhile) {
             (Some(known), _) => known.ours == now,
@@ -55,23 +58,26 @@ impl<T: Copy + Default + PartialEq + PartialOrd> Replaced<T> {
 }
 
 impl Raised {
-    /// Substeps that a body is to have beyond those of all, which has so many now: those, or as many as its user asks for.
+    /// Returns the number of extra substeps to set for a body: `wanted`, or the user's number if that is
+    /// greater. `now` is the present number.
     pub(crate) fn order_substeps(&mut self, now: usize, wanted: usize) -> usize {
         Replaced::order(&mut self.substeps, now, wanted)
     }
 
-    /// How far ahead the engine is to see a body's contacts, which sees them so far now, m.
+    /// Returns the contact prediction distance to set for a body, m: `wanted`, or the user's if that is
+    /// greater. `now` is the present distance.
     pub(crate) fn order_prediction(&mut self, now: f32, wanted: f32) -> f32 {
         Replaced::order(&mut self.prediction, now, wanted)
     }
 
-    /// Whether this is what a body had been lent that has such substeps and prediction; `meanwhile` it was lent that.
+    /// Whether a body with these extra substeps and this prediction distance has the settings that this value records, and not
+    /// those that the crate set later (`meanwhile`).
     pub(crate) fn fits(&self, substeps: usize, prediction: f32, meanwhile: Self) -> bool {
         Replaced::fits(self.substeps, substeps, meanwhile.substeps)
             && Replaced::fits(self.prediction, prediction, meanwhile.prediction)
     }
 
-    /// Whether there is anything to give back.
+    /// Whether there is anything to restore.
     pub(crate) fn is_any(&self) -> bool {
         self.substeps.is_some() || self.prediction.is_some()
     }
