@@ -1,8 +1,8 @@
-//! A lone element between ends that do not turn: the closed form on the separation alone.
+//! Steps a lone element on bodies that it does not turn, in closed form.
 //!
-//! What acts along the line leaves the common centre of mass alone, so the whole motion is that of one
-//! point, the separation d from end A to end B with the effective mass, under the difference of the
-//! outside accelerations. It is [`super::kick`] without arms and inertia, at a fraction of the price.
+//! Forces along the line do not move the common centre of mass. So only the separation d from end A to end B must be
+//! solved: it moves like one point with the effective mass, under the difference of the external accelerations. This is
+//! the method of [`super::kick`] without arms and inertia, at a fraction of the cost.
 
 use super::kick::Memo;
 use super::law::Law;
@@ -13,46 +13,47 @@ use super::resolution::{EXTRAPOLATION_LIMIT, RESOLVED};
 use crate::functions::exp;
 use bevy::math::DVec3;
 
-/// c h/m above which a step's energy is watched; see [`super::guard`].
+/// c h/m from which on the energy of a step is checked; see [`super::guard`].
 const STRONG: f64 = 0.5;
 
-/// c h/m beyond which energy-keeping steps would turn a motion round instead of stopping it.
+/// c h/m from which on energy-conserving steps would reverse the motion instead of stopping it. [`Pair::creep`] takes
+/// their place.
 const FIERCE: f64 = 40.0;
 
-/// Share of kinetic and stored energy that a step may gain before it is taken again.
+/// Energy gain of a step, as a share of kinetic and stored energy, above which the step is repeated.
 const GAIN: f64 = 0.02;
 
-/// The element and what is constant about its ends over an engine step.
+/// An element, and the properties of its ends that are constant over an engine step.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Pair {
-    /// N/m.
+    /// Stiffness, N/m.
     pub stiffness: f64,
-    /// N s/m.
+    /// Damping, N s/m.
     pub damping: f64,
-    /// m.
+    /// Rest length, m.
     pub rest_length: f64,
-    /// Of both ends together, 1/kg; above zero.
+    /// Sum of the inverse masses of both ends, 1/kg; above zero.
     pub inverse_mass: f64,
-    /// Acceleration of end B less that of end A by everything but the element.
+    /// Acceleration of end B minus that of end A from everything but the element, m/s².
     pub outside: DVec3,
-    /// Separation below which it is rounding of the engine's f32.
+    /// Separation up to which the ends count as coincident, because it may be rounding of the engine's f32, m.
     pub rounding: f64,
 }
 
 /// State of the separation.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Separation {
-    /// From end A to end B.
+    /// Vector from end A to end B, m.
     pub d: DVec3,
-    /// Its rate.
+    /// Rate of `d`, m/s.
     pub v: DVec3,
-    /// Last well-defined direction.
+    /// Last well-defined direction from end A to end B.
     pub direction: Option<DVec3>,
-    /// A strong damper: then a spring of zero rest length has an axis after all.
+    /// Whether the damper is strong. Then a spring of zero rest length is not treated as isotropic.
     pub(super) stiff_damper: bool,
 }
 
-/// The line at an instant, and what it does.
+/// The line from end A to end B at an instant, and its motion.
 pub(super) struct Line {
     pub direction: DVec3,
     pub length: f64,
@@ -73,7 +74,7 @@ impl Separation {
         }
     }
 
-    /// Goes a third of the way on from a coarser solution.
+    /// Extrapolates by a third of the difference from a coarser solution.
     pub(super) fn towards(&mut self, coarse: &Self) {
         self.d += (self.d - coarse.d) / 3.0;
         self.v += (self.v - coarse.v) / 3.0;
@@ -91,7 +92,7 @@ impl Pair {
         memo.poles(self.stiffness_number(step), damping / 2.0)
     }
 
-    /// Whether a step's energy is watched.
+    /// Whether the energy of a step is checked.
     fn is_watched(&self, step: f64) -> bool {
         is_watched(
             self.damping * self.inverse_mass * step,
@@ -127,8 +128,8 @@ impl Pair {
         }
     }
 
-    /// Notes on which side of end A end B is (see `Element::aim`), and returns the line's direction and
-    /// length, unless the ends coincide.
+    /// Stores on which side of end A end B is (see `Element::aim`). Returns direction and length of the line; none if the
+    /// ends coincide.
     fn aim(&self, state: &mut Separation, step: f64) -> Option<(DVec3, f64)> {
         let resolved = self.stiffness_number(step) < 4.0;
         state.stiff_damper = resolved && self.damping * self.inverse_mass * step > 0.5;
@@ -141,15 +142,15 @@ impl Pair {
         Some((direction, length))
     }
 
-    /// The line, or `None` where the ends coincide and nothing says which way to push. Its length is
-    /// negative while end B is on the far side of end A during a drift.
+    /// Returns the line, or `None` if the ends coincide and no direction is known. The length is negative while end B is
+    /// on the far side of end A during a drift.
     pub(super) fn line(&self, state: &Separation) -> Option<Line> {
         let distance = state.d.length();
         if distance <= self.rounding {
             let direction = match state.direction {
                 Some(side) => side,
                 None if self.rest_length == 0.0 => {
-                    // Whatever acts on the ends decides; with nothing acting any axis will do.
+                    // Relative velocity and acceleration give the direction. If both are zero, any axis will do.
                     let hint = state.v + self.outside;
                     hint.try_normalize().unwrap_or(DVec3::Y)
                 }
@@ -164,7 +165,7 @@ impl Pair {
         Some(self.along(state, length.recip() * state.d, length))
     }
 
-    /// What the ends do along a line.
+    /// Splits the motion of the ends into parts along and across a line.
     fn along(&self, state: &Separation, direction: DVec3, length: f64) -> Line {
         let axial = state.v.dot(direction);
         let lateral = state.v - axial * direction;
@@ -179,7 +180,7 @@ impl Pair {
         }
     }
 
-    /// The change of velocity at the half drift; the formulas are [`super::kick`]'s.
+    /// Applies the kick after the first half drift. The formulas are those of [`super::kick`].
     fn kick(&self, state: &mut Separation, poles: &Poles, step: f64) {
         let Some(line) = self.line(state) else {
             state.v += step * self.outside;
@@ -187,15 +188,15 @@ impl Pair {
         };
         let rate = line.backward_rate(step);
         if line.isotropic && !is_resolved(self.stiffness_number(step)) {
-            // The line turns too fast to tell along from across: what is lost along it is lost across.
+            // The line turns too fast to separate axial from lateral motion, so both lose the same share.
             state.v -= poles.loss * line.lateral;
         }
-        // The mean of before and after the kick makes the step its own mirror image in time.
+        // The mean of before and after the kick makes the step time-symmetric.
         let across = self.outside - line.pushed * line.direction;
         let after = (line.lateral + step * across).length_squared();
         let turning = 0.5 * (line.turning(line.lateral_square, step) + line.turning(after, step));
         let outside = line.pushed + turning;
-        // The straight half drift lengthened the line by that already.
+        // The straight half drift has already lengthened the line by this amount.
         let length = line.length - step * step / 8.0 * turning;
         let residual_acceleration =
             self.stiffness * self.inverse_mass * (length - self.rest_length) - outside;
@@ -203,8 +204,8 @@ impl Pair {
         state.v += step * (total - outside) * line.direction + step * self.outside;
     }
 
-    /// The change of velocity between the true motion and the stepped one: see `kick::map_velocity`.
-    /// `aimed` is the line as [`Self::aim`] saw it, `to` gives the new axial velocity and the factor across the line.
+    /// Maps the velocity between the true and the stepped motion; see `kick::map_velocity`. `aimed` is the line that
+    /// [`Self::aim`] returned. `to` returns the new axial velocity and the factor for the lateral velocity.
     fn map(
         &self,
         state: &mut Separation,
@@ -247,17 +248,17 @@ impl Pair {
             && (line.isotropic || turned < line.length * line.length)
     }
 
-    /// Energy of the motion about the common centre of mass, in the outside forces.
+    /// Energy about the common centre of mass, J: kinetic, stored, and potential in the external forces.
     fn energy(&self, state: &Separation) -> Option<f64> {
         let stretch = self.line(state)?.length - self.rest_length;
         let motion = 0.5 * state.v.length_squared() - self.outside.dot(state.d);
         Some(0.5 * self.stiffness * stretch * stretch + motion / self.inverse_mass)
     }
 
-    /// A step that went too far for its energy, because it follows neither the motion nor its decay, is taken
-    /// again by [`super::nonlinear_pair`], which keeps energy at any stiffness. Very strong damping is not its field; there
-    /// the motion along the line is over so soon that its exact solution is taken, and what surplus is left comes out
-    /// of that motion.
+    /// Repeats a step that gained too much energy because it resolves neither the oscillation nor the decay. The repeated
+    /// step is that of [`super::nonlinear_pair`], which conserves energy at any stiffness. It does not suit very strong
+    /// damping. There the motion along the line decays so fast that its exact solution is used. A surplus that remains is
+    /// removed from the axial motion.
     fn keep_energy(
         &self,
         state: &mut Separation,
@@ -301,7 +302,8 @@ impl Pair {
         }
     }
 
-    /// The exact overdamped motion along the line as it is at the start, beside a straight one across it.
+    /// Returns the state after `time` seconds: the exact overdamped solution along the initial line, with uniform motion
+    /// across it.
     fn creep(&self, start: &Separation, time: f64) -> Separation {
         let Some(line) = self.line(start) else {
             return *start;
@@ -312,7 +314,7 @@ impl Pair {
         let fast = decay + spread;
         let slow = square / fast;
         let stretch = line.length - self.rest_length;
-        // Where it creeps to, or without a spring how fast it creeps.
+        // Stretch to which it creeps, or without a spring the speed of creep.
         let (rest, flow) = if square > 0.0 {
             (line.pushed / square, 0.0)
         } else {
@@ -338,7 +340,7 @@ impl Pair {
         }
     }
 
-    /// Kinetic and stored energy.
+    /// Kinetic and stored energy, J.
     fn scale(&self, state: &Separation) -> f64 {
         let stored = self.line(state).map_or(0.0, |line| {
             0.5 * self.stiffness * (line.length - self.rest_length).powi(2)
@@ -348,7 +350,7 @@ impl Pair {
 }
 
 impl Line {
-    /// |lateral|²/L, bounded where the line turns further than the step can follow.
+    /// Centripetal acceleration |lateral|²/L, m/s². Bounded where the step does not resolve the turning of the line.
     pub(super) fn turning(&self, lateral_square: f64, step: f64) -> f64 {
         if self.isotropic || lateral_square == 0.0 {
             return 0.0;
@@ -356,7 +358,7 @@ impl Line {
         line::turning(self.length, lateral_square, step)
     }
 
-    /// Length change over the step that led here, divided by the step: with it damping is second order.
+    /// Mean rate of the length over the step that ends here, m/s. With this rate, damping is of second order.
     pub(super) fn backward_rate(&self, step: f64) -> f64 {
         if self.isotropic {
             return self.axial;
@@ -370,13 +372,14 @@ fn stiffness_number(stiffness: f64, inverse_mass: f64, step: f64) -> f64 {
     stiffness * inverse_mass * step * step
 }
 
-/// Whether the energy of a step is watched: c h/m, and (ω h)².
+/// Whether the energy of a step is checked. `damping` is c h/m, `stiffness_number` is (ω h)².
 fn is_watched(damping: f64, stiffness_number: f64) -> bool {
     damping >= STRONG || !is_resolved(stiffness_number)
 }
 
-/// The poles of an element whose micro-steps of so long are kicks along the line and nothing else: then it can go several at
-/// once in [`super::lanes`]. Its rest length is above zero. It takes no more micro-steps to be resolved, where it may.
+/// Returns the poles of an element for micro-steps of `step` seconds if [`super::lanes`] can solve it. Its energy must
+/// need no check. It must also need no finer micro-steps, unless it may not take them (`may_resolve` is false). The rest
+/// length must be above zero.
 #[inline(always)]
 pub(crate) fn plain_poles(
     [stiffness, damping]: [f64; 2],

@@ -1,24 +1,28 @@
-//! An element's force over a step inside an engine's solver, as pieces each of which is linear within a range.
+//! Splits an element's force inside an engine's solver into pieces, each of which is linear within a range of tension.
 //!
-//! Whether a rope is taut, or a stop touched, is decided in every substep by the range, not once in a step. Decided before
-//! the step, a rope that is slack then would not hold what stretches it meanwhile, and have its energy from nothing.
+//! The range decides in every substep whether a rope is taut or a stop is touched. If this were decided once before the
+//! step, a rope that is slack then would not resist the stretching during the step. It would gain stored energy from
+//! nothing.
 
 use super::law::{Elastic, Law};
 use super::soft::Tangent;
 
-/// Damper, spring below and above a kink, what it hardens by below and above, and stops below and above.
+/// Greatest number of pieces: a damper, the spring below and above a kink, its hardening below and above, and the stops
+/// below and above.
 pub(crate) const MOST: usize = 7;
 
-/// Share of how far an element may come over which the slope beside a kink is taken, where it is not there yet.
+/// Length of the interval beside a kink or limit over which a slope is taken if the element has not got there yet, as a
+/// share of [`Outreach::change`].
 const BESIDE: f64 = 0.01;
 
-/// Share of its slope by which a spring is stiffer beyond its way for that to be a piece of its own. Pinned by `ground::mixed`.
+/// Increase of a spring's slope beyond the predicted lengths, as a share of the slope, above which the increase becomes a
+/// piece of its own. Pinned by `ground::mixed`.
 const HARDENS: f64 = 0.1;
 
-/// Times the force that a piece can come to over a step, as far as can be seen, that it may have.
+/// Bound on the force of a one-sided piece, as a multiple of the greatest force that it is expected to reach in the step.
 const ROOM: f64 = 2.0;
 
-/// A force that is linear as long as it does not leave its range.
+/// A force that is linear within its range and constant outside.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Piece {
     pub tangent: Tangent,
@@ -27,13 +31,13 @@ pub(crate) struct Piece {
 }
 
 impl Piece {
-    /// Tension at a length and its rate.
+    /// Tension at a length (m) and its rate (m/s), N.
     pub(crate) fn tension(&self, length: f64, rate: f64) -> f64 {
         let tension = self.tangent.elastic(length) + self.tangent.damping * rate;
         tension.max(self.range[0]).min(self.range[1])
     }
 
-    /// Integral of the tension at rest between two lengths, J: what the bodies lose to it.
+    /// Integral of the tension without damping between two lengths, J: the energy that the bodies lose to the piece.
     fn work(&self, [from, to]: [f64; 2]) -> f64 {
         let Tangent {
             force,
@@ -44,7 +48,7 @@ impl Piece {
         if stiffness <= 0.0 {
             return (to - from) * 0.5 * (self.tension(from, 0.0) + self.tension(to, 0.0));
         }
-        // Where it comes to the ends of its range.
+        // Lengths at which the tension reaches the ends of its range.
         let ends = self.range.map(|tension| at + (tension - force) / stiffness);
         let until = |length: f64| {
             let within = length.max(ends[0]).min(ends[1]);
@@ -60,12 +64,12 @@ impl Piece {
         until(to) - until(from)
     }
 
-    /// Whether its range ends on one side nearer than on the other.
+    /// Whether its range is not symmetric about zero.
     pub(crate) fn ends(&self) -> bool {
         self.middle().0 != 0.0
     }
 
-    /// Its range as one that lies evenly about a middle, and half of its width.
+    /// Middle of its range and half the width of the range, N.
     pub(crate) fn middle(&self) -> (f64, f64) {
         let [least, greatest] = self.range;
         if least == -greatest {
@@ -76,18 +80,18 @@ impl Piece {
     }
 }
 
-/// How far an element may come over a step.
+/// Predicted change of an element's length over a step, and bounds on it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Outreach {
-    /// Lengths at its start and at its end, as the last steps went on, m.
+    /// Length at the start of the step, and length at its end extrapolated from the last steps, m.
     pub way: [f64; 2],
-    /// Rate over it, m/s.
+    /// Predicted rate of the length over the step, m/s.
     pub rate: f64,
-    /// Greatest change of length that can be thought of, m,
+    /// Greatest possible change of length in the step, m.
     pub change: f64,
-    /// and greatest rate, m/s.
+    /// Greatest possible rate of the length, m/s.
     pub speed: f64,
-    /// Stiffness, N/m, and damping, N s/m, above which a piece whose range ends on one side is softened.
+    /// Stiffness (N/m) and damping (N s/m) above which a piece with a one-sided range is scaled down.
     pub firmest: [f64; 2],
 }
 
@@ -99,7 +103,7 @@ pub(crate) struct Pieces {
 }
 
 impl Pieces {
-    /// Of a linear element.
+    /// The one piece of a linear element.
     pub(crate) fn linear(stiffness: f64, damping: f64, rest_length: f64) -> Self {
         let mut pieces = Self::default();
         pieces.push(Piece {
@@ -109,7 +113,7 @@ impl Pieces {
         pieces
     }
 
-    /// Of a law.
+    /// Pieces of an element with a force law.
     pub(crate) fn of(law: &Law, rest_length: f64, reach: Outreach) -> Self {
         let mut pieces = Self::default();
         let drag = law.drag.at(reach.rate);
@@ -151,7 +155,7 @@ impl Pieces {
         }
         let has_stop = [false, true].map(|above| law.to_stop(above, reach.way[0]));
         if pieces.iter().any(Piece::ends) || has_stop != [None; 2] {
-            // A damper beside them must not be firmer either, nor one beside a stop that is not near.
+            // A damper beside one-sided pieces must not be firmer either, even while a stop is out of reach.
             for piece in &mut pieces.all {
                 piece.tangent.damping = piece.tangent.damping.min(reach.firmest[1]);
             }
@@ -159,8 +163,8 @@ impl Pieces {
         pieces
     }
 
-    /// A spring whose slope leaps: a piece that comes up to the kink from below, and one that goes on above it. Its force is
-    /// not cut from `low` to `high`.
+    /// Adds a spring whose slope jumps at a kink: one piece up to the kink and one above it. The limits do not cut the
+    /// spring's force between the lengths `low` and `high`.
     fn push_split(
         &mut self,
         reach: &Outreach,
@@ -174,11 +178,11 @@ impl Pieces {
         let mut sides = [[low, kink.min(high)], [kink.max(low), high]]
             .map(|side| Tangent::chord(&spring, reach.way_between(side)));
         if !free {
-            // A rope's damper is a part of what pulls.
+            // The damper of a rope or buffer is part of its one-sided piece.
             sides[usize::from(least == 0.0)].damping = damping;
         }
         let slopes = sides.map(|tangent| tangent.stiffness);
-        // A side that never acts softens nothing.
+        // A side on which the spring never acts must not reduce the share.
         let at_kink = spring(kink).force.max(least).min(greatest);
         let share = sides
             .iter()
@@ -187,7 +191,8 @@ impl Pieces {
             .map(|(tangent, _)| reach.share(tangent, [0.0, f64::INFINITY]))
             .fold(1.0, f64::min);
         if free {
-            // Damping of its own, which neither side's range cuts off. It has what the spring leaves of the limit.
+            // The damper is a piece of its own, so that the range of neither side cuts it off. Its range is what the
+            // spring leaves of the limits.
             let tangent = Tangent::linear(0.0, share * damping, kink);
             let [from, to] = reach.way.map(|length| {
                 let force = share * spring(length).force;
@@ -206,8 +211,9 @@ impl Pieces {
         self.push_hardening(reach, edges, spring, slopes, [least, greatest]);
     }
 
-    /// What a spring is stiffer by beyond these lengths, below and above, than the pieces that go on there with these slopes. A
-    /// blow takes it farther than the last steps tell: it would store what was never taken from its bodies.
+    /// Adds pieces where a spring becomes stiffer beyond `edges`, below and above, than the present pieces, which go on
+    /// with the constant `slopes`. An impact takes the element farther than the last steps predict. Without these pieces
+    /// it would store energy that was not taken from its bodies.
     fn push_hardening(
         &mut self,
         reach: &Outreach,
@@ -235,7 +241,7 @@ impl Pieces {
         }
     }
 
-    /// A force of such a range, as firm as one with this range may be.
+    /// Adds a force with this range, scaled down if it is firmer than a piece with this range may be.
     fn push_softened(&mut self, reach: &Outreach, tangent: Tangent, range: [f64; 2]) {
         let share = reach.share(&tangent, range);
         self.push(reach.piece(tangent.times(share), range));
@@ -250,29 +256,31 @@ impl Pieces {
         self.all[..self.count].iter()
     }
 
-    /// The spring with its damper.
+    /// The first piece: the spring with its damper. If the spring has a kink, it is the damper alone, or for a rope or
+    /// buffer the spring below the kink.
     pub(crate) fn spring(&mut self) -> &mut Tangent {
         &mut self.all[0].tangent
     }
 
-    /// Tension at a length and its rate.
+    /// Tension at a length (m) and its rate (m/s), N.
     pub(crate) fn tension(&self, length: f64, rate: f64) -> f64 {
         self.iter().map(|piece| piece.tension(length, rate)).sum()
     }
 
-    /// Integral of the tension at rest between two lengths, J.
+    /// Integral of the tension without damping between two lengths, J.
     pub(crate) fn work(&self, way: [f64; 2]) -> f64 {
         self.iter().map(|piece| piece.work(way)).sum()
     }
 
-    /// Greatest slope, N/m.
+    /// Upper bound on the slope of the tension, N/m.
     pub(crate) fn stiffness(&self) -> f64 {
         self.iter().map(|piece| piece.tangent.stiffness.abs()).sum()
     }
 }
 
 impl Outreach {
-    /// Its way where a spring's force is not cut, or a beginning of it there: that of a rope is what it has once it is taut.
+    /// Returns the way clamped to the lengths between which a spring's force is not cut. If the whole way is outside,
+    /// returns a short interval at the nearer end: a slack rope gets the slope that it will have once it is taut.
     fn way_between(&self, [low, high]: [f64; 2]) -> [f64; 2] {
         let way = self.way.map(|length| length.max(low).min(high));
         if !(way[0].is_finite() && way[1].is_finite()) {
@@ -288,8 +296,9 @@ impl Outreach {
         }
     }
 
-    /// What is left of a piece with such a range, as a share. The motor that moves its middle is as strong as all that it
-    /// may come to, and in f32 their difference would be lost.
+    /// Share to which a piece with this range is scaled down, at most 1. A second motor, as strong as the greatest force
+    /// of a one-sided piece, shifts the middle of its range. In a firmer piece the difference of the two motors would be
+    /// lost in f32.
     fn share(&self, tangent: &Tangent, [least, greatest]: [f64; 2]) -> f64 {
         if least.is_finite() == greatest.is_finite() {
             return 1.0;
@@ -299,7 +308,8 @@ impl Outreach {
         over.max(1.0).recip()
     }
 
-    /// A piece whose range is closed, if it ends on one side: it may be as strong as it can come to be, and more.
+    /// Makes a piece. If its range is one-sided, the open side gets a bound of [`ROOM`] times the force that the piece
+    /// can reach in the step.
     fn piece(&self, tangent: Tangent, [least, greatest]: [f64; 2]) -> Piece {
         let now = tangent.elastic(self.way[0]).abs();
         let more = tangent.stiffness.abs() * self.change + tangent.damping * self.speed;

@@ -1,9 +1,8 @@
-//! A network of ends that do not turn: cloths, lattices, chains.
+//! Solves networks in which no body turns: cloths, lattices, chains.
 //!
-//! What it does is what [`super::network`] does, to rounding; but here an end is a point mass instead of a
-//! rigid body, so that thousands of them stay in the processor's cache. [`kick`] has the step,
-//! [`solve`] its linear system, [`parts`] how threads share it, [`free_points`] what a network needs that goes from one step into the next,
-//! [`survey`] its energy.
+//! The result equals that of [`super::network`] except for rounding. Here a body is a point mass, so that thousands of
+//! them fit into the processor's cache. [`kick`] contains the step, [`solve`] its linear system, [`parts`] the division
+//! among threads, [`free_points`] the transition from one step to the next, and [`survey`] the energy.
 
 mod free_points;
 mod kick;
@@ -25,16 +24,16 @@ use parts::Parts;
 use solve::Solver;
 use survey::Survey;
 
-/// A body's centre of mass, or a point that moves as something else decides.
+/// The centre of mass of a body, or an end with prescribed motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Point {
     position: DVec3,
     velocity: DVec3,
-    /// By everything but elements.
+    /// Acceleration from everything but elements, m/s².
     acceleration: DVec3,
-    /// Impulse by elements in this step so far.
+    /// Impulse from elements so far in this step, N s.
     given: DVec3,
-    /// 0 of a point that elements cannot move.
+    /// Inverse mass, 1/kg; 0 if elements cannot move the point.
     inverse_mass: f64,
 }
 
@@ -45,20 +44,20 @@ struct Wire {
     stiffness: f64,
     damping: f64,
     rest_length: f64,
-    /// Towards end B where the step began, of any length; zero if that is not known.
+    /// Vector towards end B at the start of the micro-step, of any length; zero if it is unknown.
     side: DVec3,
     /// See [`Element::stiff_damper`].
     stiff_damper: bool,
 }
 
-/// What an element's damper has taken in this step so far, and what its moving ends have given, J.
+/// Heat of an element's damper, and work of its ends with prescribed motion, so far in this step, J.
 #[derive(Clone, Copy, Debug, Default)]
 struct Exchanged {
     heat: f64,
     work: f64,
 }
 
-/// A state that can be gone back to.
+/// A state that can be restored.
 #[derive(Clone, Default)]
 struct Saved {
     points: Vec<Point>,
@@ -66,22 +65,22 @@ struct Saved {
     exchanged: Vec<Exchanged>,
 }
 
-/// Such a network, kept from step to step.
+/// A network of points, kept from step to step.
 #[derive(Clone, Default)]
 pub(crate) struct Points {
     points: Vec<Point>,
-    /// As they were at the start of the step.
+    /// Points at the start of the step.
     start: Vec<Point>,
-    /// So many of them are bodies; the others come after.
+    /// Number of points that are bodies. They come first; the ends with prescribed motion come after them.
     bodies: usize,
     wires: Vec<Wire>,
-    /// Of each of them.
+    /// Heat and work of each element.
     exchanged: Vec<Exchanged>,
-    /// For each point, the stiffness and damping of its elements over its mass; see
-    /// [`super::network::Network`].
+    /// For each point, the stiffness of its elements over its mass, 1/s²; see [`super::network::Network`].
     stiffness: Vec<f64>,
+    /// For each point, the damping of its elements over its mass, 1/s.
     damping: Vec<f64>,
-    /// (ω h)² of the stiffest mode.
+    /// (ω h)² of the stiffest mode in a micro-step.
     pub(super) stiffest: f64,
     parts: Parts,
     bars: Vec<Bar>,
@@ -90,7 +89,7 @@ pub(crate) struct Points {
     budget: u32,
     converged: bool,
     saved: [Saved; 3],
-    /// Of each piece of points and elements.
+    /// Partial surveys, one for each piece of points and of elements.
     surveys: Vec<Survey>,
 }
 
@@ -132,7 +131,7 @@ impl Wire {
         self.ends.map(|end| &points[end as usize])
     }
 
-    /// The side on which end B is when it is looked at there.
+    /// Vector from end A to end B, or the last known one if the ends coincide.
     fn aimed(&self, [a, b]: [&Point; 2]) -> DVec3 {
         let d = b.position - a.position;
         if d.length_squared() > noise(a, b) {
@@ -181,13 +180,14 @@ impl Wire {
     }
 }
 
-/// Square of a distance that may be rounding of the engine's f32.
+/// Square of the distance up to which two points may coincide but for rounding of the engine's f32, m².
 fn noise(a: &Point, b: &Point) -> f64 {
     rounding(a.position, b.position).powi(2)
 }
 
 impl Points {
-    /// Whether a network is of this kind.
+    /// Whether a network can be solved as points: its bodies move freely along all axes and do not turn, and its elements
+    /// are linear and held at the centres of mass.
     pub(super) fn can_be(elements: &[Element], bodies: &[Body]) -> bool {
         bodies.iter().all(|body| {
             body.spin == Spin::Ignored && body.inverse_mass.x > 0.0 && body.moves_alike()
@@ -198,7 +198,7 @@ impl Points {
         })
     }
 
-    /// Takes the network in as it stands.
+    /// Loads a network in its present state.
     pub(super) fn load_from(&mut self, elements: &[Element], bodies: &[Body], budget: u32) {
         self.points.clear();
         self.points.extend(bodies.iter().map(Point::of));
@@ -232,7 +232,7 @@ impl Points {
         self.begin(budget);
     }
 
-    /// Gives back what the step made of it.
+    /// Writes the result of the step into elements and bodies.
     pub(super) fn store_into(&mut self, elements: &mut [Element], bodies: &mut [Body]) {
         for (body, point) in bodies.iter_mut().zip(&self.points) {
             body.position = point.position;
@@ -252,12 +252,12 @@ impl Points {
         }
     }
 
-    /// Whether all solves since it was taken in came to an end.
+    /// Whether all solves of this step have converged.
     pub(super) fn converged(&self) -> bool {
         self.converged
     }
 
-    /// Stiffness and damping over mass of every point.
+    /// Sums up stiffness and damping over mass for every point.
     fn add_up(&mut self) {
         for sums in [&mut self.stiffness, &mut self.damping] {
             sums.clear();
@@ -274,7 +274,7 @@ impl Points {
         }
     }
 
-    /// Bounds on (ω h)² of the stiffest mode, and on 2γh of the most damped one.
+    /// Upper bounds on (ω h)² of the stiffest mode, and on 2γh of the most damped mode.
     pub(super) fn bounds(&self, step: f64) -> (f64, f64) {
         let largest = |sums: &[f64]| sums.iter().copied().fold(0.0, f64::max);
         (
@@ -289,7 +289,7 @@ impl Points {
         each(&mut self.wires, |_, wire| wire.aim(wire.of(points), step));
     }
 
-    /// Time over which velocities that are off those count.
+    /// Time over which the velocity differences from `other` count as position errors, s.
     fn velocity_counts(&self, other: &[Point]) -> f64 {
         let faster = |i: usize| self.points[i].velocity - other[i].velocity;
         let (mut motion, mut stiffened) = (0.0, 0.0);

@@ -1,36 +1,35 @@
-//! Poles placed exactly: the numbers that make one drift–kick–drift step of a damped oscillator
-//! decay and turn at precisely the true rate, whatever the step.
+//! Computes the coefficients with which one drift–kick–drift step of a damped oscillator has exactly the true decay and
+//! frequency, whatever the step.
 
 use crate::functions::{cos, exp, exp_m1, sin, tanh};
 
-/// Phase per step (radians) up to which the frequency is exact. Not far beyond it the sampled motion
-/// cannot be told from a slower one, so the phase stays there and only the energy is exact: stepped
-/// velocities are then smaller than true ones, and drifts no longer than the motion they belong to.
+/// Phase per step up to which the frequency is exact, rad. Above π, the sampled motion would look like a slower one. So a
+/// greater phase is reduced to this value, and only the energy is exact. Stepped velocities are then smaller than true
+/// ones, so that drifts are no longer than the true motion.
 pub(crate) const RESOLVED_PHASE: f64 = 2.5;
 
-/// Decay exponent per step that is added to motion of unresolved phase. The engine rounds positions to
-/// f32, and a spring of ω h = 100 makes of every rounding a hundred times as much speed; without this
-/// a minute of it would heat a swinging rod by several per cent.
+/// Least decay exponent per step of motion whose phase is far from resolved. The engine rounds positions to f32, and a
+/// spring of ω h = 100 turns each rounding error into a hundred times as much speed. Without this decay, a swinging rod
+/// would gain several per cent of energy in a minute.
 pub(crate) const UNRESOLVED_DECAY: f64 = 0.01;
 
-/// Decay exponent per step up to which one step is the true flow.
+/// Decay exponent per step below which one step is the exact flow.
 const RESOLVED_DECAY: f64 = 2.0;
 
 /// Coefficients of one step h for y″ = −ω²y − 2γy′ + a, with z = (ωh)² and g = γh.
 ///
-/// With r = ω²y − a, the kick at the half drift is `Δv = −h·restoring·r − loss·v`; the step then has
-/// exactly the trace and determinant of the true flow. It differs from the true flow by a change of
-/// velocity, `v_true = speed·v + skew·h·r`, which [`super::kick`] undoes, so that one step is the true
-/// flow itself for any initial state.
+/// With r = ω²y − a, the kick after the first half drift is `Δv = −h·restoring·r − loss·v`. The step then has exactly the
+/// trace and determinant of the exact flow. Its velocity differs by the map `v_true = speed·v + skew·h·r`.
+/// [`super::kick`] applies this map and its inverse, so that one step is the exact flow for any initial state.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Poles {
-    /// (1 − p₁)(1 − p₂)/z, where p are the poles of the flow.
+    /// (1 − p₁)(1 − p₂)/z, where p₁ and p₂ are the poles of the flow.
     pub restoring: f64,
     /// 1 − p₁p₂ = 1 − e^(−2g).
     pub loss: f64,
     /// Ratio of true to stepped velocity.
     pub speed: f64,
-    /// What the true velocity adds for each h·r.
+    /// Part of the true velocity per h·r.
     pub skew: f64,
 }
 
@@ -55,7 +54,7 @@ impl Poles {
             let slow = if fast > 0.0 { z / fast } else { 0.0 };
             (decay_ratio(fast) * decay_ratio(slow), slow)
         };
-        // Where the motion is over within the step its map matters to nobody, and is badly conditioned.
+        // If the motion decays within the step, this map does not matter and is badly conditioned.
         let (speed, skew) = if slow < RESOLVED_DECAY {
             velocity_map(z, g)
         } else {
@@ -69,8 +68,8 @@ impl Poles {
         }
     }
 
-    /// Ratio of true to stepped velocity for undamped motion under the same kick: the one that gives
-    /// the stepped orbit the energy of the true one.
+    /// Ratio of true to stepped velocity for undamped motion across the line under the same kick. It gives the stepped
+    /// orbit the energy of the true one.
     pub(crate) fn speed_across(&self, z: f64) -> f64 {
         (0.5 * ((4.0 - self.restoring * z) / self.restoring)
             .max(0.0)
@@ -79,7 +78,8 @@ impl Poles {
     }
 }
 
-/// `speed` and `skew`: E P = P M solved for P = [[1, 0], [p, speed]] with p = skew·z/h.
+/// Returns `speed` and `skew`. They solve E P = P M for P = [[1, 0], [p, speed]] with p = skew·z/h, where E is the exact
+/// flow and M the drift–kick–drift step.
 fn velocity_map(z: f64, g: f64) -> (f64, f64) {
     let square = g * g - z;
     // e^(−g)·φ and e^(−g)·C, where φ = sin σ/σ (or sinh r/r) and C = cos σ (or cosh r).
@@ -108,7 +108,7 @@ fn velocity_map(z: f64, g: f64) -> (f64, f64) {
     let skew = if g == 0.0 {
         0.0
     } else if g * g < 0.5 && square.abs() < 0.5 {
-        // The difference sinhc(g) − φ, divided by z, as its series: no cancellation.
+        // (sinhc(g) − φ)/z as a series, which avoids cancellation.
         let (u, w) = (g * g, square);
         let series = 1.0 / 6.0
             + (u + w) / 120.0
@@ -116,7 +116,7 @@ fn velocity_map(z: f64, g: f64) -> (f64, f64) {
             + (u + w) * (u * u + w * w) / 362_880.0;
         g * exp(-g) * series / sine
     } else if z < 1e-5 * g * g {
-        // A damper with hardly a spring: the limit for small z.
+        // Hardly any spring: the limit for small z.
         (1.0 / tanh(g) - 1.0 / g) / 2.0
     } else {
         ((1.0 - exp(-2.0 * g)) / (2.0 * sine) - g) / z
@@ -128,7 +128,7 @@ fn velocity_map(z: f64, g: f64) -> (f64, f64) {
 mod tests {
     use super::*;
 
-    /// The exact flow over h = 1, by the series of the matrix exponential of [[0, 1], [−z, −2g]].
+    /// The exact flow over h = 1, from the series of the matrix exponential of [[0, 1], [−z, −2g]].
     fn exact(z: f64, g: f64) -> [[f64; 2]; 2] {
         let halvings = 20;
         let h = 0.5_f64.powi(halvings);
@@ -160,7 +160,7 @@ mod tests {
         sum
     }
 
-    /// Our step over h = 1 for a state (y, v): velocity map undone, drift–kick–drift, map applied.
+    /// One step over h = 1 from the state (y, v): inverse velocity map, drift–kick–drift, velocity map.
     fn step(z: f64, g: f64, y: f64, v: f64) -> (f64, f64) {
         let p = Poles::new(z, g);
         let v = (v - p.skew * z * y) / p.speed;
@@ -205,7 +205,7 @@ mod tests {
                     assert!(value.is_finite(), "ωh {phase} γh {g}: {p:?}");
                 }
                 assert!(p.speed > 0.0, "ωh {phase} γh {g}: {p:?}");
-                // The kick never throws the end past the mirror of where it was.
+                // The kick never moves the end beyond the mirror image of its position.
                 assert!(p.restoring * phase * phase <= 4.0 + 1e-12);
             }
         }
@@ -222,7 +222,7 @@ mod tests {
                 (y, v) = step(z, 0.0, y, v);
                 assert!(energy(y, v) < start * 1.02, "ωh {phase}: gained");
             }
-            // No more is lost than by the decay that settles rounding noise.
+            // Only the decay that damps rounding errors takes energy.
             let least = (-2.0 * 100.0 * UNRESOLVED_DECAY).exp();
             let left = energy(y, v) / start;
             assert!(left > 0.5 * least, "ωh {phase}: {left} left");

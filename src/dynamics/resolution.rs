@@ -1,32 +1,36 @@
-//! How finely motion has to be stepped.
+//! Decides how many micro-steps a motion needs.
 
 use super::line::Motion;
 use super::tolerance::Least;
 
-/// Phase per coarse step up to which the fourth-order combination converges.
+/// Phase per coarse step below which fourth-order extrapolation converges, rad.
 pub(super) const EXTRAPOLATION_LIMIT: f64 = 1.5;
 
-/// (ω h)² of the stiffest mode beyond which a network steps finer.
+/// (ω h)² of the stiffest mode above which more micro-steps are needed to resolve it.
 pub(super) const RESOLVED: f64 = 4.0;
 
-/// (ω h)² at which a network follows the motion that it resolves: its frequencies are right to a few parts in a million, and
-/// so little energy sways that nothing of it is taken for won. Pinned by `stiff_by_default`.
+/// (ω h)² at which the micro-steps of a network follow its stiffest mode accurately. Frequencies are then right to a few
+/// parts in a million. The energy oscillates so little that the oscillation does not count as an energy gain. Pinned by
+/// `stiff_by_default`.
 const FOLLOWED: f64 = 0.1;
 
-/// Most that a network steps finer by itself to resolve a stiff mode, whatever its size and whatever is asked.
+/// Greatest number of micro-steps that a network of any size takes to resolve a stiff mode, whatever the settings ask
+/// for.
 const EXTRA_STEPS: u32 = 4;
 
-/// Kicks that a network takes to follow what it resolves already: few, as it is not wrong by much.
+/// Number of kicks of elements per step that a network may take to follow a mode that it resolves already. Few, because
+/// the error is small then.
 const FEW_KICKS: usize = 16;
 
-/// Most micro-steps that resolve a lone element, whatever is asked: ω·dt of 64, at a microsecond.
+/// Greatest number of micro-steps that resolve a lone element, whatever the settings ask for. It is enough for ω·dt = 64,
+/// and takes a microsecond.
 const MOST_ALONE: u32 = 32;
 
-/// How far ahead a bend of a law is looked for, as a multiple of the way in a step.
+/// Distance up to which kinks of a law are looked for, as a multiple of the change of length in a step.
 const AHEAD: f64 = 1.25;
 
-/// Micro-steps that resolve a lone element of (ω h)² = `z`, along whose line the step is exact then; one where that is more
-/// than `most`.
+/// Micro-steps that resolve a lone element with (ω h)² = `z` over the whole step; one if they are more than `most`.
+/// Resolved micro-steps are exact along the line.
 pub(super) fn lone_steps(z: f64, most: u32) -> Least {
     Least::of(
         z,
@@ -34,10 +38,11 @@ pub(super) fn lone_steps(z: f64, most: u32) -> Least {
     )
 }
 
-/// Micro-steps with which a network of so many elements follows its stiffest mode, of (ω h)² = `z`, if they are not more than
-/// `most`; else those that just resolve it, if they are few.
+/// Micro-steps of a network whose stiffest mode has (ω h)² = `z` over the whole step. Returns those that follow the mode,
+/// if they are at most `most` or few. Otherwise returns those that just resolve it, if they are at most [`EXTRA_STEPS`],
+/// or else one.
 pub(super) fn network_steps(z: f64, elements: usize, most: u32) -> Least {
-    // These are its own, whatever others there are; none where just one step is asked for.
+    // Each network may take these few, however many elements share the budget. A budget of 0 allows one.
     let few = if most == 0 {
         1
     } else {
@@ -51,7 +56,7 @@ pub(super) fn network_steps(z: f64, elements: usize, most: u32) -> Least {
 }
 
 impl Least {
-    /// So many micro-steps for a motion of (ω h)² = `z` in the whole step.
+    /// `count` micro-steps for a motion with (ω h)² = `z` over the whole step.
     fn of(z: f64, count: u32) -> Self {
         Self {
             count,
@@ -59,7 +64,7 @@ impl Least {
         }
     }
 
-    /// (ω h)² in one of the micro-steps.
+    /// (ω h)² over one of the micro-steps, where `z` is that over the whole step.
     pub(super) fn in_each(self, z: f64) -> f64 {
         z / f64::from(self.count).powi(2)
     }
@@ -69,8 +74,8 @@ fn within(steps: f64, most: u32) -> Option<u32> {
     (steps <= f64::from(most)).then(|| steps.ceil().max(1.0) as u32)
 }
 
-/// Ways along the line that the present motion can lead to in a step, as fast as it is in its middle and in its end
-/// under what acts from outside.
+/// Two predicted changes of length over a step, m: at the speed in the middle of the step and at the speed at its end,
+/// both under the external forces.
 pub(super) fn predicted_travel(motion: &Motion, time: f64) -> [f64; 2] {
     [0.5, 1.0].map(|share| AHEAD * time * (motion.axial + share * time * motion.pushed))
 }

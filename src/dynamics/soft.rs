@@ -1,64 +1,67 @@
-//! An element as a soft constraint: what an engine's solver is given where contacts or joints hold a body.
+//! Turns an element into a soft constraint of an engine's solver, for elements on bodies that contacts or joints hold.
 //!
-//! A force that is worked out before the engine knows of contacts and joints is explicit to them. So an element on a
-//! held body is solved by the engine itself, together with what holds it. In every solver substep h it acts with
+//! A force that is computed before the engine's step cannot react to contacts and joints. So the engine itself solves an
+//! element on a held body, together with the contacts and joints. In every solver substep h the element acts with
 //!
 //! ```text
 //! F = force + stiffness·(s − at) + damping·ṡ
 //! ```
 //!
-//! where s is the length at the start of the substep and ṡ its rate at the end. That is the symplectic Euler rule for
-//! the spring, which keeps energy while ω h < 2, and implicit damping, which only takes it. A force law is made linear
-//! anew for every step, in [`super::pieces`], so that its mean force does the work of its energy; what is left over is paid in
-//! the next one.
+//! where s is the length at the start of the substep and ṡ its rate at the end. This is the symplectic Euler rule for the
+//! spring, which conserves energy while ω h < 2, and implicit damping, which only removes energy. [`super::pieces`] makes
+//! a force law linear anew for every step, so that its mean force does the work of its energy. A remaining energy error
+//! is corrected in the next step.
 
 use super::law::Elastic;
 use super::tolerance::{Method, Outcome};
 
-/// ω h of the stiffest mode that substeps aim at: a quarter of what the symplectic rule stands.
-/// Pinned by `ground::nets` and `ground::bridge`.
+/// ω h that the number of substeps aims at for the stiffest mode: a quarter of the stability limit of the symplectic
+/// rule. Pinned by `ground::nets` and `ground::bridge`.
 const RESOLVED: f64 = 0.5;
 
-/// ω h above which damping is added, and up to which it grows to that of the implicit rule: the last resort where even
-/// the most substeps do not resolve a mode. Pinned by `ground::nets`.
+/// ω h above which damping is added, and ω h at which it reaches that of the implicit Euler rule. This is the last resort
+/// if even the greatest number of substeps does not resolve a mode. Pinned by `ground::nets`.
 const UNRESOLVED: [f64; 2] = [1.5, 2.0];
 
-/// ω h that substeps aim at for elements without damping of their own, so that they keep their energy too; and the most substeps that this
-/// is worth. Pinned by `ground::hinge`.
+/// ω h that the number of substeps aims at for elements without enough damping of their own, so that they conserve
+/// energy. Pinned by `ground::hinge`.
 const KEPT: f64 = 0.05;
+/// Greatest number of substeps that are taken to reach [`KEPT`]. Pinned by `ground::hinge`.
 const WORTH: u32 = 32;
 
-/// ω h above which velocities at the end of a step are so far from the positions there, half a substep, that energy would
-/// seem to be won by turns, up to where damping makes up for it; and that damping, as a share of that of the implicit rule.
-/// Pinned by `ground::hinge`.
+/// ω h above which damping is added, and ω h at which it reaches [`SETTLING`]. Velocities at the end of a step are half a
+/// substep off from the positions there. Above this ω h, the energy of such a state would seem to rise and fall. Pinned
+/// by `ground::hinge`.
 const STAGGERED: [f64; 2] = [0.05, 0.1];
+/// Greatest damping that is added for [`STAGGERED`], as a share of that of the implicit Euler rule. Pinned by
+/// `ground::hinge`.
 const SETTLING: f64 = 0.25;
 
-/// Least damping, as a share of h·stiffness. The engine divides by the damping, so it must not be zero; a damping ratio
-/// of ω h / 4000 costs an undamped door 0.1 % of its amplitude in eight seconds. Pinned by `joints::door`.
+/// Least damping, as a share of h·stiffness. The engine divides by the damping, so it must not be zero. The resulting
+/// damping ratio of ω h / 4000 costs an undamped door 0.1 % of its amplitude in eight seconds. Pinned by `joints::door`.
 const LEAST: f64 = 5e-4;
 
-/// A force that is linear in a length and its rate, over one step. For a torsion element angles stand for lengths and
-/// moments for forces.
+/// A force over one step that is linear in a length and its rate. For a torsion element, angles take the place of
+/// lengths, and torques take the place of forces.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Tangent {
-    /// Tension at the length `at` and at rest, N.
+    /// Tension at the length `at` without damping, N.
     pub force: f64,
-    /// m.
+    /// Reference length, m.
     pub at: f64,
-    /// N/m.
+    /// Stiffness, N/m.
     pub stiffness: f64,
-    /// N s/m, not negative.
+    /// Damping, N s/m; not negative.
     pub damping: f64,
 }
 
 impl Tangent {
-    /// Whether substeps of so long would damp it more than it does by itself, where they do not resolve it finely.
+    /// Whether its damping is less than what [`SETTLING`] adds in substeps of `substep` seconds.
     pub(crate) fn is_undamped(&self, substep: f64) -> bool {
         self.damping < SETTLING * substep * self.stiffness
     }
 
-    /// That share of it.
+    /// The force multiplied by `share`.
     pub(crate) fn times(self, share: f64) -> Self {
         Self {
             force: share * self.force,
@@ -68,7 +71,7 @@ impl Tangent {
         }
     }
 
-    /// Of a linear element.
+    /// The force of a linear element.
     pub(crate) const fn linear(stiffness: f64, damping: f64, rest_length: f64) -> Self {
         Self {
             force: 0.0,
@@ -78,7 +81,7 @@ impl Tangent {
         }
     }
 
-    /// Of a force on its way between two lengths: a chord that does the work of its energy.
+    /// Linearises a force between two lengths as a chord. Its work between them equals the change of the force's energy.
     pub(super) fn chord(force: impl Fn(f64) -> Elastic, [from, to]: [f64; 2]) -> Self {
         let [first, last] = [from, to].map(&force);
         let middle = 0.5 * (from + to);
@@ -100,31 +103,31 @@ impl Tangent {
         }
     }
 
-    /// Tension without damping.
+    /// Tension without damping at a length, N.
     pub(crate) fn elastic(&self, length: f64) -> f64 {
         self.force + self.stiffness * (length - self.at)
     }
 
-    /// Its integral between two lengths, J: what the bodies lose to it.
+    /// Integral of the tension without damping between two lengths, J: the energy that the bodies lose.
     pub(crate) fn work(&self, [from, to]: [f64; 2]) -> f64 {
         (to - from) * self.elastic(0.5 * (from + to))
     }
 }
 
-/// How finely a component is to be solved.
+/// How finely an engine must solve a component.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Fineness {
-    /// Solver substeps of the engine's step.
+    /// Number of solver substeps in the time of the step.
     pub substeps: u32,
-    /// A mode is not resolved even so.
+    /// Whether a mode is not resolved even with these substeps.
     pub capped: bool,
 }
 
 impl Fineness {
-    /// For a step of `time` seconds, a stiffest mode of at most `omega` rad/s, and one of at most `undamped` of those
-    /// elements that no damper slows.
+    /// Chooses the substeps of a step of `time` seconds, from `least` to `most`. `omega` is an upper bound on the
+    /// stiffest mode, and `undamped` that on the stiffest mode of elements without enough damping, rad/s.
     pub(crate) fn of(omega: f64, undamped: f64, time: f64, least: u32, most: u32) -> Self {
-        // In few sizes, so that a little more stiffness does not have everything set up anew.
+        // Multiples of 8, so that a little more stiffness does not require a new set-up of all joints.
         let wanted = |phase: f64, most: u32| {
             let wanted = phase.ceil().min(f64::from(most));
             (wanted as u32).next_multiple_of(8).min(most)
@@ -140,7 +143,7 @@ impl Fineness {
 }
 
 impl Fineness {
-    /// What is told of a step in so many substeps.
+    /// Outcome that is reported for a step in `substeps` substeps.
     pub(crate) fn outcome(&self, substeps: u32) -> Outcome {
         Outcome {
             method: Method::Engine,
@@ -152,8 +155,9 @@ impl Fineness {
     }
 }
 
-/// The damping with which an element is to act in substeps of so long. `omega` is that of the stiffest mode that it takes
-/// part in, rad/s, and `lively` the same where contacts hold what they press on.
+/// Damping with which an element must act in substeps of `substep` seconds, N s/m. `omega` is an upper bound on the
+/// stiffest mode in which the element takes part, and `lively` that bound if bodies under contact pressure do not move,
+/// rad/s.
 pub(crate) fn damping(tangent: &Tangent, [omega, lively]: [f64; 2], substep: f64) -> f64 {
     let ramp =
         |omega: f64, [from, to]: [f64; 2]| ((omega * substep - from) / (to - from)).clamp(0.0, 1.0);

@@ -1,4 +1,4 @@
-//! From one engine step to the next: the bodies and elements that have to be solved together.
+//! Advances a component, the bodies and elements that must be solved together, by one engine step.
 
 use super::body::{Body, Spin, shortest, turn};
 use super::bound::Bound;
@@ -27,28 +27,28 @@ use kinks::Kinks;
 pub(crate) use remember::Remembered;
 use retake::Caution;
 
-/// Bodies that elements connect, with those elements: what has to be solved together. Kept from step to
-/// step by whoever fills it, so that nothing is allocated anew.
+/// Bodies that elements connect, and those elements. They must be solved together. The owner keeps the component from
+/// step to step to reuse its memory.
 #[derive(Clone, Default)]
 pub(crate) struct Component {
     pub bodies: Vec<Body>,
     pub elements: Vec<Element>,
-    /// Something else than its elements can have changed its energy since the last step.
+    /// Whether anything but its elements may have changed its energy since the last step.
     pub perturbed: bool,
-    /// How far the engine moves a body in a step, m, if there is a limit.
+    /// Greatest distance that the engine moves a body in a step, m; none if there is no limit.
     pub farthest_move: Option<f64>,
-    /// It is a network of points that goes on from the last step: bodies and elements are out of date.
+    /// Whether it is a network of points that continues from the last step. Then `bodies` and `elements` are out of date.
     pub is_warm: bool,
     pub(super) memory: Memory,
 }
 
-/// What is kept from step to step.
+/// Data kept from step to step.
 #[derive(Clone, Default)]
 pub(super) struct Memory {
     memo: Memo,
     network: Network,
     points: Points,
-    /// Length of the last step, if the points can go on from it.
+    /// Length of the last step if the points can continue from it, s.
     carriable: Option<f64>,
     controller: Controller,
     kinks: Kinks,
@@ -88,7 +88,7 @@ impl Component {
                 self.memory.controller = controller;
                 return outcome;
             }
-            // Held back there, energy has to be watched.
+            // The engine will limit the motion of a body. Repeat the step below, where the energy is checked.
             self.load(0);
         }
         let accuracy = self.memory.caution.pass(time, accuracy);
@@ -123,7 +123,7 @@ impl Component {
         outcome
     }
 
-    /// Whether all is well after a step.
+    /// Whether the state after a step is finite.
     pub(crate) fn is_finite(&self) -> bool {
         if self.is_warm {
             self.memory.points.are_finite()
@@ -137,7 +137,7 @@ impl Component {
         self.memory.max_iterations = max_iterations;
     }
 
-    /// Micro-steps of one element alone.
+    /// Takes `count` micro-steps of a lone element.
     fn run_alone(&mut self, step: f64, count: u32) {
         let guard = Guard::begin(&self.elements[0], &self.bodies, step);
         let damped = self.elements[0].damping > 0.0;
@@ -161,7 +161,7 @@ impl Component {
         }
     }
 
-    /// Energy, less what the users' torques gave, and the work of a lone element's moving ends so far.
+    /// Returns the energy minus the work of the users' torques, and the work of a lone element's moving ends so far, J.
     fn energy_and_work(&self) -> (f64, f64) {
         let mut work = 0.0;
         let element = &self.elements[0];
@@ -186,7 +186,7 @@ impl Component {
         kick::map_velocity(&self.elements[0], &mut self.bodies, step, map, memo);
     }
 
-    /// Micro-steps of elements that share bodies.
+    /// Takes `count` micro-steps of elements that share bodies.
     fn run_network(&mut self, step: f64, count: u32) {
         for _ in 0..count {
             self.drift(step / 2.0);
@@ -209,9 +209,9 @@ impl Component {
         }
     }
 
-    /// Whether the closed form holds: one element on its own bodies (a component can have more of them
-    /// where other elements are inert), with one direction that matters. An isotropic spring on a turning
-    /// body has three.
+    /// Whether the closed form applies: there is one linear element on its own bodies, and it acts along one direction.
+    /// An isotropic spring on a turning body acts along three. A component can have more bodies than those of its element
+    /// if other elements are inert.
     fn is_alone(&self) -> bool {
         let [element] = self.elements.as_slice() else {
             return false;
@@ -221,7 +221,7 @@ impl Component {
         self.bodies.len() <= 2 && element.law.is_none() && !(isotropic && turns)
     }
 
-    /// Time over which velocities that are off these count.
+    /// Time over which the velocity differences from `other` count as position errors, s.
     fn velocity_counts(&self, other: &[Body]) -> f64 {
         if self.bodies.iter().any(|body| body.spin != Spin::Ignored) {
             return VELOCITY_COUNTS;
@@ -257,8 +257,8 @@ impl Component {
     }
 }
 
-/// Makes one what the other is, with room for no more: a vector that grows begins with room for four, and most components have
-/// one element and two bodies.
+/// Makes `to` a copy of `from` without spare capacity. A vector that grows begins with a capacity of four, but most
+/// components have one element and two bodies.
 pub(crate) fn copy<T: Clone>(to: &mut Vec<T>, from: &[T]) {
     to.clear();
     to.reserve_exact(from.len());
@@ -278,7 +278,8 @@ impl Motion for Component {
         self.elements.clone_from(&saved.elements);
     }
 
-    /// As many as resolve the stiffest mode, and the blow where a law kinks; one where that is out of reach.
+    /// Returns the micro-steps that resolve the stiffest mode, and impacts at kinks of a law. Where they are out of
+    /// reach, returns one.
     fn least(&mut self, time: f64, most: u32) -> Least {
         if self.is_alone() {
             let element = &self.elements[0];

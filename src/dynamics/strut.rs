@@ -1,26 +1,26 @@
-//! What an element adds to a network's linear system, and vectors over its bodies.
+//! The part of an element in a network's linear system, and vectors over the bodies of a network.
 
 use bevy::math::{DMat3, DVec3};
 
-/// No body: that end is a point that moves as something else decides.
+/// Index that stands for no body, at an end with prescribed motion.
 pub(super) const NOBODY: usize = usize::MAX;
 
-/// What an element adds to the matrix.
+/// The part of an element in the matrix.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Strut {
     pub bodies: [usize; 2],
-    /// From the centres of mass to the ends, world frame.
+    /// Vectors from the centres of mass to the ends, world frame, m.
     pub arms: [DVec3; 2],
     pub direction: DVec3,
     /// Force that a relative acceleration along the line adds, N per m/s².
     pub along: f64,
     /// Force that a relative acceleration across the line adds, N per m/s².
     pub across: f64,
-    /// It turns its bodies instead of pushing them.
+    /// Whether the element turns its bodies instead of pushing them.
     pub twist: bool,
 }
 
-/// Linear and angular part for every body; no angular ones where nothing turns.
+/// A vector with a linear and an angular part for every body. `angular` is empty if no body turns.
 #[derive(Clone, Debug, Default)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Twists {
@@ -29,7 +29,7 @@ pub(super) struct Twists {
 }
 
 impl Strut {
-    /// Relative motion of the ends.
+    /// Motion of end B relative to end A.
     pub(super) fn relative(&self, x: &Twists) -> DVec3 {
         let at = |end: usize| match self.bodies[end] {
             NOBODY => DVec3::ZERO,
@@ -40,7 +40,7 @@ impl Strut {
         at(1) - at(0)
     }
 
-    /// Force for a relative acceleration.
+    /// Force that the relative acceleration `r` adds, N.
     pub(super) fn force(&self, r: DVec3) -> DVec3 {
         self.across * r + (self.along - self.across) * self.direction.dot(r) * self.direction
     }
@@ -71,7 +71,7 @@ impl Strut {
     }
 }
 
-/// r ↦ a × r.
+/// Matrix of r ↦ a × r.
 pub(super) fn cross(a: DVec3) -> DMat3 {
     DMat3::from_cols(
         DVec3::new(0.0, a.z, -a.y),

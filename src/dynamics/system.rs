@@ -1,7 +1,8 @@
-//! The linear system of a network: masses on the diagonal, and one strut for each element.
+//! The linear system of a network: masses on the diagonal, and one strut for each element. It is symmetric and positive
+//! definite.
 //!
-//! Symmetric and positive definite. Small ones are factorised, large ones go through conjugate gradients
-//! without a matrix, preconditioned by the inverse of each body's own block, from the last solution.
+//! Small systems are factorised. Large ones are solved by matrix-free conjugate gradients from the last solution. Their
+//! preconditioner is the inverse of each body's diagonal block.
 
 use super::body::{Body, Spin};
 use super::conjugate::{self, Iterated};
@@ -9,10 +10,10 @@ use super::strut::{NOBODY, Strut, Twists, cross};
 use bevy::math::{DMat3, DVec3};
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn, Matrix6, Vector6};
 
-/// Unknowns up to which a factorisation is the cheaper way.
+/// Number of unknowns up to which a factorisation is cheaper than iterations.
 pub(super) const DENSE: usize = 96;
 
-/// How a solution went.
+/// Result of a solve.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Effort {
     pub converged: bool,
@@ -26,7 +27,7 @@ pub(super) struct System {
     /// 1 on axes that are free, 0 on locked ones.
     free: Twists,
     turns: bool,
-    /// Where each body's unknowns begin in the matrix, and whether those of its turning are among them.
+    /// For each body, the index of its first unknown in the matrix, and whether its rotation is among the unknowns.
     places: Vec<(usize, bool)>,
     unknowns: usize,
     blocks: Vec<DMat3>,
@@ -46,7 +47,7 @@ struct Vectors {
     image: Twists,
 }
 
-/// A system on its way to a solution.
+/// State of the iterations for a system.
 struct Running<'a> {
     system: &'a System,
     vectors: Vectors,
@@ -84,7 +85,7 @@ impl Iterated for Running<'_> {
 }
 
 impl System {
-    /// Takes in masses and inertias, and forgets all struts.
+    /// Loads masses and inertias, and removes all struts.
     pub(super) fn begin(&mut self, bodies: &[Body]) {
         self.struts.clear();
         self.turns = bodies.iter().any(|body| body.spin != Spin::Ignored);
@@ -129,7 +130,7 @@ impl System {
         self.unknowns <= DENSE
     }
 
-    /// Readies the solution for the struts as they are now.
+    /// Prepares the solve for the present struts.
     pub(super) fn prepare(&mut self) {
         if self.is_dense() {
             self.factorise();
@@ -138,7 +139,7 @@ impl System {
         }
     }
 
-    /// Solves for `right`, from `x` as it is.
+    /// Solves for `right`. Iterations start from `x`.
     pub(super) fn solve(&mut self, right: &mut Twists, x: &mut Twists, budget: u32) -> Effort {
         right.mask(&self.free);
         if !x.fits(self.mass.len(), self.turns) {
@@ -204,7 +205,7 @@ impl System {
         }
     }
 
-    /// The inverse of each body's own block.
+    /// Inverts each body's diagonal block.
     fn invert_blocks(&mut self) {
         self.blocks.clear();
         self.blocks_turning.clear();
@@ -314,7 +315,7 @@ impl System {
         self.factor = Cholesky::new(matrix);
     }
 
-    /// Takes the factorisation's memory back for the next one.
+    /// Keeps the memory of the factorisation for the next one.
     pub(super) fn end(&mut self) {
         if let Some(factor) = self.factor.take() {
             self.matrix = factor.unpack_dirty();
@@ -378,7 +379,7 @@ fn gather(from: &DVector<f64>, places: &[(usize, bool)], to: &mut Twists) {
             }
         }
         if let (false, Some(angular)) = (*turns, to.angular.get_mut(i)) {
-            // It may have turned before.
+            // The body may have turned in an earlier step.
             *angular = DVec3::ZERO;
         }
     }

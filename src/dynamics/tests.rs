@@ -1,4 +1,4 @@
-//! The step against reference trajectories and conservation laws, without any engine.
+//! Tests the step against reference trajectories and conservation laws, without an engine.
 
 use super::body::{Body, Spin};
 use super::delivery::{Delivery, Schedule, Spinning};
@@ -119,7 +119,7 @@ fn elastic_pendulum_follows_the_reference_at_each_setting() {
     }
 }
 
-/// Two spinning bricks of different size, held at corners.
+/// Two spinning bricks of different size, connected at corners.
 fn dumbbell(stiffness: f64) -> Component {
     let a = point(2.0, DVec3::ZERO, DVec3::ZERO);
     let mut b = point(0.5, DVec3::new(2.0, 0.3, -0.1), DVec3::ZERO);
@@ -179,7 +179,7 @@ fn energy(c: &Component) -> f64 {
 
 #[test]
 fn spinning_pair_with_corner_anchors_keeps_momentum_and_energy() {
-    // The error swings with (ω dt)² and does not grow: ω dt is 0.16 and 0.5 here.
+    // The error oscillates, with an amplitude of order (ω dt)², and does not grow. Here ω dt is 0.16 and 0.5.
     for (k, bar) in [(20.0, 2e-3), (200.0, 4e-2)] {
         let mut pair = dumbbell(k);
         let (p0, l0) = momenta(&pair);
@@ -221,11 +221,11 @@ fn spinning_pair_converges_at_second_order_and_fourth_when_extrapolated() {
 }
 
 thread_local! {
-    /// How often [`counted`] was asked.
+    /// Number of calls of [`counted`].
     static RUNS: Cell<u32> = const { Cell::new(0) };
 }
 
-/// The engine's rule, counted.
+/// The engine's rule for rotation. Counts its calls.
 fn counted(spinning: &Spinning, spin: DVec3, delivery: &Delivery) -> (DQuat, DVec3) {
     RUNS.set(RUNS.get() + 1);
     turn(spinning, spin, delivery)
@@ -253,7 +253,7 @@ fn engine_substeps_reach_the_state_that_was_ordered() {
             for gyroscopic in [true, false] {
                 RUNS.set(0);
                 let d = s.angular(start, gyroscopic, end, counted);
-                // What is foreseen is near enough for what turns as most bodies do.
+                // The prediction is good enough for a body that turns as little as most do.
                 let turned = (end.rotation * start.rotation.inverse()).to_scaled_axis();
                 let most = if turned.length() < 0.05 { 2 } else { 5 };
                 assert!(RUNS.get() <= most, "n {n}: {} runs", RUNS.get());
@@ -354,7 +354,7 @@ fn damped_chain_of_a_thousand_to_one_masses_settles_at_any_stiffness() {
     }
 }
 
-/// So many that they are solved by iterations, which start where the last ones ended.
+/// The chain is so long that it is solved by iterations, which start from the last solution.
 #[test]
 fn a_network_goes_on_after_a_step_that_was_no_number() {
     let chain = || {

@@ -1,27 +1,29 @@
-//! How finely to step: a fixed count, or as finely as a tolerance asks.
+//! Chooses the number of micro-steps: a fixed count, or as many as a tolerance requires.
 //!
-//! Plain micro-steps have an error C₂/n², the combination of m and 2m an error C₄/m⁴ for 3m kicks. Now and
-//! then a step is taken with m, 2m and 4m, which tells both; between, the cheaper of the two that keeps the
-//! tolerance is taken. The probing step itself keeps its most exact result.
+//! The error of n plain micro-steps is C₂/n². Extrapolation from m and 2m micro-steps has the error C₄/m⁴ and takes 3m
+//! kicks. Now and then a probe takes the step with m, 2m and 4m micro-steps, which gives both constants. Between probes,
+//! the cheaper plan that keeps the tolerance is used. The probe itself keeps its most exact result.
 
 use super::excited::Excited;
 
-/// What is asked of a step.
+/// Accuracy that is asked of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Accuracy {
     pub microsteps: u32,
-    /// Most micro-steps that are taken instead to follow a motion, where it needs more; 0 for as many as are asked.
+    /// Greatest number of micro-steps to follow a motion that needs more than `microsteps`; 0 for no such budget. Even
+    /// then a network takes a few more to resolve a stiff mode.
     pub resolve: u32,
     pub extrapolate: bool,
-    /// Error of position that may be added, m per simulated second; then the two above do not count.
+    /// Position error that may be added, m per simulated second. If it is set, it determines the number of micro-steps
+    /// instead of the fields above.
     pub tolerance: Option<f64>,
     pub max_microsteps: u32,
-    /// Most iterations of one solve of a large network.
+    /// Greatest number of iterations in one solve of a large network.
     pub max_iterations: u32,
 }
 
 impl Accuracy {
-    /// So many micro-steps and no more, as tests ask for them.
+    /// `microsteps` micro-steps without a budget for more, for tests.
     #[cfg(test)]
     pub(crate) fn exactly(microsteps: u32) -> Self {
         Self {
@@ -34,7 +36,7 @@ impl Accuracy {
         }
     }
 
-    /// So many micro-steps, or as many as the cap lets, and whether it keeps a step from those.
+    /// Returns `asked` or the cap, whichever is less, and whether the cap was less.
     pub(super) fn cap(&self, asked: u32) -> (u32, bool) {
         let count = asked.min(self.most());
         (count, count < asked)
@@ -44,7 +46,7 @@ impl Accuracy {
         self.max_microsteps.max(1)
     }
 
-    /// For each of so many elements in networks, which share what may be taken to follow them.
+    /// The accuracy for networks that have `elements` elements together and share the budget `resolve`.
     pub(crate) fn shared(self, elements: usize) -> Self {
         let share = self.resolve / u32::try_from(elements.max(1)).unwrap_or(u32::MAX);
         Self {
@@ -53,13 +55,13 @@ impl Accuracy {
         }
     }
 
-    /// How many times as finely as by default an engine is to solve what it solves itself.
+    /// Factor by which an engine must solve held components more finely than by default.
     pub(crate) fn fineness(&self) -> u32 {
         let more = if self.extrapolate { 2 } else { 1 };
         self.cap(self.microsteps.max(1)).0.saturating_mul(more)
     }
 
-    /// Micro-steps of every step alike, if that is all that is asked.
+    /// The fixed number of micro-steps of every step, if neither a tolerance nor extrapolation is asked for.
     pub(crate) fn plain(&self) -> Option<u32> {
         let plain = self.tolerance.is_none() && !self.extrapolate;
         plain.then(|| self.cap(self.microsteps.max(1)).0)
@@ -77,22 +79,22 @@ pub(crate) enum Method {
     Engine,
 }
 
-/// What a step took.
+/// Cost and accuracy of a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Outcome {
     pub method: Method,
-    /// Kicks made.
+    /// Number of kicks.
     pub microsteps: u32,
-    /// Estimate of the error of position that the step added, m.
+    /// Estimated position error that the step added, m.
     pub error: Option<f64>,
-    /// A cap kept the step from being as fine or as exact as was asked.
+    /// Whether a cap kept the step from being as fine or as exact as asked.
     pub capped: bool,
-    /// Its stiffest motion was to be followed, and that would have taken more micro-steps than may be.
+    /// Whether the stiffest motion should have been resolved but needs more micro-steps than allowed.
     pub unresolved: bool,
 }
 
 impl Outcome {
-    /// Of plain micro-steps.
+    /// Outcome of plain micro-steps.
     pub(crate) fn plain(accuracy: &Accuracy) -> Self {
         let (microsteps, capped) = accuracy.cap(accuracy.microsteps.max(1));
         Self {
@@ -103,68 +105,69 @@ impl Outcome {
     }
 }
 
-/// Micro-steps that a motion needs.
+/// Number of micro-steps that a motion needs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Least {
     pub count: u32,
-    /// They resolve it.
+    /// Whether they resolve the motion.
     pub suffice: bool,
 }
 
-/// A motion that can be run over the step again and again, from copies of its state.
+/// A motion that can be repeated over a step from saved states.
 pub(crate) trait Motion {
-    /// Copies the state into a slot, of three.
+    /// Saves the state in one of three slots.
     fn save(&mut self, slot: usize);
-    /// Takes it back.
+    /// Restores the state from a slot.
     fn load(&mut self, slot: usize);
-    /// Micro-steps that resolve it, if they are not more than `most`; else those that it needs in any case.
+    /// Micro-steps that resolve the motion, if they are at most `most`; otherwise those that it needs in any case.
     fn least(&mut self, time: f64, most: u32) -> Least;
-    /// Runs over the step in so many micro-steps.
+    /// Advances by `time` seconds in `count` micro-steps.
     fn run(&mut self, time: f64, count: u32);
-    /// Distance to the state in a slot, m.
+    /// Distance to the state in a slot, m. Velocity differences count over a time; see [`velocity_counts`].
     fn distance(&self, slot: usize) -> f64;
-    /// How far bodies have gone against each other since the state in a slot, m, and what they have gained in speed counted
-    /// as in [`Self::distance`].
+    /// Distance that bodies have moved relative to each other since the state in a slot, m. Changes of velocity count as
+    /// in [`Self::distance`].
     fn travelled(&self, slot: usize) -> f64;
-    /// Adds a third of the difference to the state in a slot: removes the leading error of one with half
-    /// as many steps, since only even powers of the step occur.
+    /// Adds a third of the difference from the state in a slot, which was reached with half as many micro-steps. This
+    /// removes the leading error, because the error has only even powers of the step.
     fn extrapolate(&mut self, slot: usize);
-    /// Whether a micro-step of so long resolves the motion, so that extrapolation converges.
+    /// Whether a micro-step of `step` seconds resolves the motion, so that extrapolation converges.
     fn is_resolved(&mut self, step: f64) -> bool;
 }
 
-/// Time over which a velocity that is wrong becomes a position that is wrong, s.
+/// Time over which a velocity error becomes a position error, s.
 pub(crate) const VELOCITY_COUNTS: f64 = 0.15;
 
-/// Time over which wrong velocities become wrong positions, s, where springs turn them back. `motion` is their kinetic
-/// energy, J; `stiffened` is what springs take of it over the square of time, J/s². What swings back within a period counts
-/// no longer than that, by Rayleigh's quotient of the two.
+/// Time over which velocity errors become position errors where springs reverse them, s. `motion` is the sum of mass ·
+/// error², and `stiffened` is the sum of stiffness · (relative error along the element)². Rayleigh's quotient of the two
+/// is ω². An error counts no longer than 1/ω, because it reverses within a period.
 pub(crate) fn velocity_counts(motion: f64, stiffened: f64) -> f64 {
-    // NaN where nothing is wrong; the sum of nothing is −0.
+    // Without errors the quotient is NaN, which `min` ignores. The sum of no terms is −0, hence `abs`.
     let omega = (stiffened / motion).abs().sqrt();
     VELOCITY_COUNTS.min(omega.recip())
 }
 
-/// Steps from probe to probe, where little is needed and elsewhere.
+/// Number of steps between probes while the fewest micro-steps are enough.
 const CALM: u32 = 24;
+/// Greatest number of steps between probes otherwise.
 const BUSY: u32 = 8;
 
-/// Growth of the error from probe to probe above which the next comes sooner.
+/// Growth of the error between two probes above which the next probe comes sooner.
 const GROWTH: f64 = 2.0;
 
 /// Memory of a motion's errors.
 #[derive(Clone, Copy, Debug, Default)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Controller {
-    /// Error constants, m/s: plain, and of the combination where that is valid,
+    /// Error constants in steps of length `step`, m/s: of plain micro-steps, and of extrapolation where it converges.
     known: Option<(f64, Option<f64>)>,
-    /// in steps of so long, s.
+    /// Length of the step to which `known` applies, s.
     step: f64,
-    /// Steps until the next probe.
+    /// Number of steps until the next probe.
     age: u32,
-    /// Probes in a row that found little to do.
+    /// Number of probes in a row for which the fewest micro-steps were enough.
     calm: u32,
-    /// Steps from the last probe to the next.
+    /// Number of steps from the last probe to the next.
     span: u32,
     excited: Excited,
 }
@@ -177,7 +180,8 @@ enum Plan {
 }
 
 impl Plan {
-    /// As many kicks, but all of them plain micro-steps, which never diverge, where extrapolation would.
+    /// Replaces extrapolation by plain micro-steps with as many kicks where it would diverge. Plain micro-steps never
+    /// diverge.
     fn sound(self, motion: &mut impl Motion, time: f64) -> Self {
         match self {
             Self::Extrapolated(m) if !motion.is_resolved(time / f64::from(m)) => Self::Plain(3 * m),
@@ -187,7 +191,7 @@ impl Plan {
 }
 
 impl Controller {
-    /// Takes a motion through a step.
+    /// Advances a motion by one step.
     pub(crate) fn drive(
         &mut self,
         motion: &mut impl Motion,
@@ -198,14 +202,14 @@ impl Controller {
             return self.fixed(motion, time, accuracy);
         };
         let most = accuracy.most();
-        // How fine it has to be is found out.
+        // The budget is 0 here, because the error decides how fine the steps must be.
         let (least, cut) = accuracy.cap(motion.least(time, 0).count);
         self.scale_to(time);
         let mut outcome = match self.known.filter(|_| self.age > 0) {
             Some(known) => {
                 self.age -= 1;
                 let (plan, capped) = cheapest(known, tolerance, [least, most]);
-                // It can have become another motion since the probe.
+                // The motion may have changed since the probe.
                 let plan = plan.sound(motion, time);
                 Outcome {
                     microsteps: take(motion, time, plan),
@@ -220,7 +224,8 @@ impl Controller {
         outcome
     }
 
-    /// Has its constants hold for steps of another length: they rise with the power of it that they fall with of the count.
+    /// Converts the error constants to steps of another length. They grow with the power of the length with which the
+    /// errors fall with the number of micro-steps.
     fn scale_to(&mut self, time: f64) {
         let ratio = time / std::mem::replace(&mut self.step, time);
         if let Some((plain, fine)) = self.known.as_mut().filter(|_| ratio != 1.0) {
@@ -231,7 +236,7 @@ impl Controller {
         }
     }
 
-    /// Takes the step with three counts and learns from it.
+    /// Takes the step with up to three numbers of micro-steps, and computes the error constants from the differences.
     fn probe(
         &mut self,
         motion: &mut impl Motion,
@@ -254,7 +259,8 @@ impl Controller {
         let mut kicks = 3 * m;
         let count = f64::from(m);
         let plain = 4.0 / 3.0 * motion.distance(1) * count * count / time;
-        // The combination costs three times the least: nothing is to be learnt where that many plain ones do.
+        // Extrapolation takes at least 3·`least` kicks. Its error is not measured where as many plain micro-steps are
+        // enough.
         let cheap = plain <= tolerance * f64::from(3 * least).powi(2);
         if cheap || !motion.is_resolved(time / count) {
             self.known = Some((plain, None));
@@ -280,7 +286,7 @@ impl Controller {
         };
         let mut error = error_of(known, taken);
         if error > tolerance && taken != plan {
-            // Not fine enough even so.
+            // Even the most exact result of the probe is not good enough.
             motion.load(0);
             kicks += take(motion, time, plan);
             error = error_of(known, plan);
@@ -293,7 +299,7 @@ impl Controller {
         }
     }
 
-    /// Until when the next probe can wait: the sooner, the more the error grows.
+    /// Sets when the next probe comes: sooner if the error grows.
     fn put_off(&mut self, grows: bool, calm: bool) {
         self.span = if grows {
             (self.span / 2).max(1)
@@ -304,7 +310,7 @@ impl Controller {
         self.age = if self.calm > 2 { CALM } else { self.span };
     }
 
-    /// As many micro-steps as are asked for, or those that follow what moves.
+    /// Takes as many micro-steps as asked, or more to follow the motion.
     fn fixed(&mut self, motion: &mut impl Motion, time: f64, accuracy: Accuracy) -> Outcome {
         let asked = accuracy.microsteps.max(1);
         let least = motion.least(time, accuracy.resolve);
@@ -350,7 +356,7 @@ fn error_of((plain, fine): (f64, Option<f64>), plan: Plan) -> f64 {
     }
 }
 
-/// The plan with the fewest kicks that keeps the tolerance, and whether the cap kept it from doing so.
+/// Returns the plan with the fewest kicks that keeps the tolerance, and whether the cap prevents such a plan.
 fn cheapest(
     (plain, fine): (f64, Option<f64>),
     tolerance: f64,

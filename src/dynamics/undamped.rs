@@ -1,6 +1,6 @@
-//! The solver alone for an hour without damping: what of the energy it keeps by itself, and what of it the single precision
-//! of an engine costs. `COILOVER_HOURS=1 cargo test --release --lib undamped -- --nocapture` plays the hour; without the
-//! variable it is two minutes.
+//! Simulates an hour without damping with the integrator alone. Measures how much energy it conserves by itself, and how
+//! much an engine's single precision costs. `COILOVER_HOURS=1 cargo test --release --lib undamped -- --nocapture`
+//! simulates the hour; without the variable it is two minutes.
 
 use super::body::{Body, Spin};
 use super::element::{End, Path};
@@ -14,7 +14,8 @@ use bevy::prelude::default;
 const DT: f64 = 1.0 / 60.0;
 const GRAVITY: DVec3 = DVec3::new(0.0, -9.81, 0.0);
 
-/// 12 kg on four springs of 900 N/m from its corners to hooks above, as in the test of the same name with Rapier.
+/// A box of 12 kg on four springs of 900 N/m from its corners to hooks above, as in the test of the same name with
+/// Rapier.
 fn box_on_four() -> Component {
     let half = DVec3::new(0.5, 0.2, 0.3);
     let inertia = 4.0 * DVec3::new(0.04 + 0.09, 0.25 + 0.09, 0.25 + 0.04);
@@ -44,7 +45,7 @@ fn energy(component: &Component) -> f64 {
     Energy::of(&component.elements, &component.bodies).sum()
 }
 
-/// To single precision and back, as an engine keeps it.
+/// Rounds a body to single precision and back, as an engine stores it.
 fn round(body: &mut Body) {
     let rotation = body.rotation.as_quat().normalize().as_dquat().normalize();
     let spin = body.angular_velocity().as_vec3().as_dvec3();
@@ -57,7 +58,7 @@ fn round(body: &mut Body) {
     }
 }
 
-/// Mean energy above rest in each of `parts` equal times, over that in the first.
+/// Mean energy above rest in each of `parts` equal periods, divided by that in the first.
 fn means(mut component: Component, accuracy: Accuracy, rounded: bool, parts: usize) -> Vec<f64> {
     let mut still = component.clone();
     still.bodies[0].velocity = DVec3::ZERO;
@@ -101,7 +102,7 @@ fn the_solver_alone_keeps_the_energy_of_a_box_on_four_springs() {
         ("by default", accuracy(1, false), false, 1e-4),
         ("by default, rounded", accuracy(1, false), true, 2e-3),
         ("with four micro-steps", accuracy(4, false), false, 1e-4),
-        // Richardson's combination is not symplectic: it loses 0.8 % in an hour.
+        // Richardson extrapolation is not symplectic: it loses 0.8 % in an hour.
         ("extrapolated", accuracy(1, true), false, 1e-2),
     ] {
         let means = means(box_on_four(), accuracy, rounded, 6);

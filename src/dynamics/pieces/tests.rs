@@ -45,7 +45,7 @@ fn pieces_do_the_work_of_the_laws_energy_across_its_kinks() {
     for limits in [free, [0.0, f64::INFINITY], [f64::NEG_INFINITY, 0.0]] {
         let law = law(limits);
         for way in [[0.9, 1.2], [1.2, 0.8], [0.6, 0.4], [1.3, 1.6], [1.6, 1.4]] {
-            // It was thought to go the other way.
+            // The predicted change of length has the wrong sign.
             let pieces = Pieces::of(&law, 1.0, reach([way[0], 2.0 * way[0] - way[1]], 1.0));
             let stored = way.map(|length| law.elastic(length, 1.0).energy);
             let missed = pieces.work(way) - (stored[1] - stored[0]);

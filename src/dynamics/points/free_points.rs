@@ -1,5 +1,5 @@
-//! From one step into the next without being taken apart: where only the engine has moved a network since,
-//! nothing but its points' places has to be read again.
+//! Continues a network of points from one step to the next without loading it again. If only the engine has moved it
+//! since, only the state of its points must be read.
 
 use super::{Exchanged, Point, Points, Wire};
 use crate::dynamics::body::{Body, is_within};
@@ -7,28 +7,28 @@ use crate::dynamics::element::{Element, End};
 use crate::threads::{PIECE, all, copy, each};
 use bevy::math::DVec3;
 
-/// A body before a step, as the point that its centre of mass is; or an end that nothing here moves.
+/// The centre of mass of a body before a step, or an end that elements do not move.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct FreePoint {
     pub position: DVec3,
     pub velocity: DVec3,
-    /// By everything but elements.
+    /// Acceleration from everything but elements, m/s².
     pub acceleration: DVec3,
-    /// 0 of one that elements cannot move.
+    /// Inverse mass, 1/kg; 0 if elements cannot move the point.
     pub inverse_mass: f64,
 }
 
-/// What a step made of a body.
+/// Motion of a body over a step.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Flight {
-    /// How far it went, m.
+    /// Displacement, m.
     pub moved: DVec3,
-    /// At the end, m/s.
+    /// Velocity at the end of the step, m/s.
     pub velocity: DVec3,
 }
 
 impl Point {
-    /// Moves a body there; says whether it is the same mass still.
+    /// Places a body. Returns whether its mass is unchanged and its state is finite.
     fn place(&mut self, at: &FreePoint) -> bool {
         let is_same = self.inverse_mass == at.inverse_mass;
         *self = Self {
@@ -41,17 +41,17 @@ impl Point {
 }
 
 impl Points {
-    /// What iterations of the next solve start from.
+    /// Accelerations from which the iterations of the next solve start.
     pub(in crate::dynamics) fn solution(&self) -> &[DVec3] {
         &self.solver.solution
     }
 
-    /// Has them start from nothing.
+    /// Makes the next iterations start from zero.
     pub(in crate::dynamics) fn forget_solution(&mut self) {
         self.solver.solution.clear();
     }
 
-    /// Has iterations start there, if that is a place.
+    /// Makes the next iterations start from `solution`, if it is finite.
     pub(in crate::dynamics) fn start_from(&mut self, solution: &[DVec3]) {
         if solution.iter().all(|x| x.is_finite()) {
             self.solver.solution.clear();
@@ -59,14 +59,14 @@ impl Points {
         }
     }
 
-    /// Readies what has been taken in for its step.
+    /// Prepares a newly loaded network for its step.
     pub(in crate::dynamics) fn begin(&mut self, budget: u32) {
         self.budget = budget;
         self.converged = true;
         copy(&mut self.start, &self.points);
     }
 
-    /// Readies what goes on from the last step for its next.
+    /// Prepares a network that continues from the last step for its next step.
     pub(in crate::dynamics) fn go_on(&mut self, budget: u32) {
         each(&mut self.exchanged, |_, exchanged| {
             *exchanged = Exchanged::default();
@@ -74,7 +74,8 @@ impl Points {
         self.begin(budget);
     }
 
-    /// Moves all bodies to where the engine has taken them; says whether they are the same masses still.
+    /// Places all bodies where the engine has moved them. Returns whether all masses are unchanged and all states are
+    /// finite.
     pub(crate) fn place<'a>(&mut self, at: impl Fn(usize) -> &'a FreePoint + Sync) -> bool {
         let pieces = self.points[..self.bodies].chunks_mut(PIECE).enumerate();
         all(pieces, |(piece, points)| {
@@ -84,13 +85,13 @@ impl Points {
         })
     }
 
-    /// Places an end that elements cannot move, counted in the order of the elements.
+    /// Places an end that elements cannot move. `end` counts these ends in the order of the elements.
     pub(crate) fn place_end(&mut self, end: usize, position: DVec3, velocity: DVec3) {
         let index = self.bodies + end;
         self.points[index] = Point::prescribed(position, velocity);
     }
 
-    /// Where a body began the step.
+    /// State of a body at the start of the step.
     pub(crate) fn origin(&self, body: usize) -> FreePoint {
         let start = &self.start[body];
         FreePoint {
@@ -101,7 +102,7 @@ impl Points {
         }
     }
 
-    /// What the step made of a body.
+    /// Motion of a body over the step.
     pub(crate) fn flight(&self, body: usize) -> Flight {
         let (start, end) = (&self.start[body], &self.points[body]);
         Flight {
@@ -110,13 +111,14 @@ impl Points {
         }
     }
 
-    /// Of an element its direction, and the heat and the work of the step.
+    /// Direction of an element, and its heat and work in the step, J.
     pub(crate) fn result(&self, element: usize) -> (Option<DVec3>, f64, f64) {
         let Exchanged { heat, work } = self.exchanged[element];
         (self.wires[element].side.try_normalize(), heat, work)
     }
 
-    /// Whether the engine takes all of them along, if it flies none further than so far in such a time.
+    /// Whether the engine can move all bodies as the step did, if it moves none farther than `farthest` (m) in `time`
+    /// seconds.
     pub(in crate::dynamics) fn are_within(&self, farthest: f64, time: f64) -> bool {
         let bodies = self.points[..self.bodies].chunks(PIECE);
         all(bodies.zip(self.start.chunks(PIECE)), |(bodies, start)| {
@@ -133,7 +135,7 @@ impl Points {
         all(bodies, |bodies| bodies.iter().all(finite))
     }
 
-    /// Has bodies and elements that took no part since stand as at the start of the step.
+    /// Resets bodies and elements to the start of the step. Steps on the points alone have left them out of date.
     pub(in crate::dynamics) fn restore(&self, elements: &mut [Element], bodies: &mut [Body]) {
         for (body, point) in bodies.iter_mut().zip(&self.start) {
             body.position = point.position;
@@ -153,7 +155,7 @@ impl Points {
                 (path.position, path.velocity) = (start.position, start.velocity);
             }
         }
-        // As it was aimed when the step began.
+        // The direction at the start of the step.
         element.direction = wire.aimed(wire.of(&self.start)).try_normalize();
         (element.heat, element.work) = (0.0, 0.0);
     }

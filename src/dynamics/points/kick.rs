@@ -1,4 +1,4 @@
-//! The kick at the half drift; see [`crate::dynamics::network`], whose formulas these are.
+//! The kick of a network of points after the first half drift. The formulas are those of [`crate::dynamics::network`].
 
 use super::parts::Window;
 use super::{Exchanged, Line, Point, Points, Wire};
@@ -14,34 +14,36 @@ pub(super) struct Bar {
     isotropic: bool,
     pub direction: DVec3,
     length: f64,
-    /// Rate of the length before the kick.
+    /// Rate of the length before the kick, m/s.
     axial: f64,
-    /// Force on its ends before the solve, without that of the line's turning.
+    /// Force on its ends before the solve, without the part from the turning of the line, N.
     load: DVec3,
-    /// What the turning adds to it along the line, N per m/s².
+    /// Force along the line per centripetal acceleration, N per m/s².
     turning: f64,
-    /// The turning itself, m/s².
+    /// Centripetal acceleration of the line, m/s².
     turns: f64,
-    /// Damping force before the solve, N, and what it gains per m/s².
+    /// Damping force before the solve, N.
     drag: f64,
+    /// Damping force per relative acceleration along the line, N per m/s².
     damping: f64,
-    /// Force that a relative acceleration along and across the line adds, N per m/s².
+    /// Force that a relative acceleration along the line adds, N per m/s².
     pub along: f64,
+    /// Force that a relative acceleration across the line adds, N per m/s².
     pub across: f64,
 }
 
 impl Bar {
-    /// Force before the solve.
+    /// Force before the solve, N.
     fn force(&self) -> DVec3 {
         self.load + self.turning * self.turns * self.direction
     }
 
-    /// Force that a relative acceleration adds.
+    /// Force that the relative acceleration `r` adds, N.
     pub(super) fn answer(&self, r: DVec3) -> DVec3 {
         self.across * r + (self.along - self.across) * self.direction.dot(r) * self.direction
     }
 
-    /// |lateral|²/L, bounded where the line turns further than the step can follow.
+    /// Centripetal acceleration |lateral|²/L, m/s². Bounded where the step does not resolve the turning of the line.
     fn turning_at(&self, lateral_square: f64, step: f64) -> f64 {
         if self.isotropic || lateral_square == 0.0 {
             return 0.0;
@@ -71,8 +73,8 @@ impl Bar {
 }
 
 impl Bar {
-    /// Of an element between these points, of which the one on the stiffest springs has so much stiffness over its mass. One without a
-    /// direction adds nothing.
+    /// The bar of an element between two points. `stiffest` is the greater stiffness over mass of the two, 1/s². An
+    /// element without a direction adds nothing.
     #[inline(always)]
     fn measure(wire: &Wire, ends: [&Point; 2], stiffest: f64, step: f64, theta: f64) -> Self {
         let h2 = step * step;
@@ -117,7 +119,7 @@ impl Bar {
             0.0
         };
         let settle_across = settling(2.0 * h2 * across * inverse_mass) * step;
-        // The half drift counted h²/8 of the turning as stretch already.
+        // The half drift has already added h²/8 of the centripetal acceleration to the stretch.
         bar.turning = (theta - 0.125) * h2 * k + bar.damping;
         bar.drag = tension - elastic;
         bar.load = tension * u + settle_across * across * lateral;
@@ -128,7 +130,7 @@ impl Bar {
 }
 
 impl Points {
-    /// All elements and outside forces together.
+    /// Applies the kick of all elements and external forces together.
     pub(super) fn kick(&mut self, step: f64) {
         let (z_max, _) = self.bounds(step);
         self.measure(step, placement(z_max));
@@ -138,7 +140,7 @@ impl Points {
         self.push(step);
         let (points, impulses) = (&self.points, &self.impulses);
         each(&mut self.bars, |_, bar| {
-            // The mean of before and after the kick keeps the step its own mirror image in time.
+            // The mean of before and after the kick makes the step time-symmetric.
             let after = |end: u32| {
                 let (point, impulse) = (&points[end as usize], impulses[end as usize]);
                 point.velocity + point.inverse_mass * impulse + step * point.acceleration
@@ -159,7 +161,7 @@ impl Points {
         self.account(step);
     }
 
-    /// Where the lines are, what they do, and what each adds to the system.
+    /// Computes the line of each element, its motion, and its part of the linear system.
     pub(super) fn measure(&mut self, step: f64, theta: f64) {
         self.bars.resize(self.wires.len(), Bar::default());
         let (points, stiffness) = (&self.points, &self.stiffness);
@@ -172,7 +174,7 @@ impl Points {
         });
     }
 
-    /// Accelerations for the lines' present turning.
+    /// Solves for the accelerations at the present turning of the lines.
     fn solve(&mut self) {
         let (right, points) = (&mut self.impulses, &self.points);
         right.resize(points.len(), DVec3::ZERO);
@@ -184,8 +186,8 @@ impl Points {
             .solve(right, &self.bars, &self.parts, self.budget);
     }
 
-    /// Impulses of the solution. They come in pairs along the lines, so both momenta are kept however
-    /// exact it is.
+    /// Computes the impulses of the solution. They come in pairs of opposite impulses, so linear momentum is conserved
+    /// even if the solution is inexact. Angular momentum is too, as far as they act along the lines.
     fn push(&mut self, step: f64) {
         each(&mut self.impulses, |_, impulse| *impulse = DVec3::ZERO);
         let solution = &self.solver.solution;
@@ -196,7 +198,7 @@ impl Points {
             });
     }
 
-    /// Notes what dampers took and moving ends gave.
+    /// Adds up the heat of dampers and the work of moving ends.
     fn account(&mut self, step: f64) {
         let (points, solution) = (&self.points, &self.solver.solution);
         let bars = &self.bars;
@@ -208,7 +210,8 @@ impl Points {
 }
 
 impl Bar {
-    /// Notes what its damper took and moving ends gave, where its ends have been accelerated so against each other.
+    /// Adds the heat of its damper and the work of its moving ends. `relative` is the relative acceleration of the ends,
+    /// m/s².
     #[inline(always)]
     fn account(&self, exchanged: &mut Exchanged, [a, b]: [&Point; 2], relative: DVec3, step: f64) {
         let moved = [a, b].map(|end| end.inverse_mass == 0.0 && end.velocity != DVec3::ZERO);
@@ -227,7 +230,7 @@ impl Bar {
     }
 }
 
-/// The force of a point's outside acceleration.
+/// External force on a point, N.
 fn weight(point: &Point) -> DVec3 {
     if point.inverse_mass == 0.0 {
         return DVec3::ZERO;

@@ -1,10 +1,10 @@
-//! A large network cut into parts, which threads share. How many threads there are changes no bit of what comes out: where a
-//! network is cut depends on the network alone.
+//! Divides a large network into parts that threads share. The division depends on the network alone. So the result is the
+//! same bit for bit for any number of threads.
 //!
-//! What each point or each element has for itself is cut at even lengths, [`PIECE`]. Where elements add to their points, two
-//! that share a point must not go at one time. Elements and points stand so that what is near each other in the network is near
-//! in memory (`scene::order`), so a run of elements touches a run of points that overlaps those of the next run and the last
-//! alone: every second run goes at one time, and then the others.
+//! Work on single points or single elements is divided into pieces of equal length, [`PIECE`]. Elements that share a
+//! point must not add to it at the same time. Elements and points are sorted so that neighbours in the network are near
+//! in memory (`scene::order`). So the points of a run of elements overlap only those of the previous and the next run.
+//! Every second run is processed at the same time, and then the others.
 
 use super::Wire;
 use super::kick::Bar;
@@ -15,25 +15,26 @@ use std::ops::Range;
 #[derive(Clone, Debug)]
 struct Part {
     bars: Range<usize>,
-    /// Index of the first body that they touch; the last part's end at the number of bodies.
+    /// Index of the first body that the run touches; 0 for the first run. The bodies of a run end before the first body
+    /// of the run after the next.
     first: usize,
 }
 
-/// Runs of elements, of which no two that are not neighbours share a body.
+/// Runs of elements. Two runs that are not neighbours share no body.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Parts {
     list: Vec<Part>,
     bodies: usize,
 }
 
-/// A run of what there is for each body.
+/// Values of a contiguous range of bodies.
 pub(super) struct Window<'a, T> {
     first: usize,
     values: &'a mut [T],
 }
 
 impl<T> Window<'_, T> {
-    /// What there is for a point; none for one that is not a body.
+    /// The value of a point; none if the point is not a body.
     pub(super) fn of(&mut self, point: u32) -> Option<&mut T> {
         self.values
             .get_mut((point as usize).wrapping_sub(self.first))
@@ -41,11 +42,11 @@ impl<T> Window<'_, T> {
 }
 
 impl Parts {
-    /// Cuts a network of so many bodies.
+    /// Divides a network of `bodies` bodies.
     pub(super) fn find(&mut self, wires: &[Wire], bodies: usize) {
         self.list.clear();
         self.bodies = bodies;
-        // The end of what has been touched by all parts but the last.
+        // End of the range of bodies that all runs but the last have touched.
         let (mut touched, mut last) = (0, 0);
         for (at, run) in wires.chunks(PIECE).enumerate() {
             let ends = run.iter().flat_map(|wire| wire.ends);
@@ -76,13 +77,13 @@ impl Parts {
         });
     }
 
-    /// How many they are.
+    /// Number of parts.
     #[cfg(test)]
     pub(super) fn count(&self) -> usize {
         self.list.len()
     }
 
-    /// Has every element add to what there is for its ends.
+    /// Lets every element add to the values of its ends.
     pub(super) fn scatter<T: Send>(
         &self,
         bars: &[Bar],

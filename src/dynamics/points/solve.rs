@@ -1,5 +1,5 @@
-//! The linear system of point masses and bars: conjugate gradients without a matrix, preconditioned by
-//! the inverse of each point's own block, from the last solution.
+//! Solves the linear system of point masses and bars by matrix-free conjugate gradients. The preconditioner is the
+//! inverse of each point's diagonal block. Iterations start from the last solution.
 
 use super::Point;
 use super::kick::Bar;
@@ -10,16 +10,16 @@ use bevy::math::{DMat3, DVec3};
 
 #[derive(Clone, Default)]
 pub(super) struct Solver {
-    /// Accelerations of all points; of those that elements cannot move zero.
+    /// Accelerations of all points, m/s²; zero for points that elements cannot move.
     pub solution: Vec<DVec3>,
     masses: Vec<f64>,
-    /// The inverse of each point's own block.
+    /// Inverse of each point's diagonal block.
     blocks: Vec<DMat3>,
     residual: Vec<DVec3>,
     preconditioned: Vec<DVec3>,
     search: Vec<DVec3>,
     image: Vec<DVec3>,
-    /// Of each piece of them.
+    /// Partial sums, one for each piece of points.
     sums: Vec<f64>,
 }
 
@@ -28,7 +28,7 @@ fn outer(u: DVec3) -> DMat3 {
 }
 
 impl Solver {
-    /// Takes in the movable points and the bars as they are now.
+    /// Sets up the system for the movable points and bars in their present state.
     pub(super) fn begin(&mut self, points: &[Point], bars: &[Bar], parts: &Parts) {
         self.masses.resize(points.len(), 0.0);
         each(&mut self.masses, |at, mass| {
@@ -52,7 +52,7 @@ impl Solver {
         self.sums.resize(points.len().div_ceil(PIECE), 0.0);
     }
 
-    /// Solves for `right`, whose length is the number of all points; says whether it came to an end.
+    /// Solves for `right`, which has an entry for every point. Returns whether the iterations converged.
     pub(super) fn solve(
         &mut self,
         right: &mut [DVec3],
@@ -77,7 +77,7 @@ impl Solver {
         apply(masses, bars, parts, &self.solution, &mut self.image, sums);
         let (image, right) = (&self.image, &*right);
         each(&mut self.residual, |at, r| *r = right[at] - image[at]);
-        // Whatever the last search came to, nothing of it is kept.
+        // The last search direction may not be finite, so it must not get into this solve.
         each(&mut self.search, |_, p| *p = DVec3::ZERO);
         let mut running = Running {
             solver: self,
@@ -163,7 +163,8 @@ impl Iterated for Running<'_> {
     }
 }
 
-/// y = A x for movable points, 0 for others; returns xᵀ A x, for which there is room in `sums`.
+/// Computes y = A x for movable points; other entries of y stay zero. Returns xᵀ A x. `sums` is a buffer for partial
+/// sums.
 fn apply(
     masses: &[f64],
     bars: &[Bar],

@@ -1,20 +1,20 @@
-//! What a network of points has, for its [bound](crate::dynamics::bound).
+//! Measures the energy of a network of points for its [bound](crate::dynamics::bound).
 
 use super::{Point, Points, Wire};
 use crate::dynamics::energy::Energy;
 use crate::threads::{PIECE, share};
 use bevy::math::DVec3;
 
-/// Rounding of the engine's numbers.
+/// Relative rounding error of the engine's f32.
 const UNIT: f64 = f32::EPSILON as f64;
 
-/// What the energy bound asks of a network.
+/// What the energy bound needs to know about a network.
 #[derive(Clone, Copy, Debug, Default)]
 pub(in crate::dynamics) struct Survey {
     pub energy: Energy,
-    /// What rounding a step's positions and velocities to f32 can add to it, J.
+    /// Energy that rounding a step's positions and velocities to f32 can add, J.
     pub rounding: f64,
-    /// Power of ends that something else moves, at most, W.
+    /// Greatest power of the ends with prescribed motion, W.
     pub power: f64,
 }
 
@@ -39,13 +39,13 @@ impl Survey {
     #[inline(always)]
     fn add_wire(&mut self, wire: &Wire, ends: [&Point; 2]) {
         let Some(line) = wire.line(ends) else {
-            // As one of no length.
+            // Stored energy at zero length.
             self.energy.stored += 0.5 * wire.stiffness * wire.rest_length.powi(2);
             return;
         };
         let stretch = line.length.abs() - wire.rest_length;
         self.energy.stored += 0.5 * wire.stiffness * stretch * stretch;
-        // Four substeps, two ends.
+        // Rounding in four substeps at two ends.
         let reach = ends[0].position.abs().max(ends[1].position.abs());
         let off = 8.0 * UNIT * reach.max_element();
         let force = wire.stiffness * (line.length - wire.rest_length);

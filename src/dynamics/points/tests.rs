@@ -1,4 +1,4 @@
-//! Point masses against the rigid bodies that do not turn: the same step, to rounding.
+//! Compares point masses with rigid bodies that do not turn. Both must take the same step except for rounding.
 
 use super::*;
 use crate::dynamics::element::Path;
@@ -8,7 +8,7 @@ use crate::dynamics::tests;
 use crate::threads::{self, PIECE};
 use bevy::tasks::{ComputeTaskPool, TaskPoolBuilder};
 
-/// Small numbers that follow no pattern.
+/// Pseudo-random numbers from −0.5 to 0.5.
 struct Dice(u64);
 
 impl Dice {
@@ -22,7 +22,7 @@ impl Dice {
     }
 }
 
-/// A sheet of bodies that hangs from moving points, all a little out of place.
+/// A sheet of slightly displaced bodies that hangs from moving points.
 fn sheet(stiffness: f64, damping: f64) -> Component {
     let mut dice = Dice(7);
     let (columns, rows) = (7, 6);
@@ -51,7 +51,7 @@ fn sheet(stiffness: f64, damping: f64) -> Component {
             element(own(i - columns), own(i), 1.1);
         }
         if x > 0 {
-            // Some without any rest length.
+            // Some elements have zero rest length.
             element(own(i - 1), own(i), if y == 2 { 0.0 } else { 0.9 });
         }
         sheet.bodies.push(body);
@@ -123,7 +123,7 @@ fn ends_in_one_place_push_nowhere_until_they_part() {
     assert!(net.bodies.iter().all(Body::is_finite));
 }
 
-/// A net of so many by so many points, its elements in the order of the lesser of their ends.
+/// A square net with `side` points per side. Its elements are sorted by the smaller index of their ends.
 fn net(side: usize) -> Component {
     let mut dice = Dice(3);
     let mut net = Component::default();
@@ -170,7 +170,7 @@ fn parts_that_go_at_one_time_share_no_body() {
     let mut points = Points::default();
     points.load_from(&net.elements, &net.bodies, 200);
     points.measure(1.0 / 60.0, 0.25);
-    // Each adds one to both of its ends, and everyone sees how many that are.
+    // Each element adds one to both of its ends, which counts the elements of each body.
     let count = |parts: &Parts| {
         let mut count = vec![0_u32; net.bodies.len()];
         parts.scatter(&points.bars, &mut count, |bar, count| {
@@ -185,7 +185,7 @@ fn parts_that_go_at_one_time_share_no_body() {
     whole.find(&wires, net.bodies.len());
     assert!(whole.count() > 3);
     let in_parts = count(&whole);
-    // An order that knows nothing of memory has to go in one piece.
+    // Elements that are not sorted by memory must form a single part.
     let last = wires.len() - 1;
     wires.swap(0, last);
     whole.find(&wires, net.bodies.len());

@@ -1,5 +1,5 @@
-//! Steps that win nothing: networks of points, what is watched after every step, and what is done where
-//! too much was won.
+//! Prevents energy gain: takes the step of a network of points, checks the energy after every step, and corrects a step
+//! that gained too much.
 
 use super::{Component, Memory};
 use crate::dynamics::body::{Body, is_within};
@@ -9,15 +9,15 @@ use crate::dynamics::points::Points;
 use crate::dynamics::system::DENSE;
 use crate::dynamics::tolerance::{Accuracy, Method, Motion, Outcome};
 
-/// Tries at moving less far; then nothing moves at all.
+/// Number of attempts, each with half the motion of the previous one. After them nothing moves at all.
 const HALVINGS: i32 = 12;
 
-/// (ω h)² of the stiffest mode up to which the matrix is so well conditioned that a few iterations solve it.
+/// (ω h)² of the stiffest mode below which the matrix is so well conditioned that a few iterations solve it.
 const SOFT: f64 = 9.0;
 
 impl Component {
-    /// Whether no body turns, and iterations are the cheaper way: it is large, or so soft that they end soon.
-    /// Then it has been taken in.
+    /// Whether the component is solved as points: no body turns, and iterations are cheaper than a factorisation. They
+    /// are if the network is large, or so soft that they converge soon. In that case the points have been loaded.
     pub(super) fn is_of_points(&mut self, time: f64) -> bool {
         if self.elements.len() < 2 || !Points::can_be(&self.elements, &self.bodies) {
             return false;
@@ -31,7 +31,7 @@ impl Component {
         3 * self.bodies.len() > DENSE || points.bounds(time).0 < SOFT
     }
 
-    /// The step of a network of points.
+    /// Takes the step of a network of points.
     pub(super) fn advance_points(
         &mut self,
         time: f64,
@@ -73,8 +73,8 @@ impl Component {
         outcome
     }
 
-    /// Takes what was gained in energy; where that cannot be had from its motion, the step is
-    /// taken again: finer, or else in the way that only loses energy.
+    /// Removes gained energy from the motion. If there is not enough motion for that, the step is repeated: with finer
+    /// micro-steps, or else by the method that only loses energy.
     pub(super) fn keep_bound(&mut self, time: f64, accuracy: Accuracy, outcome: &mut Outcome) {
         let mut bound = std::mem::take(&mut self.memory.bound);
         let kept = bound.hold(&self.elements, &mut self.bodies, time);
@@ -88,7 +88,7 @@ impl Component {
         self.memory.bound = bound;
     }
 
-    /// Whether some body has flown faster than the engine will let it.
+    /// Whether some body has moved faster than the engine allows.
     pub(super) fn is_beyond(&self, time: f64) -> bool {
         let fastest = self.farthest_move.unwrap_or(f64::INFINITY) / time;
         let start = &self.memory.saved[0].bodies;
@@ -97,7 +97,8 @@ impl Component {
         })
     }
 
-    /// Takes no body further than the engine will: it would be missed by all that lies beyond.
+    /// Limits the motion of each body to what the engine allows. Otherwise the engine's state would differ from the
+    /// integrator's.
     pub(super) fn hold_back(&mut self, time: f64) {
         let farthest = self.farthest_move.unwrap_or(f64::INFINITY);
         let mut any = false;
@@ -108,7 +109,8 @@ impl Component {
             }
         }
         if any {
-            // From where they were: on the way that is not taken, turns may have been counted, and heat.
+            // Reset the elements to the start of the step. They may have counted turns and heat on a path that is not
+            // taken.
             let start = &self.memory.saved[0].elements;
             for (element, start) in self.elements.iter_mut().zip(start) {
                 (element.angle, element.direction) = (start.angle, start.direction);
@@ -126,10 +128,10 @@ impl Component {
         self.memory.network.give_back(motion);
     }
 
-    /// Moves with these velocities, as far as the stored energy allows.
+    /// Moves the bodies with the velocities of `motion`, as far as the stored energy allows.
     fn yield_to(&mut self, motion: &[Body], time: f64, bound: &mut Bound) {
         for half in 0..=HALVINGS {
-            // At last not at all: who stays where he is must not go on being fast either.
+            // The last attempt does not move the bodies at all. Then their velocities must be zero too.
             let share = if half < HALVINGS {
                 0.5_f64.powi(half)
             } else {

@@ -1,37 +1,39 @@
-//! Where a law of a network kinks: a rope goes taut, a stop is hit.
+//! Refines the steps of a network near kinks of its laws, as where a rope becomes taut or a stop is hit.
 //!
-//! The linearised kick takes the steeper side for the whole of its step, and so eats most of a blow that lasts a
-//! step or two. Around a bend a network therefore takes micro-steps that resolve the steeper side, and for a while its
-//! kicks keep the energy of laws that bend (`Network::keep_energy`).
+//! The linearised kick uses the steeper slope for its whole step, and so removes most of the energy of an impact that
+//! lasts a step or two. Near a kink a network therefore takes micro-steps that resolve the steeper slope. For a while its
+//! kicks also conserve the energy of kinked laws (`Network::keep_energy`).
 
 use super::Component;
 use crate::dynamics::element::Element;
 use crate::dynamics::resolution::predicted_travel;
 use std::f64::consts::PI;
 
-/// ω h of micro-steps around a bend, the most of them in a step for that, and ω h above which they are none the better.
+/// ω h of micro-steps near a kink.
 const FINE: f64 = 0.5;
+/// Greatest number of micro-steps in a step near a kink.
 const MOST: f64 = 20.0;
+/// ω h above which micro-steps near a kink bring no improvement.
 const COARSE: f64 = 1.0;
 
-/// Elements up to which a network takes micro-steps for kinks: where there are more, one blow is a small share of all,
-/// and one or the other kinks in every step.
+/// Greatest number of elements of a network that takes micro-steps for kinks. With more elements, one impact is a small
+/// share of the energy, and some element is at a kink in every step.
 const FEW: usize = 64;
 
-/// Share of the stiffness that has to change at a bend, for anything to be lost there.
+/// Relative change of stiffness at a kink above which energy would be lost there.
 const SHARP: f64 = 0.1;
 
-/// For how long after a blow kicks keep the energy of kinked laws, s: energy of kicked motion sways a little, and to
-/// go to and fro between the two would heap that up.
+/// Time after an impact for which kicks conserve the energy of kinked laws, s. The energy of ordinary kicks oscillates a
+/// little, and frequent changes between both kinds of kick would accumulate that.
 const KEPT: f64 = 0.5;
 
-/// What is still to be done about kinks.
+/// How long steps near kinks still need special treatment.
 #[derive(Clone, Copy, Debug, Default)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Kinks {
-    /// For how long steps have to be fine, s.
+    /// Time for which steps must still be fine, s.
     fine: f64,
-    /// For how long kicks have to keep energy, s.
+    /// Time for which kicks must still conserve energy, s.
     kept: f64,
 }
 
@@ -46,14 +48,15 @@ impl Kinks {
 }
 
 impl Component {
-    /// Micro-steps that kinks ask for in a step, where (ω h)² of the stiffest mode ahead is `z`.
+    /// Number of micro-steps that kinks require in a step of `time` seconds. `z` is (ω h)² of the stiffest mode ahead.
     pub(super) fn steps_at_bends(&mut self, z: f64, time: f64) -> u32 {
         let phase = z.sqrt();
         let kinks =
             phase <= MOST * COARSE && self.elements.iter().any(|e| self.meets_bend(e, time));
         let Kinks { fine, kept } = &mut self.memory.kinks;
         if kinks {
-            // A blow lasts half a period of the steeper side, on which nothing kinks.
+            // An impact lasts half a period of the steeper slope. That part of the law has no kink, so none is found
+            // meanwhile.
             *fine = (time * (1.5 + PI / phase)).min(KEPT);
             *kept = KEPT;
         } else {
@@ -80,7 +83,8 @@ impl Component {
             element.elastic(line.length).stiffness,
         );
         let predicted_travel = predicted_travel(&line.motion(element, &self.bodies, 0.0), time);
-        // Also behind: it may have begun there, or been put there.
+        // Look backwards as well, because the motion may have begun just behind a kink, or a body may have been put
+        // there.
         predicted_travel
             .into_iter()
             .chain([-predicted_travel[0]])

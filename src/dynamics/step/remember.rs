@@ -1,4 +1,4 @@
-//! What a component remembers from step to step, as plain data.
+//! The memory of a component between steps, as plain data.
 
 use super::{Caution, Component, Kinks};
 use crate::dynamics::bound::Bound;
@@ -6,8 +6,8 @@ use crate::dynamics::strut::Twists;
 use crate::dynamics::tolerance::Controller;
 use bevy::math::DVec3;
 
-/// All that the next step depends on besides bodies and elements. What is only kept for its memory, or can be worked out
-/// again to the last bit, is not among it.
+/// Everything that the next step depends on besides bodies and elements. It contains no buffers, and no values that can
+/// be recomputed bit for bit.
 #[derive(Clone, Debug, Default)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Remembered {
@@ -15,9 +15,9 @@ pub(crate) struct Remembered {
     kinks: Kinks,
     caution: Caution,
     bound: Bound,
-    /// Accelerations from which iterations start: of a network of points,
+    /// Accelerations from which the iterations of a network of points start, m/s².
     points: Vec<DVec3>,
-    /// and of any other.
+    /// Accelerations from which the iterations of any other network start.
     network: Twists,
 }
 
@@ -34,7 +34,7 @@ impl Component {
         }
     }
 
-    /// Goes on from there, with all bodies and elements read anew.
+    /// Continues from `remembered`. All bodies and elements are read again.
     pub(crate) fn remember(&mut self, remembered: &Remembered) {
         let Remembered {
             controller,
@@ -54,7 +54,7 @@ impl Component {
 }
 
 impl Remembered {
-    /// How many numbers it has for iterations to start from.
+    /// Number of vectors from which iterations start.
     pub(crate) fn vectors(&self) -> usize {
         self.points.len() + self.network.linear.len() + self.network.angular.len()
     }

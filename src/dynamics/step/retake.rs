@@ -1,36 +1,37 @@
-//! A step that wins energy is taken again in finer micro-steps, before it is taken in the way that only loses energy.
+//! Repeats a step that gained energy with finer micro-steps, before the method that only loses energy is used.
 //!
-//! Where lines turn far within a step, the coupled step is right only to its order, however stiff the springs; a bridge of
-//! a thousand planks that falls is an example. Finer micro-steps follow it. They stay for a while: what turned too far once
-//! does so again.
+//! Where lines turn far within a step, the coupled step is accurate only to its order, however stiff the springs are. An
+//! example is a falling bridge of a thousand planks. Finer micro-steps resolve the turning. They are kept for a while,
+//! because lines that turned too far once do so again.
 
 use super::Component;
 use crate::dynamics::bound::Bound;
 use crate::dynamics::energy::Energy;
 use crate::dynamics::tolerance::{Accuracy, Motion, Outcome};
 
-/// Times as many micro-steps as those that have won energy.
+/// Factor by which each repetition increases the number of micro-steps.
 const FINER: u32 = 4;
 
-/// Most of them where the budget is for fewer. A step of a stiff network takes hardly longer for that: its linear system
-/// is the easier to solve the shorter a micro-step is. Pinned by `stiff_by_default::a_long_bridge_falls_as_it_should`.
+/// Greatest number of micro-steps of a repeated step if the budget is less. They hardly make the step of a stiff network
+/// slower, because the linear system is easier to solve for a shorter micro-step. Pinned by
+/// `stiff_by_default::a_long_bridge_falls_as_it_should`.
 const MOST: u32 = 16;
 
-/// For how long they stay, or are not tried again where they won energy too, s.
+/// Time for which finer micro-steps are kept, or not tried again if they gained energy too, s.
 const STAYS: f64 = 0.5;
 
-/// Whether a network has won energy of late, and what was done about it.
+/// Whether a network gained energy recently, and the number of micro-steps that avoided it.
 #[derive(Clone, Copy, Debug, Default)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Caution {
-    /// s.
+    /// Time that is left of [`STAYS`], s.
     left: f64,
-    /// Micro-steps that did not win any; 0 where there were none such.
+    /// Number of micro-steps that gained no energy; 0 if every number that was tried gained some.
     microsteps: u32,
 }
 
 impl Caution {
-    /// Goes on by a step, and says how finely it is to be taken.
+    /// Advances the memory by a step of `time` seconds. Returns the accuracy of that step.
     pub(super) fn pass(&mut self, time: f64, accuracy: Accuracy) -> Accuracy {
         if self.left <= 0.0 {
             return accuracy;
@@ -44,8 +45,8 @@ impl Caution {
 }
 
 impl Component {
-    /// Takes a network's step again, finer and finer; returns what energy there is then, if that won nothing. Where as many micro-steps are taken as
-    /// are asked, it is left as it is.
+    /// Repeats a network's step with finer and finer micro-steps. Returns the energy at its end if it gained none. Does
+    /// nothing if there is no budget for more micro-steps (`resolve` is 0).
     pub(super) fn retake(
         &mut self,
         time: f64,

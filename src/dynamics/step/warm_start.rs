@@ -1,4 +1,4 @@
-//! A network of points from step to step, its bodies and elements left aside.
+//! Continues a network of points from step to step without its bodies and elements.
 
 use super::kinks::Kinks;
 use super::{Caution, Component};
@@ -7,18 +7,18 @@ use crate::dynamics::points::Points;
 use crate::dynamics::tolerance::Controller;
 
 impl Component {
-    /// The points, if the last step was as long and they can go on from it.
+    /// The points, if they can continue from the last step and it was as long as this one.
     pub(crate) fn points_to_continue(&mut self, time: f64) -> Option<&mut Points> {
         let can_go_on = self.memory.carriable == Some(time);
         can_go_on.then_some(&mut self.memory.points)
     }
 
-    /// Has it taken in anew for the next step.
+    /// Makes the next step load the points anew.
     pub(crate) fn forget_points(&mut self) {
         self.memory.carriable = None;
     }
 
-    /// Forgets all that it knows of the steps so far: the next one is of something else.
+    /// Forgets everything about earlier steps, because the next step is that of another component.
     pub(crate) fn forget(&mut self) {
         self.forget_points();
         self.forget_solutions();
@@ -28,23 +28,23 @@ impl Component {
         self.memory.caution = Caution::default();
     }
 
-    /// Has iterations start from nothing: from what is no number they would come to none.
+    /// Makes iterations start from zero. From values that are not finite they would never converge.
     pub(crate) fn forget_solutions(&mut self) {
         self.memory.points.forget_solution();
         self.memory.network.forget_solution();
     }
 
-    /// After a step that was [warm](Self::is_warm) to its end: what came of it.
+    /// The points after a step that was [warm](Self::is_warm) to its end.
     pub(crate) fn warm_points(&mut self) -> &mut Points {
         &mut self.memory.points
     }
 
-    /// Bodies as they were at the start of a step that could not be carried to its end.
+    /// Bodies at the start of a step that began warm but did not end so.
     pub(crate) fn start_bodies(&self) -> &[Body] {
         &self.memory.saved[0].bodies
     }
 
-    /// Bodies and elements take part again, as they were at the start of the step.
+    /// Ends a warm step. Bodies and elements are used again, in their state at the start of the step.
     pub(super) fn put_down(&mut self) {
         if std::mem::take(&mut self.is_warm) {
             let points = &self.memory.points;

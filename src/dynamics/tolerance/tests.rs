@@ -54,7 +54,7 @@ impl Motion for Model {
     }
 }
 
-/// That tolerance, in m/s, of one micro-step at least.
+/// The given tolerance (m/s), with at least one micro-step.
 fn accuracy(tolerance: f64) -> Accuracy {
     Accuracy {
         microsteps: 1,
@@ -76,7 +76,7 @@ fn the_tolerance_is_kept_when_the_timestep_changes() {
             let before = model.now;
             controller.drive(&mut model, time, accuracy(tolerance));
             let added = (model.now - before).abs();
-            // Its constants are those of a probe, which sees both errors at once.
+            // A probe measures both errors together, so its constants are slightly off.
             assert!(
                 added <= 1.1 * tolerance * time,
                 "{errors:?}: {added} in {time} s"
