@@ -29,7 +29,7 @@ fn main() -> ExitCode {
         Ok(true) => ExitCode::SUCCESS,
         Ok(false) => ExitCode::FAILURE,
         Err(wrong) => {
-            eprintln!("{wrong}\n[--hours N] [--scene NAME]");
+            eprintln!("{wrong}\n[--hours N] [--scene NAME] [--pause SECONDS]");
             ExitCode::FAILURE
         }
     }
@@ -37,11 +37,12 @@ fn main() -> ExitCode {
 
 /// Says whether all scenes were sound.
 fn soak() -> Result<bool, lexopt::Error> {
-    let (mut hours, mut only) = (HOURS, None::<String>);
+    let (mut hours, mut only, mut pause) = (HOURS, None::<String>, None);
     let mut words = lexopt::Parser::from_env();
     while let Some(word) = words.next()? {
         match word {
             Long("hours") => hours = words.value()?.parse()?,
+            Long("pause") => pause = Some(words.value()?.parse()?),
             Long("scene") => only = Some(words.value()?.parse()?),
             // What is meant for lists of tests.
             Value(filter) if !"soak".contains(&*filter.to_string_lossy()) => return Ok(true),
@@ -51,7 +52,8 @@ fn soak() -> Result<bool, lexopt::Error> {
     }
     let mut sound = true;
     for scene in [car, cloth, net] {
-        let scene = scene();
+        let mut scene = scene();
+        scene.pause = pause.unwrap_or(scene.pause);
         if only.as_ref().is_none_or(|name| name == scene.title) {
             sound &= is_sound(scene, hours);
         }

@@ -10,7 +10,7 @@ use crate::dynamics::linkage::{Constraint, Linkage, Side};
 use crate::element::{HeldEnd, HoldPose};
 use crate::input::check::Fault;
 use bevy::math::DVec3;
-use bevy_rapier3d::rapier::dynamics::RigidBodyHandle;
+use bevy_rapier3d::rapier::dynamics::{GenericJoint, RigidBodyHandle};
 
 /// Cosine of the angle between an element and the weight of its load below which the element counts as level: then its tension
 /// cannot carry the weight.
@@ -92,21 +92,31 @@ impl RapierFinder<'_, '_> {
         let Ok((set, _, joints, _)) = self.sets.get(lever.context) else {
             return held;
         };
-        for (a, b, _, joint) in joints.impulse_joints.attached_enabled_joints(handle) {
+        let mut lock = |a: RigidBodyHandle, b: RigidBodyHandle, joint: &GenericJoint| {
             let other = if a == handle { b } else { a };
             let [Some(first), Some(second)] = [a, b].map(|handle| set.bodies.get(handle)) else {
-                continue;
+                return;
             };
             let moves = if a == handle { second } else { first };
-            if is_ours(joint) || (is_movable(moves) && Some(other) != still) {
-                continue;
+            if is_movable(moves) && Some(other) != still {
+                return;
             }
-            let data = &joint.data;
-            let frame = (*first.position() * data.local_frame1).rotation;
-            let at = (*second.position() * data.local_frame2).translation;
+            let frame = (*first.position() * joint.local_frame1).rotation;
+            let at = (*second.position() * joint.local_frame2).translation;
             let rotation = frame.as_dquat().normalize();
             let on = [None, Some((0, load))];
-            held.extend(locks(data, rotation, at.as_dvec3(), on));
+            held.extend(locks(joint, rotation, at.as_dvec3(), on));
+        };
+        let impulse = joints.impulse_joints.attached_enabled_joints(handle);
+        for (a, b, _, joint) in impulse.filter(|(_, _, _, joint)| !is_ours(joint)) {
+            lock(a, b, &joint.data);
+        }
+        let multibody = &joints.multibody_joints;
+        for (a, b, joint) in multibody.attached_joints(handle) {
+            let link = multibody.get(joint);
+            if let Some(link) = link.and_then(|(multibody, link)| multibody.link(link)) {
+                lock(a, b, &link.joint.data);
+            }
         }
         held
     }

@@ -8,6 +8,9 @@ use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
 
+/// ω·dt up to which some ball joints here are multibody joints; at 1, two of 150 scenes win up to 9 % of energy.
+const SOFT: f32 = 0.1;
+
 /// ω·dt up to which elements have laws, clamps and stops here. Stiffer ones do not keep what a blow of one step does.
 const BENT: f32 = 1.0;
 
@@ -78,8 +81,12 @@ fn won(seed: u64, omega_dt: f32, seconds: f64) -> f64 {
             let ball = SphericalJointBuilder::new()
                 .local_anchor1(middle - there)
                 .local_anchor2(middle - at);
-            let joint = ImpulseJoint::new(other, ball);
-            scene.lab.app.world_mut().entity_mut(body).insert(joint);
+            let mut body = scene.lab.app.world_mut().entity_mut(body);
+            if omega_dt <= SOFT && dice.pick(3) == 0 {
+                body.insert(MultibodyJoint::new(other, ball.into()));
+            } else {
+                body.insert(ImpulseJoint::new(other, ball));
+            }
         }
         if omega_dt <= LINKED && dice.pick(3) == 0 {
             let inertia = 0.03 * mass.min(other_mass);

@@ -16,6 +16,7 @@ mod feet;
 mod heap;
 mod hierarchy;
 mod hinge;
+mod links;
 mod mixed;
 mod motorcycle;
 mod nets;

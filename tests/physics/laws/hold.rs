@@ -107,16 +107,24 @@ fn a_chassis_over_a_wheel_on_the_ground_stands_at_the_height_it_was_given() {
     );
 }
 
+/// A brick whose end is on a hinge about Z on a post.
+fn arm(lab: &mut Lab, post: Entity, mass: f32, inertia: Vec3, at: Vec3, is_link: bool) -> Entity {
+    let hinge = RevoluteJointBuilder::new(Vec3::Z).local_anchor2(-at);
+    let arm = lab.spawn(brick(mass, inertia, at));
+    let mut entity = lab.app.world_mut().entity_mut(arm);
+    if is_link {
+        entity.insert(MultibodyJoint::new(post, hinge.into()));
+    } else {
+        entity.insert(ImpulseJoint::new(post, hinge));
+    }
+    arm
+}
+
 /// An arm of 0.8 kg level on a hinge, and an element from 5 cm along it up to a post.
-fn lamp(lab: &mut Lab, companion: impl Bundle) -> Entity {
+fn lamp(lab: &mut Lab, is_link: bool, companion: impl Bundle) -> Entity {
     let post = lab.spawn((RigidBody::Fixed, Transform::default()));
-    let arm = lab.spawn((
-        brick(0.8, Vec3::new(1e-4, 0.02, 0.02), Vec3::X * 0.275),
-        ImpulseJoint::new(
-            post,
-            RevoluteJointBuilder::new(Vec3::Z).local_anchor2(Vec3::NEG_X * 0.275),
-        ),
-    ));
+    let inertia = Vec3::new(1e-4, 0.02, 0.02);
+    let arm = arm(lab, post, 0.8, inertia, Vec3::X * 0.275, is_link);
     lab.spawn((
         SpringDamper::new(post, arm)
             .with_stiffness(1200.0)
@@ -129,38 +137,42 @@ fn lamp(lab: &mut Lab, companion: impl Bundle) -> Entity {
 
 #[test]
 fn the_arm_of_a_lamp_on_a_hinge_holds_its_pose() {
-    for sag in [false, true] {
+    for (is_link, sag) in [(false, false), (false, true), (true, false), (true, true)] {
         let mut lab = Lab::new();
         let arm = if sag {
-            lamp(&mut lab, SpringTuning::sag(0.02, 0.3))
+            lamp(&mut lab, is_link, SpringTuning::sag(0.02, 0.3))
         } else {
-            lamp(&mut lab, HoldPose::new())
+            lamp(&mut lab, is_link, HoldPose::new())
         };
         let moved = strays(&mut lab, arm);
-        assert!(moved < 2e-3, "sag {sag}: {moved}");
+        assert!(moved < 2e-3, "multibody {is_link}, sag {sag}: {moved}");
     }
 }
 
 #[test]
 fn a_torsion_bar_holds_its_arm() {
-    let mut lab = Lab::new();
-    let post = lab.spawn((RigidBody::Fixed, Transform::default()));
-    let arm = lab.spawn((
-        brick(2.0, Vec3::splat(0.05), Vec3::X * 0.5),
-        ImpulseJoint::new(
+    for is_link in [false, true] {
+        let mut lab = Lab::new();
+        let post = lab.spawn((RigidBody::Fixed, Transform::default()));
+        let arm = arm(
+            &mut lab,
             post,
-            RevoluteJointBuilder::new(Vec3::Z).local_anchor2(Vec3::NEG_X * 0.5),
-        ),
-    ));
-    let bar = TorsionSpringDamper::new(post, arm, Vec3::Z)
-        .with_stiffness(50.0)
-        .with_damping(2.0);
-    let element = lab.spawn((bar, HoldPose::new()));
-    let moved = strays(&mut lab, arm);
-    assert!(moved < 2e-3, "{moved}");
-    let preload = lab.get::<Preload>(element).0;
-    let wanted = 2.0 * GRAVITY as f32 * 0.5;
-    assert!((preload.abs() / wanted - 1.0).abs() < 1e-3, "{preload}");
+            2.0,
+            Vec3::splat(0.05),
+            Vec3::X * 0.5,
+            is_link,
+        );
+        let bar = TorsionSpringDamper::new(post, arm, Vec3::Z)
+            .with_stiffness(50.0)
+            .with_damping(2.0);
+        let element = lab.spawn((bar, HoldPose::new()));
+        let moved = strays(&mut lab, arm);
+        assert!(moved < 2e-3, "multibody {is_link}: {moved}");
+        let preload = lab.get::<Preload>(element).0;
+        let wanted = 2.0 * GRAVITY as f32 * 0.5;
+        let off = (preload.abs() / wanted - 1.0).abs();
+        assert!(off < 1e-3, "multibody {is_link}: {preload}");
+    }
 }
 
 #[test]

@@ -1,8 +1,8 @@
 //! Computes the inverse mass that joints and contacts leave at an element's ends, from Rapier's joints and contacts.
 
 use super::joint::is_ours;
-use crate::backend::Wrench;
-use crate::backend::rapier::body::{Bodies, is_movable, read};
+use crate::backend::rapier::body::{Bodies, handle, is_movable, read};
+use crate::backend::{BodyId, Wrench};
 use crate::compat;
 use crate::dynamics::body::Body;
 use crate::dynamics::line::Line;
@@ -33,6 +33,12 @@ pub(crate) struct Holding<'a> {
 }
 
 impl<'a> Holding<'a> {
+    /// Whether a body belongs to a multibody.
+    pub(crate) fn is_link(&self, body: BodyId) -> bool {
+        let links = &self.joints.multibody_joints;
+        links.rigid_body_link(handle(body)).is_some()
+    }
+
     /// Read access to the bodies for code that does not know Rapier.
     pub(crate) fn sight(&self) -> Bodies<&'a RigidBodySet> {
         Bodies {

@@ -5,11 +5,11 @@ use crate::backend::BodyId;
 use crate::dynamics::body::Body;
 use crate::dynamics::element::Element;
 use crate::dynamics::guide::Guide;
-use crate::dynamics::line::Line;
+use crate::dynamics::line::{Line, Motion};
 use crate::dynamics::pieces::{Outreach, Pieces};
 use crate::dynamics::single;
 use crate::dynamics::soft::{self, Tangent};
-use crate::scene::held::{Along, SoftJoint, Turn, Wanted};
+use crate::scene::held::{Along, Inside, SoftJoint, Turn, Wanted};
 use crate::scene::rows::{ElementRow, Held};
 use bevy::math::{DMat3, DQuat, DVec3, Quat, Vec3};
 
@@ -36,6 +36,14 @@ const FOLLOWED: [f64; 2] = [1.0, 4.0];
 /// Stiffness · dt² · [`Order::axis_mobility`] up to which a spring along an axis of the world follows the length that Rapier
 /// measures within the step, and from which on its force is fixed at the start of the step. Pinned by `ground::beside`.
 const DRIFTS: [f64; 2] = [0.1, 1.0];
+
+/// Greatest (ω·dt)² of a force that only pulls or only pushes; a stiffer force is softened to it. Then it yields a thousandth
+/// of a millimetre under the weight of its ends. Pinned by `ground::ropes`: with 10⁴ a rope gains energy.
+const FIRMEST: f64 = 2.5e3;
+
+/// Greatest damping · dt / mass of a force that only pulls or only pushes; more is reduced to it. Then its ends creep at 8 mm/s
+/// under their weight. Pinned by `ground::ropes`: with 50, a rope with a firmer damper reaches 20 m/s in its fall.
+const DAMPEST: f64 = 20.0;
 
 /// One element that acts in this step.
 pub(crate) struct Order {
@@ -69,6 +77,10 @@ pub(crate) struct Order {
     pub turn: Option<Turn>,
     /// Share of the element's inverse mass that joints leave.
     pub jointed: f64,
+    /// Velocity of end B relative to end A across the line, m/s.
+    pub lateral: DVec3,
+    /// Whether an end is a link of a multibody. Rapier ignores there which axes of a joint are coupled, and how softly it holds them.
+    pub is_linked: bool,
 }
 
 struct Frame {
@@ -103,6 +115,63 @@ impl Frame {
 }
 
 impl Order {
+    /// Makes the order of an element. [`Plan`](super::plan::Plan) completes it.
+    pub(crate) fn new(
+        row: usize,
+        inside: &Inside,
+        (element, line, turn): (Element, Line, Option<Turn>),
+        bodies: &[Body],
+        touched: bool,
+        time: f64,
+    ) -> Self {
+        // After a slip, the twist of a torsion element differs from the rotation of its bodies.
+        let from = if inside.slipped {
+            element.angle
+        } else {
+            line.distance()
+        };
+        let Motion {
+            axial: rate,
+            lateral,
+            ..
+        } = line.motion(&element, bodies, 0.0);
+        // Extrapolated from the last two steps, because the engine's velocities are those of its last substep.
+        let [last, before] = inside.rates.unwrap_or([rate; 2]);
+        let ahead = 2.0 * last - before;
+        let facings = element.ends.each_ref().map(|end| end.rotation(bodies));
+        let spins = element
+            .ends
+            .each_ref()
+            .map(|end| end.angular_velocity(bodies));
+        let axis_mobility = Self::axis_mobility(&element, &line, bodies);
+        Self {
+            row,
+            from,
+            facings,
+            spins,
+            axis_mobility,
+            element,
+            line,
+            pieces: Pieces::default(),
+            reach: Outreach {
+                way: [from, from + time * ahead],
+                rate: ahead,
+                change: 0.0,
+                speed: rate.abs(),
+                firmest: [FIRMEST / (time * time), DAMPEST / time]
+                    .map(|most| most / line.inverse_mass),
+            },
+            omega: 0.0,
+            lively: 0.0,
+            touched,
+            apart: false,
+            turn,
+            jointed: inside.leeway.jointed,
+            lateral,
+            is_linked: false,
+        }
+    }
+
     /// Change of the element's coordinate per change of the joint's coordinate. It differs from 1 only for torsion elements,
     /// whose joint measures the angle about the gradient of the twist.
     fn leverage(&self) -> f64 {
@@ -230,6 +299,19 @@ impl Order {
         share * time * stiffness.max(0.0)
     }
 
+    /// Fixes the axis of the joint to one of the bodies. It coincides with `axis`, of the world, in the middle of the step.
+    fn fix_axis(&self, frame: &mut Frame, mut axis: DVec3, time: f64) {
+        let end = self.steadier(time);
+        let half = DQuat::from_scaled_axis(0.5 * time * self.spins[end]);
+        axis = (half * self.facings[end]).inverse() * axis;
+        if end == 1 {
+            frame.bodies.swap(0, 1);
+            frame.anchors.swap(0, 1);
+            axis = -axis;
+        }
+        frame.rotations[0] = x_to(axis).as_quat();
+    }
+
     fn frame(&self, row: &ElementRow, holders: [BodyId; 2], time: f64) -> Frame {
         let anchors = row.rare.held.map(|held| match held {
             Held::Body { local, .. } => local.as_vec3(),
@@ -241,25 +323,26 @@ impl Order {
             rotations: [Quat::IDENTITY; 2],
             along: Along::Distance,
         };
-        let x_to = |axis: DVec3| DQuat::from_rotation_arc(DVec3::X, axis);
         match self.element.guide {
+            Guide::Centres if self.is_linked => {
+                // From end to end as it will be in the middle of the step.
+                let [a, b] = self.line.holds.map(|hold| hold.position);
+                let axis = b - a + 0.5 * time * self.lateral;
+                frame.along = Along::Slide;
+                self.fix_axis(&mut frame, axis.normalize_or(self.line.direction), time);
+            }
             Guide::Centres => {}
             Guide::OfA(axis) => {
                 frame.along = Along::Slide;
                 frame.rotations[0] = x_to(axis).as_quat();
             }
             Guide::World(axis) => {
-                frame.along = Along::Apart;
-                // The joint's axis turns with its first body. It coincides with the world axis in the middle of the step.
-                let end = self.steadier(time);
-                let half = DQuat::from_scaled_axis(0.5 * time * self.spins[end]);
-                let mut axis = (half * self.facings[end]).inverse() * axis;
-                if end == 1 {
-                    frame.bodies.swap(0, 1);
-                    frame.anchors.swap(0, 1);
-                    axis = -axis;
-                }
-                frame.rotations[0] = x_to(axis).as_quat();
+                frame.along = if self.is_linked {
+                    Along::Slide
+                } else {
+                    Along::Apart
+                };
+                self.fix_axis(&mut frame, axis, time);
             }
             Guide::Twist(_) => {
                 frame.along = Along::Twist;
@@ -272,6 +355,11 @@ impl Order {
         }
         frame
     }
+}
+
+/// Rotation that takes the x axis to a unit vector.
+fn x_to(axis: DVec3) -> DQuat {
+    DQuat::from_rotation_arc(DVec3::X, axis)
 }
 
 /// Rises from 0 to 1 between two numbers.

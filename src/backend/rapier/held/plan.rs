@@ -5,12 +5,12 @@ use crate::backend::rapier::body::handle;
 use crate::backend::rapier::held::linkage::{Holding, inverse_mass};
 use crate::backend::rapier::held::order::Order;
 use crate::dynamics::body::Body;
-use crate::dynamics::element::Element;
-use crate::dynamics::line::Line;
-use crate::dynamics::pieces::{Outreach, Piece, Pieces};
+use crate::dynamics::guide::Guide;
+use crate::dynamics::pieces::{Piece, Pieces};
+use crate::input::check::Fault;
 use crate::scene::element::element;
-use crate::scene::held::{Inside, Turn};
-use crate::scene::rows::{BodyFlags, BodyRow, ElementFlags, ElementRow, Members};
+use crate::scene::held::Turn;
+use crate::scene::rows::{BodyFlags, BodyRow, ElementFlags, ElementRow, Held, Members};
 use crate::scene::step::Step;
 use bevy::math::DVec3;
 
@@ -76,13 +76,9 @@ const LIGHT_SWEEPS: usize = 2;
 /// Pinned by `ground::ropes`.
 const FAR: f64 = 2.0;
 
-/// Greatest (ω·dt)² of a force that only pulls or only pushes; a stiffer force is softened to it. Then it yields a thousandth
-/// of a millimetre under the weight of its ends. Pinned by `ground::ropes`: with 10⁴ a rope gains energy.
-const FIRMEST: f64 = 2.5e3;
-
-/// Greatest damping · dt / mass of a force that only pulls or only pushes; more is reduced to it. Then its ends creep at 8 mm/s
-/// under their weight. Pinned by `ground::ropes`: with 50, a rope with a firmer damper reaches 20 m/s in its fall.
-const DAMPEST: f64 = 20.0;
+/// Why Rapier cannot solve such an element: on links it pushes both bodies at the same point, which turns one of them.
+const ON_LINK: &str = "does not act on a link of a multibody while the other end can move too; take SpringAxis::BodyA, or \
+                       ImpulseJoint in place of MultibodyJoint";
 
 impl Plan {
     /// Reads a component. Returns whether all its bodies can be moved.
@@ -144,6 +140,15 @@ impl Plan {
             let turn = Turn::of(&element, &line, &self.bodies, time);
             (turn.is_some() || !is_twist).then_some((element, line, turn))
         });
+        let is_linked = row.rare.held.iter().any(|held| match *held {
+            Held::Body { body, .. } => all.is_link(body),
+            Held::Path { .. } => false,
+        });
+        if is_linked && row.moves() == 2 && matches!(row.rare.guide, Guide::World(_)) {
+            row.trouble
+                .set_passing(Some(Fault::new("SpringAxis::World", ON_LINK)));
+            return;
+        }
         let Some((element, line, turn)) = found else {
             if let Some(inside) = &mut row.inside {
                 // While the twist is undefined, the element keeps its last twist.
@@ -182,8 +187,16 @@ impl Plan {
             }
             row.inverse_mass = inside.leeway.left;
         }
-        let mut order = self.order(e, inside, (element, line, turn), touched, time);
+        let mut order = Order::new(
+            e,
+            inside,
+            (element, line, turn),
+            &self.bodies,
+            touched,
+            time,
+        );
         order.apart = self.jointed && !touched;
+        order.is_linked = is_linked;
         self.orders.push(order);
     }
 
@@ -236,60 +249,6 @@ impl Plan {
             });
             let creeps = row.has(BodyFlags::PRESSED) || taken_along;
             row.flags.set(BodyFlags::CREEPS, creeps);
-        }
-    }
-
-    /// Makes the order of an element. [`Self::act`] and [`Self::bound`] complete it.
-    fn order(
-        &self,
-        row: usize,
-        inside: &Inside,
-        (element, line, turn): (Element, Line, Option<Turn>),
-        touched: bool,
-        time: f64,
-    ) -> Order {
-        // After a slip, the twist of a torsion element differs from the rotation of its bodies.
-        let from = if inside.slipped {
-            element.angle
-        } else {
-            line.distance()
-        };
-        let rate = line.motion(&element, &self.bodies, 0.0).axial;
-        // Extrapolated from the last two steps, because the engine's velocities are those of its last substep.
-        let [last, before] = inside.rates.unwrap_or([rate; 2]);
-        let ahead = 2.0 * last - before;
-        let facings = element
-            .ends
-            .each_ref()
-            .map(|end| end.rotation(&self.bodies));
-        let spins = element
-            .ends
-            .each_ref()
-            .map(|end| end.angular_velocity(&self.bodies));
-        let axis_mobility = Order::axis_mobility(&element, &line, &self.bodies);
-        Order {
-            row,
-            from,
-            facings,
-            spins,
-            axis_mobility,
-            element,
-            line,
-            pieces: Pieces::default(),
-            reach: Outreach {
-                way: [from, from + time * ahead],
-                rate: ahead,
-                change: 0.0,
-                speed: rate.abs(),
-                firmest: [FIRMEST / (time * time), DAMPEST / time]
-                    .map(|most| most / line.inverse_mass),
-            },
-            omega: 0.0,
-            lively: 0.0,
-            touched,
-            apart: false,
-            turn,
-            jointed: inside.leeway.jointed,
         }
     }
 
