@@ -1,4 +1,4 @@
-//! The scene's springs in numbers, for an overlay or a log.
+//! Sums over the springs of the scene, for an overlay or a log.
 
 use crate::plugin::CoiloverSystems;
 use crate::readout::{SpringMethod, SpringReadout};
@@ -6,33 +6,35 @@ use crate::settings::CoiloverSettings;
 use bevy::diagnostic::{Diagnostic, DiagnosticPath, Diagnostics, RegisterDiagnostic};
 use bevy::prelude::*;
 
-/// Sums over all elements as Bevy diagnostics, once a tick: add it beside
-/// [`CoiloverPlugin`](crate::CoiloverPlugin), and Bevy's `LogDiagnosticsPlugin` to read them.
+/// Publishes sums over all elements as Bevy diagnostics, once a tick. Add it beside
+/// [`CoiloverPlugin`](crate::CoiloverPlugin); without that it logs an error and does nothing. Bevy's
+/// `LogDiagnosticsPlugin` prints the sums.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct CoiloverDiagnosticsPlugin;
 
 impl CoiloverDiagnosticsPlugin {
-    /// Energy in all springs, J.
+    /// Energy stored in all springs, J.
     pub const STORED_ENERGY: DiagnosticPath = DiagnosticPath::const_new("coilover/stored_energy");
     /// Power that all dampers turn into heat, W.
     pub const DISSIPATED_POWER: DiagnosticPath =
         DiagnosticPath::const_new("coilover/dissipated_power");
-    /// Energy turned into heat so far by the elements there are, J.
+    /// Energy that the present elements have turned into heat so far, J.
     pub const DISSIPATED_ENERGY: DiagnosticPath =
         DiagnosticPath::const_new("coilover/dissipated_energy");
-    /// Work done so far on the elements there are by parameters and moving ends, J.
+    /// Work done so far on the present elements, by changed parameters and moved ends, J.
     pub const WORK: DiagnosticPath = DiagnosticPath::const_new("coilover/work");
-    /// Largest phase per step, rad.
+    /// Largest phase per step ([`SpringReadout::omega_dt`]), rad.
     pub const WORST_OMEGA_DT: DiagnosticPath = DiagnosticPath::const_new("coilover/worst_omega_dt");
-    /// Elements that were solved alone in closed form,
+    /// Number of elements that were solved alone in closed form.
     pub const CLOSED_FORM: DiagnosticPath = DiagnosticPath::const_new("coilover/closed_form");
-    /// in networks by factorisation,
+    /// Number of elements in networks that were solved by factorisation.
     pub const DIRECT: DiagnosticPath = DiagnosticPath::const_new("coilover/direct");
-    /// in large networks by iteration,
+    /// Number of elements in networks that were solved by iteration.
     pub const ITERATIVE: DiagnosticPath = DiagnosticPath::const_new("coilover/iterative");
-    /// by the engine, since something holds their bodies,
+    /// Number of elements that the engine solved, because contacts or joints hold their bodies.
     pub const ENGINE: DiagnosticPath = DiagnosticPath::const_new("coilover/engine");
-    /// and not at all: asleep, inert, or with nothing to move.
+    /// Number of elements that were not solved: at fault, or without a body that can move. A sleeping element counts
+    /// under the method of its last step.
     pub const RESTING: DiagnosticPath = DiagnosticPath::const_new("coilover/resting");
 }
 

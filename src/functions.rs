@@ -1,7 +1,8 @@
-//! Functions whose last bit is the platform's, or, with the feature `enhanced-determinism`, the same everywhere.
+//! Functions whose last bit depends on the platform. With the feature `enhanced-determinism` they come from the crate
+//! `libm` and are the same everywhere.
 //!
-//! Sums, products, quotients and roots are rounded alike by every processor (IEEE 754); these are not. Vectors and quaternions
-//! take theirs from Bevy, which the same feature tells to do alike.
+//! Every processor rounds sums, products, quotients and square roots alike (IEEE 754), but not these functions. Vectors
+//! and quaternions use the functions of Bevy, which the same feature makes equal everywhere too.
 
 #[cfg(feature = "enhanced-determinism")]
 pub(crate) use libm::{asin, atan, atan2, cos, exp, expm1 as exp_m1, sin, tanh};

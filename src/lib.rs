@@ -1,9 +1,10 @@
-// Links between pages: the first definition counts, so these take the place of those to files.
+// The guide pages link to each other as files. `on_docs_rs.md` defines the same links as links to modules. The first
+// definition of a Markdown link counts, so `on_docs_rs.md` comes first.
 #![doc = include_str!("../docs/guide/on_docs_rs.md")]
 #![doc = include_str!("../README.md")]
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
-/// What differs between versions of Bevy. The folder of each manifest has its own.
+/// Everything that differs between versions of Bevy. Each folder with a manifest has its own `src/compat.rs`.
 mod compat {
     include!(concat!(env!("CARGO_MANIFEST_DIR"), "/src/compat.rs"));
 }
@@ -55,7 +56,8 @@ pub use workbench::{CoiloverWorkbench, CoiloverWorkbenchPlugin};
 
 use bevy::app::{PluginGroup, PluginGroupBuilder};
 
-/// [`CoiloverPlugin`] in `FixedUpdate`, and with the `visual` feature `CoiloverVisualPlugin`.
+/// Plugin group: [`CoiloverPlugin`] in `FixedUpdate`, with the feature `visual` also `CoiloverVisualPlugin`, and with
+/// the feature `gltf` also `CoiloverGltfPlugin`.
 ///
 /// ```no_run
 /// # use bevy::prelude::*;
@@ -67,7 +69,7 @@ use bevy::app::{PluginGroup, PluginGroupBuilder};
 pub struct CoiloverPlugins;
 
 impl CoiloverPlugins {
-    /// The group with [`CoiloverPlugin::at_hz`]: both rates, of physics and of `FixedUpdate`, are so many ticks per
+    /// Returns the group with [`CoiloverPlugin::at_hz`]: physics and `FixedUpdate` both run at `hertz` ticks per
     /// second.
     ///
     /// ```no_run
@@ -166,7 +168,7 @@ pub mod guide {
     #[doc = include_str!("../docs/guide/multiplayer.md")]
     pub mod multiplayer {}
 
-    // Its code needs crates of the net; the folder `netcode/` compiles it.
+    // The code of this page needs networking crates, which are no dependencies here. The folder `netcode/` compiles it.
     #[cfg(not(doctest))]
     #[doc = include_str!("../docs/guide/on_docs_rs.md")]
     #[doc = include_str!("../docs/guide/netcode.md")]
@@ -193,7 +195,7 @@ pub mod guide {
     pub mod limits {}
 }
 
-/// Everything that a game needs.
+/// All types and functions that a game needs.
 pub mod prelude {
     #[cfg(feature = "gltf")]
     pub use crate::CoiloverGltfPlugin;

@@ -1,4 +1,4 @@
-//! Pulling a body by one of its points: with a mouse, a hand, a tractor beam.
+//! Pulls a body by one of its points: with a mouse, a hand or a tractor beam. Runs before `CoiloverSystems::Prepare`.
 
 use crate::compat;
 use crate::element::{Anchors, MaxForce, SpringAxis, SpringDamper, SpringFault, SpringTuning};
@@ -9,16 +9,20 @@ use bevy_rapier3d::prelude::{
 };
 use bevy_rapier3d::rapier::dynamics::{LockedAxes, RigidBody as RapierBody};
 
-/// Pulls a point of a body to a point of the world by critically damped springs, so that it follows a pointer without
-/// swinging. Spawn it on an entity of its own without a parent; write [`target`](Self::target) as the pointer moves; despawn it, or remove it, to
-/// let go.
+/// Pulls a point of a body to a target point of the world by critically damped springs, so that the body follows a
+/// pointer without swinging.
 ///
-/// At the next step, three children are spawned, a [`SpringDamper`] along each axis of the world, for the mass that the body has at
-/// that point when nothing else holds it. So what is pulled is as quick whatever it weighs, and what stands on the ground is lifted. Under gravity
-/// it hangs g/ω² below the target, ω = 2π · frequency: 6 cm at 2 Hz. It follows a target that moves steadily without lagging behind; a target that
-/// jumps is overshot by an eighth (e⁻²). A body that is gone or cannot be moved is not pulled.
+/// Spawn it on an entity of its own without a parent. Write [`target`](Self::target) as the pointer moves. To let go,
+/// despawn the entity or remove this component.
 ///
-/// A target, point, frequency or force that is no sound number is a [`SpringFault`] on this entity, and nothing is pulled meanwhile.
+/// At the next step three children are spawned: one [`SpringDamper`] along each axis of the world. They are tuned to
+/// the mass that the body has at that point when nothing else holds it. So heavy and light bodies follow equally fast,
+/// and a body that stands on the ground is lifted. Under gravity the point hangs g/ω² below the target, with ω = 2π ·
+/// frequency: 6 cm at 2 Hz. The point follows a steadily moving target without lag. If the target jumps, the point
+/// overshoots by an eighth of the jump (e⁻²). A body that is gone or cannot be moved is not pulled.
+///
+/// If the target, point, frequency or greatest force is not a valid number, this entity gets a [`SpringFault`], and
+/// nothing is pulled until that is corrected.
 ///
 /// ```
 /// # use bevy::prelude::*;
@@ -38,21 +42,21 @@ use bevy_rapier3d::rapier::dynamics::{LockedAxes, RigidBody as RapierBody};
 #[reflect(Component, Debug, PartialEq, Clone)]
 #[require(Transform)]
 pub struct MouseSpring {
-    /// The dynamic body that is pulled.
+    /// Dynamic body that is pulled.
     #[entities]
     pub body: Entity,
-    /// Where it is held, in its own frame, m; a frame that is scaled scales it.
+    /// Point of the body that is held, in the body's frame, m. The scale of the body applies to it.
     pub point: Vec3,
-    /// Where that point is pulled to, in the world, m.
+    /// Point of the world to which `point` is pulled, m.
     pub target: Vec3,
-    /// Natural frequency, Hz: it is there after about 1/frequency seconds.
+    /// Natural frequency of the springs, Hz, above zero. The point reaches the target after about 1/frequency seconds.
     pub frequency: f32,
-    /// Greatest force along each axis of the world, N; none for any force.
+    /// Greatest force along each axis of the world, N, above zero. `None` for no limit.
     pub max_force: Option<f32>,
 }
 
 impl MouseSpring {
-    /// With 2 Hz, and any force.
+    /// Pulls `point` of `body` (body's frame, m) to `target` (world, m), with 2 Hz and no force limit.
     pub const fn new(body: Entity, point: Vec3, target: Vec3) -> Self {
         Self {
             body,
@@ -63,19 +67,19 @@ impl MouseSpring {
         }
     }
 
-    /// Natural frequency, Hz.
+    /// Sets the natural frequency, Hz.
     pub const fn with_frequency(mut self, frequency: f32) -> Self {
         self.frequency = frequency;
         self
     }
 
-    /// Greatest force along each axis of the world, N.
+    /// Sets the greatest force along each axis of the world, N.
     pub const fn with_max_force(mut self, newtons: f32) -> Self {
         self.max_force = Some(newtons);
         self
     }
 
-    /// Field and reason, if it cannot pull.
+    /// Returns the field and the reason if this component cannot pull.
     fn fault(&self) -> Option<(&'static str, &'static str)> {
         let is_positive = |x: f32| x > 0.0 && x.is_finite();
         if !self.target.is_finite() {
@@ -91,7 +95,7 @@ impl MouseSpring {
         }
     }
 
-    /// Whether the same springs serve another one: it differs in its target alone.
+    /// Whether both can use the same springs: they differ at most in the target.
     fn pulls_like(&self, other: &Self) -> bool {
         Self {
             target: other.target,
@@ -100,14 +104,14 @@ impl MouseSpring {
     }
 }
 
-/// The springs of a [`MouseSpring`], and what they were made for.
+/// The springs of a [`MouseSpring`], and the component for which they were made.
 #[derive(Component, Clone, Copy, Debug)]
 pub(crate) struct Grip {
     springs: [Entity; 3],
     of: MouseSpring,
 }
 
-/// Makes the springs of what is held, takes their end to the target, and lets go.
+/// Spawns the springs of each [`MouseSpring`], moves their end A to the target, and despawns them when it lets go.
 pub(crate) fn hold(
     mut held: Query<(
         Entity,
@@ -131,9 +135,9 @@ pub(crate) fn hold(
     let body_of = |entity| {
         let (handle, context, frame) = bodies.get(entity).ok()?;
         let body = sets.get(context.0).ok()?.bodies.get(handle.0)?;
-        // The engine's body has no scale: what is said of it is in metres of the world.
+        // Rapier's body has no scale: its points are in metres of the world.
         let scale = frame.map_or(Vec3::ONE, GlobalTransform::scale);
-        // A new one has no mass before its first step.
+        // A new body has no mass before its first step.
         (body.is_dynamic() && body.mass() > 0.0).then_some((body, scale))
     };
     for (entity, grip) in &released {
@@ -159,7 +163,7 @@ pub(crate) fn hold(
             let springs =
                 [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| along(axis, entity, spring, mass(axis)));
             let of = *spring;
-            // Where the game has let go in the same tick there is nothing to hold by.
+            // Silenced, because the game may have let go (despawned the entity) in the same tick.
             commands
                 .entity(entity)
                 .queue_silenced(move |mut held: EntityWorldMut| {
@@ -178,12 +182,12 @@ pub(crate) fn hold(
     }
 }
 
-/// A pointer that lets go takes what was wrong with it along.
+/// Removes the fault of a [`MouseSpring`] when the component is removed.
 pub(crate) fn forget(gone: compat::Removed<MouseSpring>, mut commands: Commands) {
     commands.entity(gone.entity).try_remove::<SpringFault>();
 }
 
-/// The spring along an axis, for a mass there, kg.
+/// Returns the spring along an axis of the world, for an effective mass at the held point, kg.
 fn along(axis: Vec3, entity: Entity, spring: &MouseSpring, mass: f32) -> impl Bundle + use<> {
     let tuning = SpringTuning::frequency(spring.frequency, 1.0);
     let (stiffness, damping) = tuning.coefficients(mass, 0.0);
@@ -198,8 +202,9 @@ fn along(axis: Vec3, entity: Entity, spring: &MouseSpring, mass: f32) -> impl Bu
     )
 }
 
-/// Effective mass of a body at a point of it (in its frame, scale taken in) along an axis of the world, kg, whatever holds
-/// it: the inverse of 1/m + (r × n) · I⁻¹ (r × n).
+/// Effective mass of a body at one of its points (body's frame, scale applied, m) along an axis of the world, kg: the
+/// inverse of 1/m + (r × n) · I⁻¹ (r × n). What else holds the body does not count. A body with any locked rotation
+/// axis counts as one that does not turn, and locked translation axes do not count.
 fn mass_at(body: &RapierBody, point: Vec3, axis: Vec3) -> f32 {
     let properties = &body.mass_properties().local_mprops;
     let rotation = body.position().rotation;
@@ -220,7 +225,7 @@ fn release(entity: Entity, grip: &Grip, commands: &mut Commands) {
     commands.entity(entity).try_remove::<Grip>();
 }
 
-/// Says once what is wrong, and takes it back.
+/// Reports a fault once, and removes it once it is corrected.
 fn tell(
     entity: Entity,
     fault: Option<(&'static str, &'static str)>,

@@ -13,33 +13,36 @@ use bevy::ecs::schedule::ScheduleLabel;
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::{PhysicsSet, TimestepMode};
 
-/// Springs and dampers for bodies simulated by `bevy_rapier3d`; physics alone, nothing drawn.
+/// Simulates springs and dampers on the bodies of `bevy_rapier3d`. It does physics only and draws nothing.
 ///
-/// Add it beside `RapierPhysicsPlugin::<NoUserData>::default().in_fixed_schedule()`.
+/// Add it together with `RapierPhysicsPlugin::<NoUserData>::default().in_fixed_schedule()`.
 ///
-/// One kick of every element per engine step is enough for most scenes, and stiffer springs take more by themselves. The
-/// error of anything that
-/// swings or turns falls with the square of [`with_microsteps`](Self::with_microsteps), and
-/// [`with_extrapolation`](Self::with_extrapolation) buys fourth order for three kicks.
+/// One micro-step per engine step is enough for most scenes, and stiffer springs take more by themselves. The position
+/// error of anything that swings or turns falls with the square of the number of micro-steps, see
+/// [`with_microsteps`](Self::with_microsteps). With [`with_extrapolation`](Self::with_extrapolation) it falls with the
+/// fourth power, for three times as many micro-steps.
 #[derive(Clone, Copy, Debug)]
 pub struct CoiloverPlugin {
     settings: CoiloverSettings,
-    /// Ticks per second, if the plugin is to set them.
+    /// Ticks per second that the plugin sets; `None` if it sets no rates.
     rate: Option<f64>,
 }
 
-/// Kicks that stiff networks take together in a step by default, at most: about half a millisecond.
+/// Default of [`CoiloverSettings::resolve`], the most kicks per step of all stiff networks together: about half a
+/// millisecond.
 const RESOLVE: u32 = 1024;
 
-/// What the plugin does in its schedule, in this order.
+/// System sets of the plugin, in the order in which they run.
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum CoiloverSystems {
-    /// After Rapier's `PhysicsSet::SyncBackend`: elements and their ends are found.
+    /// Finds elements and their ends. Runs after Rapier's `PhysicsSet::SyncBackend`. Change elements before this set to
+    /// have the change act in the same step.
     Prepare,
-    /// Then: forces are computed and written. Change elements before [`Self::Prepare`] to have them
-    /// act in the same step.
+    /// Computes the forces and writes them. Runs after [`Self::Prepare`] and before Rapier's
+    /// `PhysicsSet::StepSimulation`.
     Solve,
-    /// After Rapier's `PhysicsSet::Writeback`: [`SpringReadout`] is written. Read it after this.
+    /// Writes [`SpringReadout`] and breaks elements that are [`Breakable`]. Runs after Rapier's
+    /// `PhysicsSet::Writeback`. Read readouts after this set.
     Readout,
 }
 
@@ -50,7 +53,8 @@ impl Default for CoiloverPlugin {
 }
 
 impl CoiloverPlugin {
-    /// Runs in this schedule, which must be Rapier's. `default()` is `FixedUpdate`.
+    /// Returns a plugin that runs in `schedule`. Rapier must run in the same schedule; otherwise an error is logged and
+    /// springs do nothing. `default()` uses `FixedUpdate`.
     pub fn new(schedule: impl ScheduleLabel) -> Self {
         Self {
             settings: CoiloverSettings {
@@ -67,11 +71,11 @@ impl CoiloverPlugin {
         }
     }
 
-    /// Runs in `FixedUpdate`, with so many ticks per second (finite and above zero, else an error is logged and
-    /// the rates stay as they are).
+    /// Returns a plugin that runs in `FixedUpdate` at `hertz` ticks per second.
     ///
-    /// It sets both rates, which must be equal: that of physics, `TimestepMode::Fixed` with one substep, and that
-    /// of the schedule, `Time<Fixed>`. What you insert afterwards takes their place.
+    /// It sets two rates, which must be equal: the rate of physics (`TimestepMode::Fixed` with one substep) and the
+    /// rate of the schedule (`Time<Fixed>`). If you insert one of these resources later, yours takes its place. `hertz`
+    /// must be finite and above zero; otherwise an error is logged and both rates stay as they are.
     ///
     /// ```
     /// # use bevy::prelude::*;
@@ -91,48 +95,52 @@ impl CoiloverPlugin {
         }
     }
 
-    /// Sets the accuracy dial: exactly so many micro-steps per engine step (0 counts as 1). By default it is one, and more
-    /// where springs are too stiff for that. This switches that off: follow it by [`with_resolve`](Self::with_resolve) for at least so
-    /// many, and more for stiffer springs.
+    /// Sets the number of micro-steps per engine step (0 counts as 1), and sets [`CoiloverSettings::resolve`] to 1, so
+    /// that stiff springs take no more by themselves. To take at least this number, and more for stiffer springs, call
+    /// [`with_resolve`](Self::with_resolve) afterwards.
+    ///
+    /// A lone linear element then takes exactly this number. A network may still take up to 4 micro-steps to resolve
+    /// its stiffest mode, and up to 20 where a force law has a kink, such as a rope that goes taut.
     pub const fn with_microsteps(mut self, microsteps: u32) -> Self {
         self.settings.microsteps = microsteps;
         self.settings.resolve = 1;
         self
     }
 
-    /// Sets how many kicks stiff networks may take together in a step to be followed, where their stiff modes move
-    /// ([`CoiloverSettings::resolve`], default 1024; 1 for no more than asked).
+    /// Sets [`CoiloverSettings::resolve`]: the most kicks per step that all stiff networks together may take to follow
+    /// their stiff modes while these move. Default 1024. 1 switches this off, also for lone elements.
     pub const fn with_resolve(mut self, kicks: u32) -> Self {
         self.settings.resolve = kicks;
         self
     }
 
-    /// Lets each network choose its micro-steps in every step so that the error of position grows by about
-    /// `tolerance` metres per simulated second. Zero, negative and NaN mean no tolerance.
+    /// Lets each network choose its number of micro-steps in every step, so that the position error grows by about
+    /// `tolerance`, in metres per simulated second. A value that is not finite and above zero means no tolerance.
     pub const fn with_tolerance(mut self, tolerance: f32) -> Self {
         self.settings.tolerance = Some(tolerance);
         self
     }
 
-    /// Caps the micro-steps of an engine step (default 256).
+    /// Sets the most micro-steps of one engine step (default 256).
     pub const fn with_max_microsteps(mut self, most: u32) -> Self {
         self.settings.max_microsteps = most;
         self
     }
 
-    /// Caps the iterations of one solve of a large network (default 200).
+    /// Sets the most iterations of one linear solve of a large network (default 200).
     pub const fn with_max_iterations(mut self, most: u32) -> Self {
         self.settings.max_iterations = most;
         self
     }
 
-    /// Caps the solver substeps that elements on held bodies ask of the engine in one step (default 64).
+    /// Sets the most solver substeps that elements on held bodies (with contacts or joints) may request from the engine
+    /// in one step (default 64).
     pub const fn with_max_substeps(mut self, most: u32) -> Self {
         self.settings.max_substeps = most;
         self
     }
 
-    /// Turns on the fourth-order combination wherever it is valid.
+    /// Turns on fourth-order extrapolation in all steps in which it is valid; see [`CoiloverSettings::extrapolation`].
     pub const fn with_extrapolation(mut self) -> Self {
         self.settings.extrapolation = true;
         self
@@ -200,20 +208,20 @@ impl Plugin for CoiloverPlugin {
                     .chain()
                     .in_set(CoiloverSystems::Readout),
             )
-                // Without Rapier there is nothing to do, and a message has said so.
+                // Without Rapier there is nothing to do. `check_schedule` has logged that.
                 .run_if(resource_exists::<TimestepMode>)
                 .run_if(crate::backend::rapier::setup::in_place),
         );
     }
 }
 
-/// What a designer writes is in the type registry: elements and their companions.
+/// Registers the types that a designer writes in scenes: elements and their companions.
 pub(crate) fn register_elements(app: &mut App) {
     macro_rules! elements {
         ($($element:ident),*) => {$(app.register_type::<$element>();)*};
     }
     with_elements!(elements);
-    // Laws that are functions are no data.
+    // Custom laws are functions, which cannot be reflected.
     app.register_type::<SpringLaw>()
         .register_type::<DampingLaw>()
         .register_type::<SpringAction>()
@@ -230,7 +238,7 @@ pub(crate) fn register_elements(app: &mut App) {
         .register_type::<MouseSpring>();
 }
 
-/// Sets the rates of physics and of `FixedUpdate` alike.
+/// Sets the rate of physics and the rate of `FixedUpdate`, both to `hertz`.
 fn set_rates(app: &mut App, hertz: f64) {
     let seconds = hertz.recip();
     if !(seconds.is_normal() && seconds > 0.0 && seconds < 1e6) {
@@ -247,7 +255,7 @@ fn set_rates(app: &mut App, hertz: f64) {
     .insert_resource(Time::<Fixed>::from_seconds(seconds));
 }
 
-/// What stands where no element is does nothing, and that is told.
+/// Watches for components that do nothing because their entity has no element, so that a warning can be logged.
 fn notice_strays(app: &mut App) {
     use crate::input::strays::notice;
     macro_rules! companions {

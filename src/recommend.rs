@@ -3,33 +3,34 @@
 /// Standard gravity, m/s².
 const GRAVITY: f64 = 9.81;
 
-/// Length of the element that is assumed, m.
+/// Assumed length of the element, m.
 const LENGTH: f64 = 1.0;
 
-/// Most radians per micro-step at which a spring's own motion is surely resolved.
+/// Largest phase per micro-step, rad, at which a spring's own motion is certainly resolved.
 const RESOLVED: f64 = 2.0;
 
-/// As [`CoiloverSettings::max_microsteps`](crate::CoiloverSettings::max_microsteps) has it by default.
+/// Largest result: the default of [`CoiloverSettings::max_microsteps`](crate::CoiloverSettings::max_microsteps).
 const MOST: f64 = 256.0;
 
-/// Micro-steps per engine step for
-/// [`CoiloverPlugin::with_microsteps`](crate::CoiloverPlugin::with_microsteps) so that the error of position
-/// that is added stays near `tolerance` metres per second of motion.
+/// Returns the number of micro-steps per engine step, for
+/// [`CoiloverPlugin::with_microsteps`](crate::CoiloverPlugin::with_microsteps), that keeps the added position error
+/// near `tolerance`, in metres per second of motion.
 ///
-/// `stiffness` in N/m, `damping` in N s/m, `dt` the engine step in s. `mass` in kg is that of the body on the
-/// spring, or 1/(1/m₁ + 1/m₂) of two. At least 1, at most 256; 1 where an argument makes no sense.
+/// `stiffness` is in N/m, `damping` in N s/m, and the engine step `dt` in s. `mass`, in kg, is that of the body on the
+/// spring, or 1/(1/m₁ + 1/m₂) for two bodies. The result is 1 to 256. It is 1 if `mass`, `dt` or `tolerance` is not
+/// finite and above zero. A `stiffness` or `damping` that is not finite and above zero counts as 0.
 ///
-/// Along its line a lone element is exact, so the error comes from the line's turning. Drift–kick–drift of
-/// step h is (Ωh)²/24 too fast where something turns at Ω: a weight that swings over a length L is wrong by
-/// L Ω³ h²/24 more every second, with Ω² = g/L. `docs/speed_vs_error.md` measures 0.3 to 1 times that at
-/// ω·dt from 0.06 to 4, and up to five times more at critical damping, hence
+/// The motion of a lone element along its own line is exact, so the error comes from the turning of the line.
+/// Drift–kick–drift with micro-steps of length h makes a rate of turning Ω too high by the share (Ωh)²/24. For a weight
+/// that swings on a length L, with Ω² = g/L, the error grows by L Ω³ h²/24 every second. `docs/speed_vs_error.md`
+/// measures 0.3 to 1 times this value at ω·dt from 0.06 to 4, and up to five times more at critical damping. Hence:
 ///
 /// > error per second = g^(3/2)/(24 √L) · (1 + 5 min(ζ, 1)²) · (dt/n)²,  ζ = c/(2 √(k m)),  L = 1 m
 ///
-/// Errors go with L Ω³: a spring of a quarter of a metre has twice as much, and so needs 1.4 times as many
-/// micro-steps. Besides, n is at least ω·dt/2, so that the spring's own motion is resolved. Elements that
-/// share bodies were measured to need up to three times as many. To have it found out while the game runs,
-/// use [`with_tolerance`](crate::CoiloverPlugin::with_tolerance).
+/// The error is proportional to L Ω³. A spring of 0.25 m has twice the error of one of 1 m, and so needs 1.4 times as
+/// many micro-steps. In addition, n is at least ω·dt/2, so that the spring's own motion is resolved. Elements that
+/// share bodies needed up to three times as many in measurements. To let the game find the number while it runs, use
+/// [`with_tolerance`](crate::CoiloverPlugin::with_tolerance).
 ///
 /// ```
 /// # use bevy_coilover::prelude::*;
@@ -49,7 +50,7 @@ pub fn recommend(stiffness: f32, damping: f32, mass: f32, dt: f32, tolerance: f3
     accurate.max(resolved).ceil().clamp(1.0, MOST) as u32
 }
 
-/// Error per second and square of the micro-step, m/s³, of a mass on a spring that swings.
+/// Position error per second of a mass that swings on a spring, divided by the square of the micro-step, m/s³.
 fn swing(k: f64, c: f64, m: f64) -> f64 {
     let ratio = c / (2.0 * (k * m).sqrt());
     let ratio = if ratio.is_finite() && ratio > 0.0 {
@@ -60,7 +61,7 @@ fn swing(k: f64, c: f64, m: f64) -> f64 {
     (GRAVITY * GRAVITY.sqrt()) / (24.0 * LENGTH.sqrt()) * (1.0 + 5.0 * ratio * ratio)
 }
 
-/// The error of position, m per second of motion, that so many micro-steps add: [`recommend`] the other way round.
+/// Position error that this number of micro-steps adds, m per second of motion: the inverse of [`recommend`].
 #[cfg(feature = "workbench")]
 pub(crate) fn error_per_second(
     stiffness: f32,

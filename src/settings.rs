@@ -1,34 +1,42 @@
-//! What a game can set.
+//! Settings that a game can change.
 
 use crate::dynamics::tolerance::Accuracy;
 use bevy::ecs::intern::Interned;
 use bevy::ecs::schedule::ScheduleLabel;
 use bevy::prelude::*;
 
-/// How the plugin runs.
+/// How the plugin runs. The public fields may be changed at any time.
 #[derive(Resource, Clone, Copy, Debug)]
 pub struct CoiloverSettings {
-    /// Micro-steps per engine step, at least 1; may be changed at any time.
+    /// Number of micro-steps per engine step, at least 1. In each micro-step, every element gives its bodies one push,
+    /// a *kick*. Where contacts or joints hold a body, this multiplies the least number of solver substeps, 16.
     pub microsteps: u32,
-    /// Kicks of elements that all networks together may take in a step to follow springs that are too stiff for `microsteps`:
-    /// the budget of time for that, at 0.3 to 0.5 µs a kick. 1 for none. A network needs three times its stiffest ω·dt or
-    /// more of each of its elements; where there are too many for that, it takes `microsteps`, and up to sixteen where those
-    /// win energy: stable, but the stiff motion is wrong in phase. A lone element takes ω·dt/2 of its own, up to 32. Under a tolerance it does not count.
+    /// Most kicks that all networks together may take in one step to follow springs that are too stiff for
+    /// `microsteps`. A kick of one element takes 0.3 to 0.5 µs, so this is a time budget. 1 switches this off, also for
+    /// lone elements.
+    ///
+    /// To be followed, a network needs at least three times its stiffest ω·dt micro-steps, each with one kick of every
+    /// element. If the budget is too small for that, the network takes `microsteps`, or up to 4 where these resolve its
+    /// stiffest mode, and up to 16 after a step that gained energy. It is then stable, but the phase of the stiff
+    /// motion is wrong. A lone element takes ω·dt/2 micro-steps, up to 32, whatever the budget. With a `tolerance`,
+    /// this setting does not choose the micro-steps.
     pub resolve: u32,
-    /// Combine one and two times as many micro-steps to fourth order wherever the motion is resolved,
-    /// and take three times as many plain ones elsewhere.
+    /// Fourth-order extrapolation: a step is taken with n and with 2n micro-steps, and the two results are combined.
+    /// Where the motion is not resolved, the step is taken with 3n plain micro-steps instead. Where contacts or joints
+    /// hold a body, this doubles the least number of solver substeps.
     pub extrapolation: bool,
-    /// Error of position that may be added, m per simulated second; `None` for a fixed count of
-    /// micro-steps. With a tolerance the two settings above do not count: every component takes as many
-    /// micro-steps in every step as its own error asks for.
+    /// Position error that may be added, m per simulated second; `None` for a fixed number of micro-steps. Each network
+    /// then takes as many micro-steps in each step as its own error requires, and `microsteps`, `resolve` and
+    /// `extrapolation` do not choose them. It has no effect where contacts or joints hold a body.
     pub tolerance: Option<f32>,
-    /// Most micro-steps of one engine step, at least 1. Where that is too few,
-    /// [`SpringReadout::capped`](crate::SpringReadout::capped) says so.
+    /// Most micro-steps of one engine step, at least 1. Where more are needed,
+    /// [`SpringReadout::capped`](crate::SpringReadout::capped) is set.
     pub max_microsteps: u32,
-    /// Most iterations of one solve of a large network, at least 1; told likewise.
+    /// Most iterations of one linear solve of a large network, at least 1. Where more are needed,
+    /// [`SpringReadout::capped`](crate::SpringReadout::capped) is set.
     pub max_iterations: u32,
-    /// Most solver substeps of one engine step that elements ask for where contacts or joints hold a body of theirs, at
-    /// least 1; told likewise.
+    /// Most solver substeps per engine step that elements request where contacts or joints hold one of their bodies, at
+    /// least 1. Where more are needed, [`SpringReadout::capped`](crate::SpringReadout::capped) is set.
     pub max_substeps: u32,
     pub(crate) schedule: Interned<dyn ScheduleLabel>,
 }

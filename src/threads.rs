@@ -1,4 +1,4 @@
-//! Work on several threads, where there are more than one and it is worth it.
+//! Shares work among several threads, where there is more than one and it is worth it.
 
 use bevy::tasks::ComputeTaskPool;
 use std::num::NonZeroUsize;
@@ -6,32 +6,32 @@ use std::sync::LazyLock;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::available_parallelism;
 
-/// More threads than these would only wait for each other.
+/// Number of processor cores. More threads than cores would only wait for each other.
 static CORES: LazyLock<usize> =
     LazyLock::new(|| available_parallelism().map_or(1, NonZeroUsize::get));
 
-/// Elements or bodies of a large network that are one piece of work: it takes some twenty times as long as to wake a thread. Pinned
-/// by the benchmark `own/Lattice`.
+/// Number of elements or bodies of a large network in one piece of work. Such a piece takes about twenty times as long
+/// as waking a thread. Pinned by the benchmark `own/Lattice`.
 pub(crate) const PIECE: usize = 4096;
 
-/// How many threads there are.
+/// Number of threads that share work.
 pub(crate) fn count() -> usize {
     #[cfg(test)]
     if ALONE.get() {
         return 1;
     }
-    // The one that waits for the pool works too: on two cores the pool has just one.
+    // The thread that waits for the pool works too: on two cores the pool has only one thread.
     let pool = ComputeTaskPool::try_get().map_or(0, |pool| pool.thread_num());
     (*CORES).min(pool + 1)
 }
 
-/// Does some work on each of these pieces, on all threads if they are more than one: so cut pieces only where the work is worth
-/// waking other threads, and the few allocations that this takes.
+/// Calls `work` on each piece, on all threads if there is more than one piece. This wakes other threads and makes a few
+/// allocations, so cut the work into pieces only where that is worth it.
 pub(crate) fn share<T: Send>(pieces: impl ExactSizeIterator<Item = T>, work: impl Fn(T) + Sync) {
     beside(|| {}, pieces, work);
 }
 
-/// Does some work on each of these, which many threads share where they are many; it is told the place of each.
+/// Calls `work` on each value, with the index of the value. Many values are shared among threads.
 pub(crate) fn each<T: Send>(all: &mut [T], work: impl Fn(usize, &mut T) + Sync) {
     share(all.chunks_mut(PIECE).enumerate(), |(piece, values)| {
         for (at, value) in values.iter_mut().enumerate() {
@@ -40,7 +40,7 @@ pub(crate) fn each<T: Send>(all: &mut [T], work: impl Fn(usize, &mut T) + Sync) 
     });
 }
 
-/// Makes one a copy of the other.
+/// Makes `to` a copy of `from`.
 pub(crate) fn copy<T: Copy + Send + Sync>(to: &mut Vec<T>, from: &[T]) {
     if to.len() != from.len() {
         to.clear();
@@ -55,7 +55,7 @@ pub(crate) fn copy<T: Copy + Send + Sync>(to: &mut Vec<T>, from: &[T]) {
     );
 }
 
-/// Whether this is so of all these pieces.
+/// Whether `is_so` holds for all pieces.
 pub(crate) fn all<T: Send>(
     pieces: impl ExactSizeIterator<Item = T>,
     is_so: impl Fn(T) -> bool + Sync,
@@ -69,7 +69,7 @@ pub(crate) fn all<T: Send>(
     so.into_inner()
 }
 
-/// Does the first work on this thread, and the other on these pieces: at the same time if they are more than one.
+/// Calls `first` on this thread and `work` on each piece: at the same time if there are several pieces and threads.
 pub(crate) fn beside<T: Send>(
     first: impl FnOnce(),
     mut pieces: impl ExactSizeIterator<Item = T>,
@@ -94,7 +94,7 @@ thread_local! {
     static ALONE: std::cell::Cell<bool> = const { std::cell::Cell::new(false) };
 }
 
-/// Does it all on this thread.
+/// Calls `work` such that everything in it runs on this thread.
 #[cfg(test)]
 pub(crate) fn alone<T>(work: impl FnOnce() -> T) -> T {
     ALONE.set(true);

@@ -1,36 +1,38 @@
 use bevy::prelude::*;
 
-/// Breaks the element when after a step its force or its length is more than this.
+/// Breaks the element if its force or its length exceeds a limit after a step. On a torsion element, the limits are a
+/// moment (N m) and an angle (rad). A limit that is NaN is a [`SpringFault`](crate::SpringFault).
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
 #[type_path = "bevy_coilover"]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Component, Debug, PartialEq, Clone)]
 pub struct Breakable {
-    /// Size of the force of spring and damper together, N; infinite for no limit.
+    /// Greatest magnitude of the force of spring, damper and stops together
+    /// ([`SpringReadout::force`](crate::SpringReadout::force)), N. Infinite for no limit.
     pub force: f32,
-    /// m; infinite for no limit.
+    /// Greatest length, m. Infinite for no limit. The sign counts: a negative angle does not exceed a positive limit.
     pub length: f32,
-    /// What becomes of the element.
+    /// What happens to the element when it breaks.
     pub then: WhenBroken,
 }
 
-/// What becomes of an element that broke.
+/// What happens to an element that broke.
 #[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[type_path = "bevy_coilover"]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Default, Debug, PartialEq, Clone, Hash)]
 pub enum WhenBroken {
-    /// It is despawned, after the observers of [`SpringBroke`] have run.
+    /// The element is despawned, after the observers of [`SpringBroke`] have run.
     #[default]
     Despawn,
-    /// It gets Bevy's `Disabled`, and acts again once that is removed.
+    /// The element gets Bevy's `Disabled` component, and acts again once that is removed.
     Disable,
 }
 
 impl Breakable {
-    /// Breaks at a force, N.
+    /// Breaks at a force, N. The element is then despawned.
     pub const fn at_force(force: f32) -> Self {
         Self {
             force,
@@ -39,7 +41,7 @@ impl Breakable {
         }
     }
 
-    /// Breaks at a length, m.
+    /// Breaks at a length, m. The element is then despawned.
     pub const fn at_length(length: f32) -> Self {
         Self {
             force: f32::INFINITY,
@@ -55,13 +57,13 @@ impl Breakable {
     }
 }
 
-/// An element has broken; see [`Breakable`].
+/// Event: an element broke; see [`Breakable`].
 #[derive(EntityEvent, Clone, Copy, Debug, PartialEq)]
 pub struct SpringBroke {
-    /// The element.
+    /// The element that broke.
     pub entity: Entity,
-    /// Its force when it broke, N, tension positive.
+    /// Force of the element when it broke, N, tension positive.
     pub force: f32,
-    /// Its length then, m.
+    /// Length of the element when it broke, m.
     pub length: f32,
 }

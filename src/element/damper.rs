@@ -10,18 +10,18 @@ use bevy::prelude::*;
 #[require(SpringReadout)]
 #[type_path = "bevy_coilover"]
 pub struct Damper {
-    /// The end that the damper starts from.
+    /// End A: a rigid body, a descendant of one, or any other entity with a `Transform`.
     #[entities]
     pub body_a: Entity,
-    /// The end that the damper goes to.
+    /// End B: a rigid body, a descendant of one, or any other entity with a `Transform`.
     #[entities]
     pub body_b: Entity,
-    /// N s/m, finite and not negative.
+    /// Damping, N s/m, from 0 to 1e12.
     pub damping: f32,
 }
 
 impl Damper {
-    /// A damper of 1 N s/m.
+    /// Returns a damper of 1 N s/m between two ends.
     pub const fn new(body_a: Entity, body_b: Entity) -> Self {
         Self {
             body_a,

@@ -1,55 +1,57 @@
 use super::ForceTable;
 use bevy::prelude::*;
 
-/// Force of the damper over the rate of its length, beside [`Damper`](crate::Damper) or
-/// [`SpringDamper`](crate::SpringDamper); without this component it is linear. Beside a
-/// [`CustomDampingLaw`](crate::CustomDampingLaw) the element is at fault and does not act.
+/// Force of the damper as a function of the rate of its length, beside [`Damper`](crate::Damper) or
+/// [`SpringDamper`](crate::SpringDamper). Without this component the damper is linear. On a torsion element, angles
+/// (rad) and moments (N m) take the place of lengths and forces.
 ///
-/// All but `Linear` have coefficients of their own, and the element's damping plays no part. *Bump* is while
-/// the length shrinks, *rebound* while it grows.
+/// All variants but `Linear` have coefficients of their own, and the element's damping is ignored. Coefficients must be
+/// from 0 to 1e12. *Bump* means that the length shrinks, *rebound* that it grows. With an invalid value, with a
+/// [`CustomDampingLaw`](crate::CustomDampingLaw) on the same entity, or on a spring without a damper, the element gets
+/// a [`SpringFault`](crate::SpringFault) and does not act.
 #[derive(Component, Reflect, Clone, Debug, Default, PartialEq)]
 #[type_path = "bevy_coilover"]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 pub enum DampingLaw {
-    /// The element's damping times the rate.
+    /// Force = the element's damping · rate.
     #[default]
     Linear,
-    /// One coefficient each way.
+    /// One coefficient for each direction.
     Sided {
-        /// N s/m while the length shrinks.
+        /// Damping while the length shrinks, N s/m.
         bump: f32,
-        /// N s/m while the length grows.
+        /// Damping while the length grows, N s/m.
         rebound: f32,
     },
-    /// Force c₁ v + c₂ |v| v: flow through an orifice.
+    /// Force = c₁ v + c₂ |v| v for a rate v, as of flow through an orifice.
     Quadratic {
-        /// c₁, N s/m.
+        /// Linear coefficient c₁, N s/m.
         linear: f32,
-        /// c₂, N s²/m².
+        /// Quadratic coefficient c₂, N s²/m².
         quadratic: f32,
     },
-    /// Degressive: a valve that opens at a speed.
+    /// Degressive damper: a valve opens at a certain speed, and beyond it the force has another slope.
     BlowOff {
-        /// N s/m up to the knee.
+        /// Damping up to the knee, N s/m.
         damping: f32,
         /// Speed at which the valve opens, m/s.
         knee: f32,
-        /// N s/m of what the speed is beyond the knee.
+        /// Slope of the force beyond the knee, N s/m.
         beyond: f32,
     },
-    /// Force over rate, no force at rest.
+    /// Force over rate, from a table. The force at rest must be zero.
     Table(ForceTable),
 }
 
 impl DampingLaw {
-    /// Coefficients (N s/m) while the length shrinks and while it grows.
+    /// Coefficients (N s/m) while the length shrinks, and while it grows: [`DampingLaw::Sided`].
     pub const fn sided(bump: f32, rebound: f32) -> Self {
         Self::Sided { bump, rebound }
     }
 
-    /// Points (rate in m/s, force in N).
+    /// Points (rate in m/s, force in N) of a [`DampingLaw::Table`].
     pub fn table(points: impl IntoIterator<Item = (f32, f32)>) -> Self {
         Self::Table(ForceTable::new(points))
     }

@@ -1,18 +1,20 @@
 use bevy::prelude::*;
 
-/// The ends of an element by the names of their entities, for what cannot know an [`Entity`]: scene files, editors,
-/// Bevy's remote protocol. Put it beside an element made without ends, such as [`Spring::default`](crate::Spring).
+/// Gives the ends of an element by the names of their entities, where an [`Entity`] is not known: in scene files,
+/// editors, and Bevy's remote protocol. Put it beside an element that was made without ends, such as
+/// [`Spring::default`](crate::Spring).
 ///
-/// Before the step both names are looked for, and the entities found are written into the element's `body_a` and
-/// `body_b`. The search starts at the element itself and goes up its parents; the first of them with something of that
-/// name on it or below it decides, so two instances of one scene do not mix. Only then the whole world counts. Of
-/// entities that share a name and stand below each other, the topmost is meant, as importers name a mesh after its object.
+/// Before the step both names are looked up, and the entities found are written into `body_a` and `body_b` of the
+/// element. The search starts at the element and goes up through its parents. The first of them that has the name, or
+/// has a descendant with the name, decides, so two instances of one scene do not mix. If there is none, the whole world
+/// is searched. If entities with the same name are descendants of each other, the topmost one counts, because importers
+/// name a mesh after its object.
 ///
-/// Where a name is missing, or several entities have it with equal right, the element has a
-/// [`SpringFault`](crate::SpringFault) that says so, which goes by itself once the name is found. An end that is despawned
-/// is looked for again. An empty name leaves its end as the element has it.
+/// If no entity has the name, or several have it where the search ends, the element gets a
+/// [`SpringFault`](crate::SpringFault) that says so. The fault is removed once the name is found. An end that is
+/// despawned is looked up again. An empty name leaves that end of the element unchanged.
 ///
-/// It cannot be changed in place: insert it again, and both ends are looked for anew.
+/// This component is immutable. To change a name, insert it again: both ends are then looked up again.
 ///
 /// ```
 /// # use bevy::prelude::*;
@@ -51,7 +53,7 @@ impl EndNames {
     }
 }
 
-/// Stands on an element whose ends by name are not found yet, so that the engine leaves it out.
+/// Marks an element whose named ends are not found yet, so that the engine leaves it out.
 #[derive(Component, Clone, Copy, Debug, Default)]
 #[component(clone_behavior = Ignore)]
 pub(crate) struct AwaitsEnds;

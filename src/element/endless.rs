@@ -1,27 +1,29 @@
-//! Elements without ends yet: their defaults, and how `bsn!` writes them.
+//! Elements without ends: their `Default`, and their templates for `bsn!`.
 //!
-//! What Bevy derives would let no scene leave the ends out, and start coefficients at zero.
+//! The templates that Bevy derives would not let a scene omit the ends, and would start coefficients at zero.
 
 use super::*;
 use bevy::ecs::template::{EntityTemplate, SpecializeFromTemplate, TemplateContext};
 use bevy::prelude::*;
 
-/// An end that is given later.
+/// Stands for an end that is given later.
 const NOBODY: Entity = Entity::PLACEHOLDER;
 
 macro_rules! endless {
     ($element:ident, $template:ident, $new:expr, {$($field:ident: $kind:ty),*}) => {
-        /// Without ends: give them, or put [`EndNames`] beside the element. The rest is as `new` makes it.
+        /// An element without ends. Set `body_a` and `body_b`, or put [`EndNames`] beside the element. All other fields
+        /// are as `new` sets them.
         impl Default for $element {
             fn default() -> Self {
                 $new
             }
         }
 
-        // As Bevy's own derive does: lets a type have both `Default` and a template that is not itself.
+        // As Bevy's own derive does: this lets a type have both `Default` and a template of another type.
         impl Unpin for $element where for<'a> [()]: SpecializeFromTemplate {}
 
-        /// What `bsn!` makes of the element of the same name. An end that is left out is [`Entity::PLACEHOLDER`].
+        /// Template from which `bsn!` makes the element of the same name. An end that is omitted becomes
+        /// [`Entity::PLACEHOLDER`].
         #[allow(missing_docs)]
         pub struct $template {
             pub body_a: EntityTemplate,
@@ -66,7 +68,7 @@ macro_rules! endless {
     };
 }
 
-/// The entity of an end, if the scene gives one.
+/// Returns the entity of an end, or `NOBODY` if the scene gives none.
 fn end(template: &EntityTemplate, context: &mut TemplateContext) -> Result<Entity> {
     match template {
         EntityTemplate::None => Ok(NOBODY),

@@ -1,7 +1,7 @@
 use bevy::prelude::*;
 use std::fmt;
 
-/// Stands on an element that does not act, and says why; gone once that is mended.
+/// Says why an element does not act. The crate puts it on the element, and removes it once the reason is gone.
 ///
 /// The same text is logged once as a warning, after the element's `Name` if it has one.
 #[derive(Component, Reflect, Clone, Debug, PartialEq, Eq)]
@@ -10,11 +10,11 @@ use std::fmt;
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Component, Debug, PartialEq, Clone)]
 pub struct SpringFault {
-    /// The element.
+    /// The element that does not act.
     pub entity: Entity,
-    /// Its component and field, such as `Spring::stiffness`.
+    /// Component and field at fault, such as `Spring::stiffness`.
     pub field: String,
-    /// What is wrong with it.
+    /// What is wrong with this field.
     pub reason: String,
 }
 

@@ -1,22 +1,24 @@
 use bevy::prelude::*;
 
-/// Finds the [`Preload`](crate::Preload) with which the load rests where it was spawned, instead of sagging first.
+/// Computes the [`Preload`](crate::Preload) with which the load rests where it was spawned, instead of sagging first.
 ///
-/// Put it beside an element. At the first step that the element acts, the preload is worked out from the weight of the
-/// load, the direction of the element and what its spring gives there already. It is inserted as a
-/// [`Preload`](crate::Preload), in place of one that was there, and this component is removed.
+/// Put it beside an element. In the first step in which the element acts, the preload is computed from the weight of
+/// the load, the direction of the element, and the force that its spring already has there. The result is inserted as a
+/// [`Preload`](crate::Preload), in place of an existing one, and this component is removed.
 ///
-/// The *load* is the end that moves. Where both do, say which: [`of_a`](Self::of_a) or [`of_b`](Self::of_b). The other
-/// end counts as if it stood still. Only weight is counted, not your own forces.
+/// The *load* is the end that moves. If both ends move, say which one is the load: [`of_a`](Self::of_a) or
+/// [`of_b`](Self::of_b). The other end counts as fixed. Only the weight counts, not your own forces.
 ///
-/// - A load without joints: the element carries the share of its weight, so springs that carry it together have shares
-///   that sum up to 1. Along a slanted element the tension is the weight's share divided by the cosine.
-/// - A load on a joint whose other body cannot move, such as the arm of a lamp on a hinge: the element carries what the
-///   joint leaves, times the share. Joints between bodies that move are not looked at. For a torsion element, the joint
-///   to its other end counts as well.
+/// - A load without joints: the element carries its share of the weight. Springs that carry a load together have shares
+///   that add up to 1. On a slanted element, the tension is its share of the weight divided by the cosine of the angle
+///   to the direction of gravity.
+/// - A load on a joint whose other body cannot move, such as the arm of a lamp on a hinge: the element carries its
+///   share of what the joint does not carry. Joints between two bodies that move are ignored. For a torsion element,
+///   the joint to the element's other end counts as well.
 ///
-/// Where no preload can do it, the element has a [`SpringFault`](crate::SpringFault) that says why: the element is level,
-/// the ends cannot move, or [`SpringAction`](crate::SpringAction) or [`MaxForce`](crate::MaxForce) forbid it.
+/// If no preload can hold the load, the element gets a [`SpringFault`](crate::SpringFault) that says why: the element
+/// is level, the ends cannot move, or [`SpringAction`](crate::SpringAction) or [`MaxForce`](crate::MaxForce) do not
+/// allow the tension.
 ///
 /// ```
 /// # use bevy::prelude::*;
@@ -41,18 +43,19 @@ pub struct HoldPose {
     pub load: HeldEnd,
     /// Share of the load that this element carries: above zero, 1 for all of it.
     pub share: f32,
-    /// Mass of the load, kg, where it is not that of the body alone: with passengers on it, say. `None` is the body's.
+    /// Mass of the load, kg, above zero, if it is not the mass of the body alone: for example with passengers. `None`
+    /// for the mass of the body.
     pub mass: Option<f32>,
 }
 
-/// The end of an element that is its load; see [`HoldPose`].
+/// Which end of an element is its load; see [`HoldPose`].
 #[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[type_path = "bevy_coilover"]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Default, Debug, PartialEq, Clone, Hash)]
 pub enum HeldEnd {
-    /// The one that moves; a fault where both do.
+    /// The end that moves. If both ends move, the element gets a [`SpringFault`](crate::SpringFault).
     #[default]
     Moving,
     /// End A.
@@ -68,7 +71,7 @@ impl Default for HoldPose {
 }
 
 impl HoldPose {
-    /// Carries all of the end that moves.
+    /// Carries the whole load; the load is the end that moves.
     pub const fn new() -> Self {
         Self {
             load: HeldEnd::Moving,
@@ -77,12 +80,12 @@ impl HoldPose {
         }
     }
 
-    /// Carries a share of the end that moves.
+    /// Carries a share of the load; the load is the end that moves.
     pub const fn share(share: f32) -> Self {
         Self::new().with_share(share)
     }
 
-    /// Carries end A: a chassis, where end B is its wheel.
+    /// Carries end A: for example a chassis, where end B is its wheel.
     pub const fn of_a() -> Self {
         Self {
             load: HeldEnd::A,
@@ -90,7 +93,7 @@ impl HoldPose {
         }
     }
 
-    /// Carries end B: a lamp, where end A is the body that it hangs on.
+    /// Carries end B: for example a lamp, where end A is the body from which it hangs.
     pub const fn of_b() -> Self {
         Self {
             load: HeldEnd::B,

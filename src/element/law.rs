@@ -4,51 +4,52 @@ use bevy::prelude::*;
 use std::fmt;
 use std::sync::Arc;
 
-/// Force of the spring over its stretch (length less rest length), beside [`Spring`](crate::Spring) or
-/// [`SpringDamper`](crate::SpringDamper); without this component it is linear. Beside a [`CustomSpringLaw`] the element
-/// is at fault and does not act.
+/// Force of the spring as a function of its stretch (length minus rest length), beside [`Spring`](crate::Spring) or
+/// [`SpringDamper`](crate::SpringDamper). Without this component the spring is linear. With an invalid value, with a
+/// [`CustomSpringLaw`] on the same entity, or on a damper without a spring, the element gets a
+/// [`SpringFault`](crate::SpringFault) and does not act.
 ///
-/// On a torsion element angles (rad) and moments (N m) take the place of lengths and forces, in every
-/// companion.
+/// On a torsion element, angles (rad) and moments (N m) take the place of lengths and forces. This holds for all
+/// companions of an element.
 #[derive(Component, Reflect, Clone, Debug, Default, PartialEq)]
 #[type_path = "bevy_coilover"]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 pub enum SpringLaw {
-    /// The element's stiffness times the stretch.
+    /// Force = the element's stiffness · stretch.
     #[default]
     Linear,
-    /// The element's stiffness, here in N/m³, times the stretch cubed.
+    /// Force = the element's stiffness, here in N/m³, · stretch³.
     Cubic,
-    /// Coefficients of its own; the element's stiffness plays no part.
+    /// One polynomial for stretch and one for compression. The element's stiffness is ignored.
     Polynomial {
-        /// For stretch.
+        /// Force when the length is above the rest length.
         pull: Polynomial,
-        /// For compression.
+        /// Force when the length is below the rest length.
         push: Polynomial,
     },
-    /// Force over stretch; the element's stiffness plays no part.
+    /// Force over stretch, from a table. The element's stiffness is ignored.
     Table(ForceTable),
 }
 
-/// Force k₁ x + k₂ |x| x + k₃ x³ for a stretch x; none of them negative.
+/// Force k₁ x + k₂ |x| x + k₃ x³ for a stretch x (m). Each coefficient must be from 0 to 1e12.
 #[derive(Reflect, Clone, Copy, Debug, Default, PartialEq)]
 #[type_path = "bevy_coilover"]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Default, Debug, PartialEq, Clone)]
 pub struct Polynomial {
-    /// k₁, N/m.
+    /// Linear coefficient k₁, N/m.
     pub linear: f32,
-    /// k₂, N/m².
+    /// Quadratic coefficient k₂, N/m².
     pub quadratic: f32,
-    /// k₃, N/m³.
+    /// Cubic coefficient k₃, N/m³.
     pub cubic: f32,
 }
 
 impl Polynomial {
-    /// k₁ (N/m), k₂ (N/m²) and k₃ (N/m³).
+    /// Coefficients k₁ (N/m), k₂ (N/m²) and k₃ (N/m³).
     pub const fn new(linear: f32, quadratic: f32, cubic: f32) -> Self {
         Self {
             linear,
@@ -73,29 +74,30 @@ impl SpringLaw {
         Self::Polynomial { pull, push }
     }
 
-    /// Points (stretch in m, force in N).
+    /// Points (stretch in m, force in N) of a [`SpringLaw::Table`].
     pub fn table(points: impl IntoIterator<Item = (f32, f32)>) -> Self {
         Self::Table(ForceTable::new(points))
     }
 }
 
-/// A force law of your own.
+/// A force law of your own, for [`CustomSpringLaw`] and [`CustomDampingLaw`].
 ///
-/// It has to be the same function whenever it is asked, finite, and must not fall as x rises: then the element
-/// is as stable as any other. (Where it falls, the element stays bounded but is less exact.) NaN makes
-/// the element inert, with a message.
+/// It must always return the same force for the same argument. The force must be finite, and must not fall as `x`
+/// rises: then the element is as stable as any other. (Where the force falls, the element stays bounded but is less
+/// exact.) If the law returns NaN or infinity, the element gets a [`SpringFault`](crate::SpringFault) and does not act.
 pub trait ForceLaw: Send + Sync + 'static {
-    /// Force (N, tension positive) at a stretch (m), or for a damper at a rate (m/s).
+    /// Force, N, tension positive. `x` is the stretch, m; for a damper it is the rate of the length, m/s.
     fn force(&self, x: f64) -> f64;
 
-    /// Slope of the force. By default from two neighbouring forces.
+    /// Slope of the force, N/m or N s/m. By default a central difference of two forces.
     fn slope(&self, x: f64) -> f64 {
         let h = 1e-6 * x.abs().max(1e-3);
         (self.force(x + h) - self.force(x - h)) / (2.0 * h)
     }
 
-    /// Integral of the force from 0: the stored energy, J. By default by Gauss–Legendre quadrature in eight
-    /// parts, which is exact to rounding for smooth laws; a law with bends should give it exactly.
+    /// Integral of the force from 0 to `x`: for a spring the stored energy, J. By default three-point Gauss–Legendre
+    /// quadrature in eight equal parts. It is exact for polynomials up to degree 5 and accurate for other smooth laws.
+    /// A law with kinks should implement this method exactly.
     fn energy(&self, x: f64) -> f64 {
         const NODES: [(f64, f64); 3] = [
             (-0.774_596_669_241_483_4, 5.0 / 9.0),
@@ -120,8 +122,9 @@ impl<F: Fn(f64) -> f64 + Send + Sync + 'static> ForceLaw for F {
     }
 }
 
-/// [`ForceLaw`] of your own as the spring's force, instead of a [`SpringLaw`]; the element's stiffness
-/// plays no part. With both on one entity the element is at fault and does not act.
+/// A [`ForceLaw`] of your own as the force of the spring over its stretch, instead of a [`SpringLaw`]. The element's
+/// stiffness is ignored. With a [`SpringLaw`] on the same entity, the element gets a
+/// [`SpringFault`](crate::SpringFault) and does not act.
 ///
 /// ```
 /// # use bevy_coilover::CustomSpringLaw;
@@ -130,26 +133,28 @@ impl<F: Fn(f64) -> f64 + Send + Sync + 'static> ForceLaw for F {
 #[derive(Component, Clone)]
 pub struct CustomSpringLaw(pub(crate) Arc<dyn ForceLaw>);
 
-/// [`ForceLaw`] of your own as the damper's force over the rate of the length, instead of a
-/// [`DampingLaw`](crate::DampingLaw); with both on one entity the element is at fault and does not act. It must have the sign of the rate; where it has not it is taken as zero.
+/// A [`ForceLaw`] of your own as the force of the damper over the rate of the length, instead of a
+/// [`DampingLaw`](crate::DampingLaw). The element's damping is ignored. The force must have the sign of the rate; a
+/// force of the other sign counts as zero. With a [`DampingLaw`](crate::DampingLaw) on the same entity, the element
+/// gets a [`SpringFault`](crate::SpringFault) and does not act.
 #[derive(Component, Clone)]
 pub struct CustomDampingLaw(pub(crate) Arc<dyn ForceLaw>);
 
 impl CustomSpringLaw {
-    /// From a function or anything else that is a [`ForceLaw`].
+    /// From a function, or any other type that implements [`ForceLaw`].
     pub fn new(law: impl ForceLaw) -> Self {
         Self(Arc::new(law))
     }
 }
 
 impl CustomDampingLaw {
-    /// From a function or anything else that is a [`ForceLaw`].
+    /// From a function, or any other type that implements [`ForceLaw`].
     pub fn new(law: impl ForceLaw) -> Self {
         Self(Arc::new(law))
     }
 }
 
-/// A user's law as the integrators see it.
+/// A user's law in the form that the integrators use.
 #[derive(Clone)]
 pub(crate) struct Theirs(pub Arc<dyn ForceLaw>);
 

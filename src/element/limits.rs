@@ -1,6 +1,6 @@
 use bevy::prelude::*;
 
-/// Which way an element acts, spring and damper together.
+/// In which directions an element acts: spring and damper together.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[type_path = "bevy_coilover"]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
@@ -10,19 +10,19 @@ pub enum SpringAction {
     /// Pulls and pushes.
     #[default]
     Both,
-    /// Pulls only: a rope, a bungee. Slack is slack, without damping. A [`Preload`] is added before the cut: a
-    /// preload P on a stiffness k lets it go slack at P/k below its rest length, not at the rest length.
+    /// Pulls only, like a rope or a bungee. A slack element has no force and no damping. A [`Preload`] is added before
+    /// the force is cut: with a preload P and a stiffness k, the element goes slack at P/k below its rest length.
     Pull,
-    /// Pushes only: a seat, a buffer.
+    /// Pushes only, like a seat or a buffer.
     Push,
 }
 
-/// A constant tension beside the spring's, N: the force at rest length. Negative pushes the ends apart.
+/// Constant tension that is added to that of the spring, N: the force at the rest length. A negative preload pushes the
+/// ends apart.
 ///
-/// It is part of [`SpringReadout::spring_force`](crate::SpringReadout::spring_force). Beside
-/// [`SpringAction::Pull`] or [`Push`](SpringAction::Push), spring and preload are added first, and the sum is cut at
-/// zero: a slack rope has no force whatever its preload. [`HoldPose`](crate::HoldPose) finds the preload that holds a
-/// load.
+/// It is part of [`SpringReadout::spring_force`](crate::SpringReadout::spring_force). Beside [`SpringAction::Pull`] or
+/// [`SpringAction::Push`], spring and preload are added first, and the sum is cut at zero: a slack rope has no force,
+/// whatever its preload. [`HoldPose`](crate::HoldPose) computes the preload that holds a load.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq)]
 #[type_path = "bevy_coilover"]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
@@ -30,8 +30,8 @@ pub enum SpringAction {
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 pub struct Preload(pub f32);
 
-/// Most force that spring and damper have together, N, above zero: their sum is cut there, as a clutch slips. The stops of a
-/// [`SpringTravel`] are not held back by it.
+/// Greatest magnitude of the force of spring and damper together, N, above zero. A greater sum is cut to this value, as
+/// in a clutch that slips. It does not limit the stops of a [`SpringTravel`].
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
 #[type_path = "bevy_coilover"]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
@@ -39,29 +39,30 @@ pub struct Preload(pub f32);
 #[reflect(Component, Debug, PartialEq, Clone)]
 pub struct MaxForce(pub f32);
 
-/// Least and greatest length, with a stop at each: beyond it a force
-/// `stop_stiffness` · p · (1 + `progression` · p) for a penetration p pushes back, and `stop_damping` takes
-/// energy while it is pressed. A stop never holds anything back that leaves it.
+/// Least and greatest length of an element, with an elastic stop at each. At a penetration p, a stop pushes back with
+/// the force `stop_stiffness` · p · (1 + `progression` · p), and `stop_damping` takes energy while the stop is pressed.
+/// A stop never holds back an end that leaves it.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
 #[type_path = "bevy_coilover"]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Component, Debug, PartialEq, Clone)]
 pub struct SpringTravel {
-    /// Length at which the bump stop begins, m: the solid length of a coil, say. 0 for none.
+    /// Length at which the bump stop begins, m: for example the solid length of a coil. 0 for no stop. On a torsion
+    /// element or beside a [`SpringAxis`](crate::SpringAxis), 0 is a stop as well, and negative infinity is no stop.
     pub min_length: f32,
-    /// Length at which the rebound stop begins, m; infinite for none.
+    /// Length at which the rebound stop begins, m, above `min_length`. Infinite for no stop.
     pub max_length: f32,
-    /// N/m.
+    /// Stiffness of both stops where they begin, N/m.
     pub stop_stiffness: f32,
-    /// Growth of the stop's stiffness with penetration, 1/m.
+    /// Growth of the stops' stiffness with penetration, 1/m.
     pub progression: f32,
-    /// N s/m.
+    /// Damping of both stops, N s/m.
     pub stop_damping: f32,
 }
 
 impl SpringTravel {
-    /// Between two lengths (m), with stops of a stiffness (N/m) and neither progression nor damping.
+    /// Between two lengths (m), with stops of a stiffness (N/m), without progression and damping.
     pub const fn new(min_length: f32, max_length: f32, stop_stiffness: f32) -> Self {
         Self {
             min_length,
@@ -72,7 +73,7 @@ impl SpringTravel {
         }
     }
 
-    /// Sets the growth of the stops' stiffness, 1/m.
+    /// Sets the growth of the stops' stiffness with penetration, 1/m.
     pub const fn with_progression(mut self, progression: f32) -> Self {
         self.progression = progression;
         self

@@ -1,4 +1,4 @@
-//! What a user spawns: plain, reflected data.
+//! Components that a user spawns: plain, reflected data.
 
 mod anchors;
 mod axis;

@@ -1,10 +1,11 @@
 use crate::readout::SpringReadout;
 use bevy::prelude::*;
 
-/// A linear spring between two ends: tension = stiffness · (length − rest length).
+/// A linear spring between two ends: tension = stiffness · (length − rest length). It pulls when it is longer than its
+/// rest length, and pushes when it is shorter.
 ///
-/// Each end is a body, something below a body in the hierarchy, or any entity with a `Transform`.
-/// It pulls when longer than its rest length and pushes when shorter.
+/// Each end is a rigid body, a descendant of one, or any other entity with a `Transform`. A field or an end that is not
+/// valid gives the element a [`SpringFault`](crate::SpringFault), and it does not act.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", serde(default))]
@@ -13,21 +14,22 @@ use bevy::prelude::*;
 #[require(SpringReadout)]
 #[type_path = "bevy_coilover"]
 pub struct Spring {
-    /// The end that the spring starts from.
+    /// End A, where the spring starts.
     #[entities]
     pub body_a: Entity,
-    /// The end that the spring goes to.
+    /// End B, to which the spring goes.
     #[entities]
     pub body_b: Entity,
-    /// Length without force, m; `None` is the length at the first step it acts, written back here then. A load then sags
-    /// first: see [`HoldPose`](crate::HoldPose).
+    /// Length without force, m. `None` for the length in the first step in which the spring acts; that is then written
+    /// back here. A load then sags first; see [`HoldPose`](crate::HoldPose). It is negative only beside a
+    /// [`SpringAxis`](crate::SpringAxis).
     pub rest_length: Option<f32>,
-    /// N/m, finite and not negative.
+    /// Stiffness, N/m, from 0 to 1e12.
     pub stiffness: f32,
 }
 
 impl Spring {
-    /// A spring of 1 N/m whose rest length is the length at the first step it acts.
+    /// Returns a spring of 1 N/m. Its rest length is the length in the first step in which it acts.
     pub const fn new(body_a: Entity, body_b: Entity) -> Self {
         Self {
             body_a,

@@ -1,8 +1,11 @@
 use crate::readout::SpringReadout;
 use bevy::prelude::*;
 
-/// A spring and a damper side by side (Kelvin–Voigt): tension = stiffness · (length − rest length)
-/// + damping · rate of the length.
+/// A spring and a damper side by side (Kelvin–Voigt): tension = stiffness · (length − rest length) + damping · rate of
+/// the length.
+///
+/// Each end is a rigid body, a descendant of one, or any other entity with a `Transform`. A field or an end that is not
+/// valid gives the element a [`SpringFault`](crate::SpringFault), and it does not act.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", serde(default))]
@@ -11,23 +14,24 @@ use bevy::prelude::*;
 #[require(SpringReadout)]
 #[type_path = "bevy_coilover"]
 pub struct SpringDamper {
-    /// The end that the pair starts from.
+    /// End A, where the pair starts.
     #[entities]
     pub body_a: Entity,
-    /// The end that the pair goes to.
+    /// End B, to which the pair goes.
     #[entities]
     pub body_b: Entity,
-    /// Length without force, m; `None` is the length at the first step it acts, written back here then. A load then sags
-    /// first: see [`HoldPose`](crate::HoldPose).
+    /// Length without force, m. `None` for the length in the first step in which the pair acts; that is then written
+    /// back here. A load then sags first; see [`HoldPose`](crate::HoldPose). It is negative only beside a
+    /// [`SpringAxis`](crate::SpringAxis).
     pub rest_length: Option<f32>,
-    /// N/m, finite and not negative.
+    /// Stiffness, N/m, from 0 to 1e12.
     pub stiffness: f32,
-    /// N s/m, finite and not negative.
+    /// Damping, N s/m, from 0 to 1e12.
     pub damping: f32,
 }
 
 impl SpringDamper {
-    /// A pair of 1 N/m and 1 N s/m whose rest length is the length at the first step it acts.
+    /// Returns a pair of 1 N/m and 1 N s/m. Its rest length is the length in the first step in which it acts.
     pub const fn new(body_a: Entity, body_b: Entity) -> Self {
         Self {
             body_a,

@@ -1,31 +1,33 @@
 use crate::compat::{Curve, Interval};
 use bevy::prelude::*;
 
-/// Forces (N, tension positive) as a test bench measures them: over stretch (m) in a
-/// [`SpringLaw`](crate::SpringLaw), over the rate of the length (m/s) in a
-/// [`DampingLaw`](crate::DampingLaw).
+/// Forces (N, tension positive) as a test bench measures them: over the stretch (m) in a
+/// [`SpringLaw`](crate::SpringLaw), or over the rate of the length (m/s) in a [`DampingLaw`](crate::DampingLaw).
 ///
-/// Between the points it is a monotone cubic (Fritsch and Carlson 1980), which never overshoots; beyond them it
-/// goes straight on as the last two points show. Two points or more, x strictly rising, forces never falling.
+/// Between the points the curve is a monotone cubic, which never overshoots (F. N. Fritsch and R. E. Carlson, SIAM J.
+/// Numer. Anal. 17, 1980). Beyond them it is straight, with the slope between the last two points on that side. There
+/// must be at least two points, x must rise strictly, forces must never fall, and no number or slope may be larger than
+/// 1e12. Otherwise the element gets a [`SpringFault`](crate::SpringFault) and does not act.
 #[derive(Reflect, Clone, Debug, Default, PartialEq)]
 #[type_path = "bevy_coilover"]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Default, Debug, PartialEq, Clone)]
 pub struct ForceTable {
-    /// x: stretch or rate; y: force.
+    /// Points of the curve: x is the stretch or the rate, y is the force.
     pub points: Vec<Vec2>,
 }
 
 impl ForceTable {
-    /// Through points (stretch or rate, force).
+    /// From points (stretch or rate, force).
     pub fn new(points: impl IntoIterator<Item = (f32, f32)>) -> Self {
         Self {
             points: points.into_iter().map(Vec2::from).collect(),
         }
     }
 
-    /// Through so many points of a curve, its ends among them; without a point where its domain has no end.
+    /// From this number of equally spaced points of a curve, both ends included. The table is empty if the domain of
+    /// the curve is not bounded.
     pub fn from_curve(curve: &impl Curve<f32>, points: usize) -> Self {
         let domain: Interval = curve.domain();
         let Ok(places) = domain.spaced_points(points) else {

@@ -1,11 +1,15 @@
-//! The rotational twins: moment (N m) about an axis of body A, over the angle (rad) by which body B is twisted
-//! about it against body A, positive by the right hand. Turns are counted past a full one. Their
-//! [`SpringReadout`] has angles, rad/s and N m in the place of lengths, m/s and N.
+//! Torsion elements: a moment (N m) about an axis of body A, as a function of the twist of body B against body A about
+//! that axis. The twist is an angle (rad), positive by the right-hand rule, and full turns are counted. The
+//! [`SpringReadout`] has rad, rad/s and N m in place of m, m/s and N.
 
 use crate::readout::SpringReadout;
 use bevy::prelude::*;
 
-/// A torsion spring: moment = stiffness · (angle − rest angle).
+/// A torsion spring between two rigid bodies: moment = stiffness · (angle − rest angle).
+///
+/// The angle is the twist of body B against body A about an axis of body A, rad, positive by the right-hand rule. Full
+/// turns are counted. A field or an end that is not valid gives the element a [`SpringFault`](crate::SpringFault), and
+/// it does not act.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", serde(default))]
@@ -14,23 +18,24 @@ use bevy::prelude::*;
 #[require(SpringReadout)]
 #[type_path = "bevy_coilover"]
 pub struct TorsionSpring {
-    /// The rigid body whose axis it is; a fixed one will do.
+    /// End A: the rigid body in whose frame the axis is. It may be a fixed body.
     #[entities]
     pub body_a: Entity,
-    /// The rigid body that turns against it.
+    /// End B: the rigid body that turns against body A.
     #[entities]
     pub body_b: Entity,
-    /// In body A's frame; any length but zero.
+    /// Axis in body A's frame. It may have any finite length but zero.
     pub axis: Vec3,
-    /// Angle without moment, rad, full turns counted; `None` is the angle at the first step it acts, written
-    /// back here then.
+    /// Angle without moment, rad, full turns counted. `None` for the angle in the first step in which the element acts;
+    /// that is then written back here.
     pub rest_angle: Option<f32>,
-    /// N m/rad, finite and not negative.
+    /// Stiffness, N m/rad, from 0 to 1e12.
     pub stiffness: f32,
 }
 
 impl TorsionSpring {
-    /// About an axis of body A, with coefficients of 1 and the angle of the first step as rest angle.
+    /// Returns a torsion spring of 1 N m/rad about an axis of body A. Its rest angle is the angle in the first step in
+    /// which it acts.
     pub const fn new(body_a: Entity, body_b: Entity, axis: Vec3) -> Self {
         Self {
             body_a,
@@ -47,14 +52,17 @@ impl TorsionSpring {
         self
     }
 
-    /// Sets the angle without moment, rad; more than a turn winds it up.
+    /// Sets the angle without moment, rad. An angle of more than a full turn winds the spring up.
     pub const fn with_rest_angle(mut self, rest_angle: f32) -> Self {
         self.rest_angle = Some(rest_angle);
         self
     }
 }
 
-/// A torsion damper: moment = damping · rate of the angle.
+/// A torsion damper between two rigid bodies: moment = damping · rate of the angle.
+///
+/// The angle is the twist of body B against body A about an axis of body A, rad, positive by the right-hand rule. A
+/// field or an end that is not valid gives the element a [`SpringFault`](crate::SpringFault), and it does not act.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", serde(default))]
@@ -63,20 +71,20 @@ impl TorsionSpring {
 #[require(SpringReadout)]
 #[type_path = "bevy_coilover"]
 pub struct TorsionDamper {
-    /// The rigid body whose axis it is; a fixed one will do.
+    /// End A: the rigid body in whose frame the axis is. It may be a fixed body.
     #[entities]
     pub body_a: Entity,
-    /// The rigid body that turns against it.
+    /// End B: the rigid body that turns against body A.
     #[entities]
     pub body_b: Entity,
-    /// In body A's frame; any length but zero.
+    /// Axis in body A's frame. It may have any finite length but zero.
     pub axis: Vec3,
-    /// N m s/rad, finite and not negative.
+    /// Damping, N m s/rad, from 0 to 1e12.
     pub damping: f32,
 }
 
 impl TorsionDamper {
-    /// About an axis of body A, with coefficients of 1.
+    /// Returns a torsion damper of 1 N m s/rad about an axis of body A.
     pub const fn new(body_a: Entity, body_b: Entity, axis: Vec3) -> Self {
         Self {
             body_a,
@@ -93,7 +101,12 @@ impl TorsionDamper {
     }
 }
 
-/// A torsion spring and damper side by side.
+/// A torsion spring and a torsion damper side by side: moment = stiffness · (angle − rest angle) + damping · rate of
+/// the angle.
+///
+/// The angle is the twist of body B against body A about an axis of body A, rad, positive by the right-hand rule. Full
+/// turns are counted. A field or an end that is not valid gives the element a [`SpringFault`](crate::SpringFault), and
+/// it does not act.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", serde(default))]
@@ -102,25 +115,26 @@ impl TorsionDamper {
 #[require(SpringReadout)]
 #[type_path = "bevy_coilover"]
 pub struct TorsionSpringDamper {
-    /// The rigid body whose axis it is; a fixed one will do.
+    /// End A: the rigid body in whose frame the axis is. It may be a fixed body.
     #[entities]
     pub body_a: Entity,
-    /// The rigid body that turns against it.
+    /// End B: the rigid body that turns against body A.
     #[entities]
     pub body_b: Entity,
-    /// In body A's frame; any length but zero.
+    /// Axis in body A's frame. It may have any finite length but zero.
     pub axis: Vec3,
-    /// Angle without moment, rad, full turns counted; `None` is the angle at the first step it acts, written
-    /// back here then.
+    /// Angle without moment, rad, full turns counted. `None` for the angle in the first step in which the element acts;
+    /// that is then written back here.
     pub rest_angle: Option<f32>,
-    /// N m/rad, finite and not negative.
+    /// Stiffness, N m/rad, from 0 to 1e12.
     pub stiffness: f32,
-    /// N m s/rad, finite and not negative.
+    /// Damping, N m s/rad, from 0 to 1e12.
     pub damping: f32,
 }
 
 impl TorsionSpringDamper {
-    /// About an axis of body A, with coefficients of 1 and the angle of the first step as rest angle.
+    /// Returns a pair of 1 N m/rad and 1 N m s/rad about an axis of body A. Its rest angle is the angle in the first
+    /// step in which it acts.
     pub const fn new(body_a: Entity, body_b: Entity, axis: Vec3) -> Self {
         Self {
             body_a,
@@ -138,7 +152,7 @@ impl TorsionSpringDamper {
         self
     }
 
-    /// Sets the angle without moment, rad; more than a turn winds it up.
+    /// Sets the angle without moment, rad. An angle of more than a full turn winds the spring up.
     pub const fn with_rest_angle(mut self, rest_angle: f32) -> Self {
         self.rest_angle = Some(rest_angle);
         self

@@ -1,19 +1,21 @@
 use bevy::prelude::*;
 use std::f32::consts::TAU;
 
-/// Stiffness and damping of an element by what one sees of them. At the first step that the element acts they are
-/// worked out with the effective mass that its ends have then, written into its fields, and this component is
-/// removed: they stay what they are when masses change, as a real spring does.
+/// Sets stiffness and damping of an element by what one sees of them: a frequency or a sag, and a damping ratio. In the
+/// first step in which the element acts, the coefficients are computed from the effective mass of its ends and written
+/// into the element's fields, and this component is removed. They stay the same when masses change later, as in a real
+/// spring.
 ///
-/// The effective mass is what joints and contacts leave: the arm of a lamp on a hinge counts with its inertia about the
-/// hinge, and a wheel that stands on the ground does not move. The engine knows contacts only after a step, so where a
-/// body has colliders they are worked out once more before the second step. What falls freely then counts as free: for
-/// what will land later, take [`SpringTuning::coefficients`] for the mass that the spring is to carry.
+/// The effective mass includes what joints and contacts hold: the arm of a lamp on a hinge counts with its inertia
+/// about the hinge, and a wheel that stands on the ground does not move. The engine knows contacts only after a step.
+/// So if a body has colliders, the coefficients are computed once more before the second step. A body that is falling
+/// freely then counts as free. For a body that will land later, use [`SpringTuning::coefficients`] with the mass that
+/// the spring is to carry.
 ///
-/// A sag finds the rest length too, if the element has none: such that the load stays where it was spawned. A rest length
-/// that you give is kept, and the load sags from there. Where two ends move, and neither stands on the ground after the
-/// first step, nothing says which is the load, and the rest length is the length at the first step, as ever: put a
-/// [`HoldPose`](crate::HoldPose) beside it. For several springs under one load take [`SpringTuning::coefficients`] with
+/// A sag also sets the rest length if the element has none, so that the load stays where it was spawned. A rest length
+/// that you give is kept, and the load sags from there. If both ends move, and neither stands on the ground after the
+/// first step, it is not known which end is the load. The rest length is then the length in the first step; put a
+/// [`HoldPose`](crate::HoldPose) beside it. For several springs under one load, use [`SpringTuning::coefficients`] with
 /// each spring's share of the mass, and [`HoldPose::share`](crate::HoldPose::share).
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
 #[type_path = "bevy_coilover"]
@@ -21,24 +23,24 @@ use std::f32::consts::TAU;
 #[cfg_attr(feature = "serialize", reflect(Serialize, Deserialize))]
 #[reflect(Component, Debug, PartialEq, Clone)]
 pub enum SpringTuning {
-    /// Swings so often, and fades so fast.
+    /// By a natural frequency and a damping ratio.
     Frequency {
-        /// Undamped natural frequency, Hz.
+        /// Undamped natural frequency, Hz, above zero.
         frequency: f32,
-        /// c/(2 √(k m)): 0 swings for ever, 1 is critical.
+        /// Damping ratio c/(2 √(k m)), not negative: 0 oscillates for ever, 1 is critical damping.
         damping_ratio: f32,
     },
-    /// Gives way so far under the weight of its effective mass; sets the rest length too, if it is `None`.
+    /// By the sag under the weight of the effective mass. Also sets the rest length if that is `None`.
     Sag {
-        /// m, above zero.
+        /// Static sag, m, above zero.
         sag: f32,
-        /// As above.
+        /// Damping ratio c/(2 √(k m)), not negative: 0 oscillates for ever, 1 is critical damping.
         damping_ratio: f32,
     },
 }
 
 impl SpringTuning {
-    /// Natural frequency (Hz) and damping ratio.
+    /// From a natural frequency (Hz) and a damping ratio.
     pub const fn frequency(frequency: f32, damping_ratio: f32) -> Self {
         Self::Frequency {
             frequency,
@@ -46,13 +48,14 @@ impl SpringTuning {
         }
     }
 
-    /// Static sag (m) under the engine's gravity and damping ratio. Without a rest length, the load stays where it was
-    /// spawned; with one, it sags.
+    /// From a static sag (m) under the engine's gravity and a damping ratio. Without a rest length, the load stays
+    /// where it was spawned; with one, it sags from there.
     pub const fn sag(sag: f32, damping_ratio: f32) -> Self {
         Self::Sag { sag, damping_ratio }
     }
 
-    /// Stiffness (N/m) and damping (N s/m) for a mass (kg) under a gravity (m/s²).
+    /// Returns stiffness (N/m) and damping (N s/m) for a mass (kg) and a gravity (m/s²): k = m (2π f)² for a frequency
+    /// f or k = m g/s for a sag s, and c = 2 ζ √(k m).
     pub fn coefficients(self, mass: f32, gravity: f32) -> (f32, f32) {
         let (stiffness, ratio) = match self {
             Self::Frequency {
@@ -65,8 +68,9 @@ impl SpringTuning {
     }
 }
 
-/// Stiffness (N/m) of a coil spring of round wire, G d⁴/(8 D³ n): wire diameter d and mean coil diameter D (m),
-/// active turns n, shear modulus G (Pa; steel 79.3e9). (A. M. Wahl, "Mechanical Springs", 1944.)
+/// Returns the stiffness (N/m) of a coil spring of round wire, G d⁴/(8 D³ n): wire diameter d and mean coil diameter D
+/// (m), number of active turns n, shear modulus G (Pa; steel 79.3e9). Source: A. M. Wahl, "Mechanical Springs", 1944.
+/// The arguments are not checked.
 pub fn wire_stiffness(
     wire_diameter: f32,
     coil_diameter: f32,

@@ -1,10 +1,10 @@
 use super::Anchors;
 use bevy::prelude::*;
 
-/// Where an element is held, as points of the world: an easier way to [`Anchors`].
+/// Points at which an element is attached, in the world: an easier way to set [`Anchors`].
 ///
-/// At the next step both points are turned into [`Anchors`], in the frames that the ends have then, and this
-/// component is removed. From there on each point goes with its end. Insert it again to hold the element elsewhere.
+/// At the next step both points are converted to [`Anchors`], in the frames that the ends have then, and this component
+/// is removed. From then on each point moves with its end. Insert it again to attach the element elsewhere.
 ///
 /// ```
 /// # use bevy::prelude::*;
@@ -23,14 +23,14 @@ use bevy::prelude::*;
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 #[require(Anchors)]
 pub struct WorldAnchors {
-    /// Where end A is held, in the world, m.
+    /// Point at which end A is attached, in the world, m.
     pub a: Vec3,
-    /// Where end B is held, in the world, m.
+    /// Point at which end B is attached, in the world, m.
     pub b: Vec3,
 }
 
 impl WorldAnchors {
-    /// Points of the world for end A and end B.
+    /// Points for end A and end B, in the world, m.
     pub const fn new(a: Vec3, b: Vec3) -> Self {
         Self { a, b }
     }

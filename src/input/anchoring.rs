@@ -1,10 +1,11 @@
-//! Anchors that were given as points of the world become points of the ends.
+//! Converts anchors that were given as points of the world into points of the ends, before the step.
 
 use crate::element::{Anchors, WorldAnchors};
 use crate::input::parts::{IsElement, Parts, PartsItem};
 use bevy::prelude::*;
 
-/// Turns [`WorldAnchors`] into [`Anchors`]. Where an end is not there yet, it waits; the element says so itself.
+/// Converts [`WorldAnchors`] into [`Anchors`]. If an end does not exist yet, the component waits, and the element
+/// itself reports the missing end.
 pub(crate) fn anchor(
     mut elements: ParamSet<(
         Query<(Parts, &WorldAnchors), (IsElement, With<Anchors>)>,
@@ -14,7 +15,7 @@ pub(crate) fn anchor(
     mut commands: Commands,
 ) {
     let on_ends = |(parts, points): (PartsItem, &WorldAnchors)| {
-        // Composed from local transforms: the global ones are a frame old here.
+        // Composed from local transforms: `GlobalTransform` is one frame old here.
         let local = |end: Entity, point: Vec3| {
             let global = transforms.compute_global_transform(end).ok()?;
             Some(global.affine().inverse().transform_point3(point))
@@ -25,7 +26,7 @@ pub(crate) fn anchor(
     };
     let found: Vec<_> = elements.p0().iter().filter_map(on_ends).collect();
     for (entity, anchors) in found {
-        // What cannot be turned (an end that is scaled to nothing) is no number, and that is told as any bad anchor is.
+        // A point that cannot be converted (on an end scaled to zero) becomes NaN, and is reported like any bad anchor.
         if let Ok(mut given) = elements.p1().get_mut(entity) {
             given.set_if_neq(anchors);
         }

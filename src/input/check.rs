@@ -1,4 +1,4 @@
-//! Bad input becomes one message with entity and field, never a panic or a NaN.
+//! Checks input: bad values become one message with entity and field, never a panic or a NaN.
 
 use crate::dynamics::guide::Guide;
 use bevy::math::DVec3;
@@ -17,17 +17,18 @@ impl Fault {
     }
 }
 
-/// What is wrong with an element: mostly nothing, and then it takes no room among what every step reads.
+/// What is wrong with an element. Boxed: mostly nothing is wrong, and then it takes little room in rows that every step
+/// reads.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Trouble(Option<Box<Faults>>);
 
 #[derive(Clone, Debug, Default)]
 struct Faults {
-    /// Why it takes no part at all, found before the step.
+    /// Why the element takes no part at all, found before the step.
     lasting: Option<Fault>,
-    /// Why it does not act in this step, found within it.
+    /// Why the element does not act in this step, found during the step.
     passing: Option<Fault>,
-    /// What was said of it last, so that each message comes once.
+    /// The fault that was reported last, so that each message comes once.
     said: Option<Fault>,
 }
 
@@ -37,7 +38,7 @@ impl Trouble {
         self.0.as_ref()?.lasting
     }
 
-    /// Why it does not act in this step.
+    /// Why the element does not act in this step.
     pub(crate) fn passing(&self) -> Option<Fault> {
         self.0.as_ref()?.passing
     }
@@ -56,13 +57,14 @@ impl Trouble {
         }
     }
 
-    /// Whether there is something to say that was not said before.
+    /// Whether there is something to report that was not reported before.
     pub(crate) fn has_news(&self) -> bool {
         let news = |faults: &Faults| faults.said != faults.lasting.or(faults.passing);
         self.0.as_deref().is_some_and(news)
     }
 
-    /// What there is to say that was not said before: a fault, or that there is none any more.
+    /// Returns what was not reported before, and marks it as reported: `Some(fault)`, or `Some(None)` if there is no
+    /// fault any more. `None` if there is nothing to report.
     pub(crate) fn news(&mut self) -> Option<Option<Fault>> {
         let has_news = self.has_news();
         let faults = self.0.as_mut().filter(|_| has_news)?;
@@ -71,36 +73,36 @@ impl Trouble {
     }
 }
 
-/// An element, whichever component it came from.
+/// Parameters of an element, whichever component they come from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Parameters {
     pub ties: Ties,
     pub numbers: Numbers,
 }
 
-/// What an element is held by.
+/// What holds an element.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Ties {
     pub ends: [Entity; 2],
     pub anchors: [Vec3; 2],
-    /// Of a torsion element, in body A's frame.
+    /// Axis of a torsion element, in body A's frame.
     pub twist: Option<Vec3>,
     /// Component name and its fields, for messages.
     pub names: &'static Names,
 }
 
-/// How strong it is.
+/// Coefficients and rest length of an element.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Numbers {
-    /// N/m, or N m/rad.
+    /// Stiffness, N/m or N m/rad.
     pub stiffness: f32,
-    /// N s/m, or N m s/rad.
+    /// Damping, N s/m or N m s/rad.
     pub damping: f32,
-    /// `None` until captured; a damper's is irrelevant. m or rad.
+    /// Rest length, m or rad; `None` until it is captured. That of a damper is irrelevant.
     pub rest_length: Option<f32>,
 }
 
-/// Fields as messages name them; what a component has not is the empty string.
+/// Names of fields, for messages. A field that the component does not have is an empty string.
 #[derive(Debug, PartialEq)]
 pub(crate) struct Names {
     pub ends: [&'static str; 2],
@@ -118,11 +120,11 @@ const NO_NAMES: Names = Names {
     axis: "",
 };
 
-/// Greatest size of a number that a user gives, in SI units. Far beyond what any scene has, and with the products of two of
-/// them, over the least mass and time, still numbers of single precision. Pinned by the member `attack`.
+/// Greatest magnitude of a number that a user gives, in SI units. It is far beyond any real scene, and the product of
+/// two such numbers, divided by the least mass and time, still fits into f32. Pinned by the workspace member `attack`.
 pub(crate) const MOST: f32 = 1e12;
 
-/// A number, and not one out of all measure.
+/// Checks that a number is finite and at most [`MOST`] in magnitude.
 pub(crate) fn finite(value: f32, field: &'static str) -> Result<f64, Fault> {
     if value.is_nan() {
         Err(Fault::new(field, "is NaN"))
@@ -135,7 +137,7 @@ pub(crate) fn finite(value: f32, field: &'static str) -> Result<f64, Fault> {
     }
 }
 
-/// Finite and not negative.
+/// Checks that a number is finite, not negative and at most [`MOST`].
 pub(crate) fn number(value: f32, field: &'static str) -> Result<f64, Fault> {
     let value = finite(value, field)?;
     if value < 0.0 {
@@ -144,7 +146,7 @@ pub(crate) fn number(value: f32, field: &'static str) -> Result<f64, Fault> {
     Ok(value)
 }
 
-/// The unit vector.
+/// Returns the unit vector along `axis`; a fault if that is zero or not finite.
 pub(crate) fn direction(axis: Vec3, field: &'static str) -> Result<DVec3, Fault> {
     let unit = axis.as_dvec3().try_normalize();
     unit.filter(|_| axis.is_finite())
@@ -152,7 +154,7 @@ pub(crate) fn direction(axis: Vec3, field: &'static str) -> Result<DVec3, Fault>
 }
 
 impl Ties {
-    /// Of an element whose components cannot be read.
+    /// Ties of an element whose components cannot be read.
     pub(crate) const NONE: Self = Self {
         ends: [Entity::PLACEHOLDER; 2],
         anchors: [Vec3::ZERO; 2],
@@ -160,14 +162,14 @@ impl Ties {
         names: &NO_NAMES,
     };
 
-    /// Whether others hold it at the same two ends.
+    /// Whether both are held at the same ends and anchors, about the same axis.
     pub(crate) fn is_held_like(&self, other: &Self) -> bool {
         self.ends == other.ends && self.anchors == other.anchors && self.twist == other.twist
     }
 }
 
 impl Parameters {
-    /// Of an element whose components cannot be read.
+    /// Parameters of an element whose components cannot be read.
     pub(crate) const NONE: Self = Self {
         ties: Ties::NONE,
         numbers: Numbers {
@@ -177,7 +179,7 @@ impl Parameters {
         },
     };
 
-    /// What a torsion element acts about.
+    /// Axis about which a torsion element acts. Other elements act along the line of centres.
     pub(crate) fn guide(&self) -> Guide {
         self.ties
             .twist
@@ -185,7 +187,7 @@ impl Parameters {
             .map_or(Guide::Centres, Guide::Twist)
     }
 
-    /// A length cannot be negative; an angle, or a distance along an axis, can.
+    /// Checks the rest length: a length cannot be negative, but an angle or a distance along an axis can.
     pub(crate) fn check_rest(&self, guide: Guide) -> Result<(), Fault> {
         match self.numbers.rest_length {
             Some(length) if guide == Guide::Centres && length < 0.0 => {
@@ -195,7 +197,7 @@ impl Parameters {
         }
     }
 
-    /// Everything that can be judged without looking at the ends.
+    /// Checks everything that does not depend on where the ends are.
     pub(crate) fn check(&self) -> Result<(), Fault> {
         let Self { ties, numbers } = self;
         let names = ties.names;

@@ -1,4 +1,4 @@
-//! What stands beside an element and changes its law: read, judged and made into one.
+//! Companions, the components beside an element that change its law: read, checked and combined into one law.
 
 use crate::dynamics::guide::Guide;
 use crate::dynamics::law::{DragLaw, Law, Recipe, SpringForce, Stop, Table};
@@ -16,7 +16,7 @@ use std::sync::Arc;
 
 macro_rules! beside {
     ([$($law:ident: $kind:ident),*] [$($other:ident: $other_kind:ident),*]) => {
-        /// All that can stand beside an element.
+        /// All components that can stand beside an element.
         #[derive(QueryData)]
         pub(crate) struct Beside {
             $($law: Option<&'static $kind>,)*
@@ -30,19 +30,19 @@ macro_rules! beside {
 }
 with_companions!(beside);
 
-/// Finds them, and those that changed or went.
+/// Finds the companions of elements, and which companions changed or were removed.
 #[derive(SystemParam)]
 pub(crate) struct Companions<'w, 's> {
     pub(crate) all: Query<'w, 's, Beside, AnyBeside>,
     changed: Query<'w, 's, (Entity, Stamps), ChangedBeside>,
-    /// Entities where something changed since the last tick.
+    /// Entities on which a companion changed or was removed since the last run.
     pub(crate) touched: Local<'s, EntityHashSet>,
-    /// What changed up to then is no change.
+    /// Only changes after this tick count; `None` for all changes since the last run.
     since: Local<'s, Option<Tick>>,
     ticks: SystemChangeTick,
 }
 
-/// What they make of an element.
+/// What the companions make of an element: its law, and the guide along or about which it acts.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Companion {
     pub law: Option<Arc<Law>>,
@@ -50,7 +50,8 @@ pub(crate) struct Companion {
 }
 
 impl Companions<'_, '_> {
-    /// Looks for changes, or for those after a tick alone; `lost` have lost something since.
+    /// Collects the entities whose companions changed, since the last run or only after the tick `since`. `lost` are
+    /// the entities that lost a companion.
     pub(crate) fn look(&mut self, since: Option<Tick>, lost: impl Iterator<Item = Entity>) {
         *self.since = since;
         let now = self.ticks.this_run();
@@ -61,7 +62,7 @@ impl Companions<'_, '_> {
         self.touched.extend(lost);
     }
 
-    /// Whether some part of an element changed since the last tick, or after the tick of the last [look](Self::look).
+    /// Whether some part of an element changed since the last run, or after the tick of the last [look](Self::look).
     pub(crate) fn is_new(&self, parts: &PartsItem) -> bool {
         match *self.since {
             Some(since) => parts.is_changed_after(since, self.ticks.this_run()),
@@ -69,17 +70,17 @@ impl Companions<'_, '_> {
         }
     }
 
-    /// How an element is to be tuned once its ends are known, if it is.
+    /// Returns the tuning of an element that is still to be applied, if there is one.
     pub(crate) fn tuning(&self, entity: Entity) -> Option<SpringTuning> {
         self.all.get(entity).ok()?.tuning.copied()
     }
 
-    /// Whether an element has yet to find the preload that holds its load, and how.
+    /// Returns the [`HoldPose`] of an element that still has to find its preload.
     pub(crate) fn pose(&self, entity: Entity) -> Option<HoldPose> {
         self.all.get(entity).ok()?.pose.copied()
     }
 
-    /// What stands beside an element, as its law.
+    /// Combines the companions of an element.
     pub(crate) fn of(&self, entity: Entity, p: &Parameters) -> Result<Companion, Fault> {
         match self.all.get(entity) {
             Ok(beside) => beside.companion(p),
@@ -93,7 +94,7 @@ impl Companions<'_, '_> {
 }
 
 impl BesideItem<'_, '_> {
-    /// What stands beside an element, as its law.
+    /// Combines the companions of an element.
     pub(crate) fn companion(&self, p: &Parameters) -> Result<Companion, Fault> {
         let mut guide = p.guide();
         if let Some(limit) = self.breakable
@@ -119,7 +120,7 @@ impl BesideItem<'_, '_> {
         Ok(Companion { law, guide })
     }
 
-    /// Nothing but an axis, if at all.
+    /// Whether the companions leave the law linear: nothing but an axis counts.
     pub(crate) fn is_linear(&self) -> bool {
         matches!(self.spring, None | Some(SpringLaw::Linear))
             && matches!(self.damping, None | Some(DampingLaw::Linear))
@@ -308,7 +309,7 @@ fn check_travel(travel: &SpringTravel, guide: Guide) -> Result<([f64; 2], Stop),
             "is not above min_length",
         ));
     }
-    // A distance is never below zero.
+    // The distance between two points is never below zero, so a stop at zero is no stop.
     let none = guide == Guide::Centres && min == 0.0;
     let least = if none {
         f64::NEG_INFINITY

@@ -1,4 +1,4 @@
-//! An element's own law as curves, for what shows them.
+//! The law of an element as curves, for display in the workbench.
 
 use crate::dynamics::law::Law;
 use crate::input::companions::Beside;
@@ -6,7 +6,7 @@ use crate::input::parts::Parts;
 use bevy::prelude::*;
 use std::sync::Arc;
 
-/// What an element's forces are for a length and its rate.
+/// The forces of an element as functions of its length and rate.
 #[derive(Clone, Debug)]
 pub(crate) struct Curve {
     law: Arc<Law>,
@@ -14,7 +14,7 @@ pub(crate) struct Curve {
 }
 
 impl Curve {
-    /// Of an element; none where its numbers are wrong, or its rest length not known yet.
+    /// Returns the forces of an element; `None` if its numbers are wrong or its rest length is not known yet.
     pub(crate) fn of(elements: &Query<(Parts, Beside)>, entity: Entity) -> Option<Self> {
         let (parts, beside) = elements.get(entity).ok()?;
         let p = parts.parameters().ok()?;
@@ -28,12 +28,12 @@ impl Curve {
         Some(Self { law, rest })
     }
 
-    /// Tension of spring and stops, N.
+    /// Tension of spring and stops at a length (m), N.
     pub(crate) fn spring(&self, length: f64) -> f64 {
         self.law.elastic(length, self.rest).force
     }
 
-    /// Tension of the damper, N.
+    /// Tension of the damper and of the stops' dampers at a length (m) and a rate (m/s), N.
     pub(crate) fn damper(&self, length: f64, rate: f64) -> f64 {
         self.law.drag(length, self.rest, rate).force
     }

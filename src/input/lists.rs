@@ -1,4 +1,5 @@
-//! Which components are elements, and which stand beside one. Each list stands here alone; others are made from it.
+//! The list of components that are elements, and that of their companions. Other code is generated from these two
+//! lists.
 
 /// Calls a macro with all components that are elements.
 macro_rules! with_elements {
@@ -8,8 +9,8 @@ macro_rules! with_elements {
 }
 pub(crate) use with_elements;
 
-/// Calls a macro with the name and type of each component that can stand beside an element: first those that make its law,
-/// then those that are asked only now and then, and change nothing when they go.
+/// Calls a macro with the name and type of each companion. The first list makes up the law of an element. The second
+/// list is read only now and then, and the law stays the same when one of its components is removed.
 macro_rules! with_companions {
     ($call:ident) => {
         $call! {

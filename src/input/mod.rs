@@ -1,4 +1,4 @@
-//! From components to numbers: what the user has spawned, read, judged and named; no engine.
+//! Reads what the user has spawned, checks it, and turns components into numbers. Nothing here depends on an engine.
 
 pub(crate) mod anchoring;
 pub(crate) mod check;

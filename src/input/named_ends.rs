@@ -1,4 +1,4 @@
-//! Ends by name become ends. Nothing here runs while no element waits for one.
+//! Looks up ends by name, before the step. Nothing here runs while no element waits for an end.
 
 use crate::element::*;
 use crate::input::lists::with_elements;
@@ -10,13 +10,14 @@ use bevy::ecs::system::{SystemParam, SystemState};
 use bevy::platform::collections::HashMap;
 use bevy::prelude::*;
 
-/// Parents that are followed up: more than any real scene has, so that parents in a circle do not hang the game.
+/// Most parents that are followed upwards: more than any real scene has. It keeps parents in a circle from hanging the
+/// game.
 const MOST_LEVELS: usize = 4096;
 
-/// An element that the engine leaves out until its ends are found.
+/// Filter: an element that the engine leaves out until its ends are found.
 type Waits = (With<EndNames>, With<AwaitsEnds>, IsElement);
 
-/// What can let a name be found that was not, or found once that was found twice.
+/// Changes that may resolve a name that was missing, or that several entities had.
 #[derive(SystemParam)]
 pub(crate) struct Chances<'w, 's> {
     names: Query<'w, 's, (), Or<(Changed<Name>, Changed<ChildOf>)>>,
@@ -39,7 +40,7 @@ pub(crate) struct Chances<'w, 's> {
 }
 
 impl Chances<'_, '_> {
-    /// Whether there is any since the last look.
+    /// Whether there was such a change since the last call.
     fn any(&mut self) -> bool {
         let gone = [
             self.nameless.read().count(),
@@ -50,7 +51,7 @@ impl Chances<'_, '_> {
     }
 }
 
-/// The names of the world and who waits for them.
+/// The names in the world, and the elements that wait for them.
 #[derive(SystemParam)]
 pub(crate) struct Look<'w, 's> {
     chances: Chances<'w, 's>,
@@ -60,20 +61,21 @@ pub(crate) struct Look<'w, 's> {
     given_up: Query<'w, 's, Entity, (With<AwaitsEnds>, Without<EndNames>)>,
 }
 
-/// Who bears a name, on or below a place.
+/// The entities that have a name, at or below a place: one of them, and their number.
 #[derive(Clone, Copy)]
 struct Bearers {
     one: Entity,
     count: usize,
 }
 
-/// Bearers of the names that are looked for: by the place on or below which they stand, or in the world.
+/// Bearers of the names that are looked up. The key is the place at or below which they are (`None` for the world) and
+/// the number of the name.
 type Index = HashMap<(Option<Entity>, usize), Bearers>;
 
-/// An end that was found, or is to stay as it is.
+/// An end that was found; `None` leaves the end as it is.
 type End = Option<Entity>;
 
-/// Looks for ends by name, where anything has come that may be one.
+/// Looks up ends by name, if something has changed that may resolve one.
 pub(crate) fn find_named_ends(world: &mut World, look: &mut SystemState<Look>) {
     let Ok(mut look) = look.get_mut(world) else {
         return;
@@ -150,7 +152,8 @@ impl Look<'_, '_> {
         self.waiting.iter().map(ends).collect()
     }
 
-    /// Enters a bearer of a name at all places that it stands on or below, up to one above it that has the same name.
+    /// Adds an entity to the bearers of its name: at its own place, and at all places above it up to the world. It stops
+    /// before the first place above that has the same name.
     fn enter(&self, entity: Entity, number: usize, name: &Name, index: &mut Index) {
         let mut add = |place| {
             let bearers = index.entry((place, number)).or_insert(Bearers {
@@ -169,7 +172,7 @@ impl Look<'_, '_> {
         add(None);
     }
 
-    /// The bearers of a name that are nearest to an element, and where.
+    /// Returns the bearers of a name that are nearest to an element, and their place.
     fn bearers(
         &self,
         entity: Entity,
@@ -188,7 +191,7 @@ impl Look<'_, '_> {
     }
 }
 
-/// Writes ends into an element, whichever it is.
+/// Writes ends into an element, whichever component it is.
 fn tie(world: &mut World, entity: Entity, ends: [End; 2]) {
     macro_rules! elements {
         ($($element:ident),*) => {$(
@@ -202,7 +205,7 @@ fn tie(world: &mut World, entity: Entity, ends: [End; 2]) {
     with_elements!(elements);
 }
 
-/// The element waits no longer. What else is wrong with it the scene has said or will say.
+/// Ends the waiting of an element, and removes its fault about names. The scene reports other faults.
 fn settle(world: &mut World, entity: Entity) {
     if let Ok(mut element) = world.get_entity_mut(entity) {
         element.remove::<AwaitsEnds>();

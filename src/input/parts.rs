@@ -1,4 +1,4 @@
-//! An element's components, whichever they are, as one set of numbers.
+//! The components of an element, whichever they are, as one set of numbers.
 
 use crate::element::{
     Anchors, AwaitsEnds, Damper, Spring, SpringDamper, TorsionDamper, TorsionSpring,
@@ -10,7 +10,7 @@ use bevy::ecs::change_detection::Tick;
 use bevy::ecs::query::QueryData;
 use bevy::prelude::*;
 
-/// The parts of an element.
+/// The components that make up an element.
 #[derive(QueryData)]
 pub(crate) struct Parts {
     pub entity: Entity,
@@ -25,22 +25,22 @@ pub(crate) struct Parts {
 
 macro_rules! filters {
     ($($element:ident),*) => {
-        /// What makes an entity an element.
+        /// Filter: the entity is an element.
         pub(crate) type IsElement = Or<($(With<$element>,)*)>;
 
-        /// An element some part of which changed.
+        /// Filter: some part of the element changed.
         pub(crate) type ChangedParts = Or<($(Changed<$element>,)* Changed<Anchors>)>;
     };
 }
 with_elements!(filters);
 
-/// An element that acts along a line, and not about an axis.
+/// Filter: the element acts along a line, and not about an axis.
 pub(crate) type IsLinear = Or<(With<Spring>, With<Damper>, With<SpringDamper>)>;
 
-/// An element that takes part: one that waits for an end does not.
+/// Filter: the element takes part. One that waits for a named end does not.
 pub(crate) type Acts = (IsElement, Without<AwaitsEnds>);
 
-/// A component's [`Names`], in their order.
+/// Makes the [`Names`] of a component, with the arguments in the order of the fields.
 const fn names(
     ends: [&'static str; 2],
     stiffness: &'static str,
@@ -100,7 +100,7 @@ const TORSION_PAIR: Names = names(
     "TorsionSpringDamper::axis",
 );
 
-/// Any rest length but zero will do for a damper: zero means an isotropic spring.
+/// Rest length of a damper. Any value but zero will do, because zero means an isotropic spring.
 const NO_MATTER: Option<f32> = Some(1.0);
 
 impl PartsItem<'_, '_> {
@@ -117,7 +117,7 @@ impl PartsItem<'_, '_> {
             || changed(&self.torsion_pair)
     }
 
-    /// Whether that was after some tick.
+    /// Whether some part changed after the tick `since`.
     pub(crate) fn is_changed_after(&self, since: Tick, now: Tick) -> bool {
         let after = |changed: Option<Tick>| changed.is_some_and(|at| at.is_newer_than(since, now));
         fn at<T: Component>(part: &Option<Ref<T>>) -> Option<Tick> {
@@ -132,13 +132,13 @@ impl PartsItem<'_, '_> {
             || after(at(&self.torsion_pair))
     }
 
-    /// Both ends, of a sound element.
+    /// Returns both ends, if the element can be read.
     #[cfg(feature = "workbench")]
     pub(crate) fn ends(&self) -> Option<[Entity; 2]> {
         self.parameters().ok().map(|p| p.ties.ends)
     }
 
-    /// Reads whichever component is there.
+    /// Reads the element component of the entity; a fault if there is not exactly one.
     pub(crate) fn parameters(&self) -> Result<Parameters, Fault> {
         let anchors = self.anchors.as_deref().copied().unwrap_or_default();
         let mut found = None;

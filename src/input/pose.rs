@@ -1,4 +1,4 @@
-//! The preload with which an element's load stays where it is.
+//! Computes the preload with which the load of an element stays where it is.
 
 use crate::backend::{Finder, Place};
 use crate::dynamics::guide::Guide;
@@ -9,11 +9,12 @@ use crate::input::companions::{Companion, Companions};
 use bevy::prelude::*;
 use std::sync::Arc;
 
-/// Share of the tension by which the one that the law gives may differ.
+/// Greatest relative difference between the required tension and the tension that the law gives.
 const NEAR: f64 = 1e-3;
 
 impl Companions<'_, '_> {
-    /// What an element becomes with the preload that gives it a tension at a length, and that preload, N.
+    /// Returns the companion of an element with the preload that gives a tension (N) at a length (m), and that preload,
+    /// N.
     fn holding(
         &self,
         entity: Entity,
@@ -37,7 +38,7 @@ impl Companions<'_, '_> {
         recipe.preload = f64::from(preload);
         let law = Law::new(recipe);
         let gives = law.elastic(length, rest).force;
-        // A law of a user's own may give anything; that is found in the step.
+        // A custom law may give anything, such as NaN, which passes here; the step finds it.
         if (gives - tension).abs() > NEAR * tension.abs() + 1e-6 {
             return fault("needs a tension that SpringAction, MaxForce or a stop does not allow");
         }
@@ -45,7 +46,7 @@ impl Companions<'_, '_> {
         Ok((Companion { law, guide }, preload))
     }
 
-    /// Finds the preload that holds an element's load.
+    /// Computes the preload that holds the load of an element.
     pub(crate) fn hold(
         &self,
         entity: Entity,

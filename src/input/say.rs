@@ -1,19 +1,19 @@
-//! What is wrong with an entity is said once, in the log and by a component.
+//! Reports once what is wrong with an entity: in the log, and by a component.
 
 use crate::element::SpringFault;
 use crate::readout::SpringReadout;
 use bevy::prelude::*;
 
-/// How long a fault stays.
+/// How long a fault lasts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Stays {
-    /// Until it is mended; the element takes no part.
+    /// Until it is corrected; the element takes no part.
     UntilMended,
     /// For this step: the next may be without it.
     ForNow,
 }
 
-/// Says what is wrong, if the same does not stand there already.
+/// Reports a fault, unless the entity has the same one already.
 pub(crate) fn say(element: &mut EntityWorldMut, fault: SpringFault, stays: Stays) {
     if element.get() == Some(&fault) {
         return;
@@ -23,7 +23,7 @@ pub(crate) fn say(element: &mut EntityWorldMut, fault: SpringFault, stays: Stays
         None => log::warn!("{fault}"),
     }
     element.insert(fault);
-    // What it shows would be taken for a force that still acts.
+    // Otherwise the old readout would be taken for a force that still acts.
     if stays == Stays::UntilMended
         && let Some(mut readout) = element.get_mut::<SpringReadout>()
     {

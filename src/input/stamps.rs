@@ -1,4 +1,4 @@
-//! When what stands beside an element changed last.
+//! Change ticks of the companions of an element.
 
 use crate::element::*;
 use crate::input::lists::with_companions;
@@ -8,7 +8,7 @@ use bevy::prelude::*;
 
 macro_rules! stamps {
     ([$($law:ident: $kind:ident),*] [$($other:ident: $other_kind:ident),*]) => {
-        /// Of each, when that was.
+        /// Each companion, with its change tick.
         #[derive(QueryData)]
         pub(crate) struct Stamps {
             $($law: Option<Ref<'static, $kind>>,)*
@@ -16,7 +16,7 @@ macro_rules! stamps {
         }
 
         impl StampsItem<'_, '_> {
-            /// Whether any of them changed after a tick.
+            /// Whether any companion changed after the tick `since`.
             pub(crate) fn is_after(&self, since: Tick, now: Tick) -> bool {
                 fn at<T: Component>(part: &Option<Ref<T>>) -> Option<Tick> {
                     part.as_ref().map(Ref::last_changed)

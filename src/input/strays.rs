@@ -1,13 +1,13 @@
-//! Companions and looks that stand where no element is do nothing; that is told once.
+//! Companions and looks on an entity without an element do nothing. A warning says so once.
 //!
-//! Observers see them come, so that a world in which nothing comes pays nothing.
+//! Observers notice them when they are added, so a world in which nothing is added pays nothing.
 
 use crate::compat::Added;
 use crate::input::parts::{IsElement, IsLinear};
 use bevy::ecs::entity::{EntityHashMap, EntityHashSet};
 use bevy::prelude::*;
 
-/// Ticks that an entity has to get its element.
+/// Number of ticks that an entity has to get its element.
 const GRACE: u8 = 4;
 
 /// What a stray component is for.
@@ -23,12 +23,12 @@ pub(crate) enum Role {
     Spiral,
 }
 
-/// Entities that have a companion or a look, and had no element when that came.
+/// Entities with a companion or a look that had no suitable element when the component was added.
 #[derive(Resource, Debug, Default)]
 pub(crate) struct Strays {
     waiting: EntityHashMap<Stray>,
     told: EntityHashSet,
-    /// There is something to draw, and it was said that nobody does.
+    /// `Some(false)` once there is something to draw; `Some(true)` once it was checked that a plugin draws it.
     #[cfg(feature = "visual")]
     undrawn: Option<bool>,
 }
@@ -41,7 +41,7 @@ struct Stray {
     left: u8,
 }
 
-/// Makes an app notice where a component stands.
+/// Makes an app notice a component of this type on an entity without a suitable element.
 pub(crate) fn notice<C: Component>(app: &mut App, role: Role) {
     let path = std::any::type_name::<C>();
     let name = path.rsplit("::").next().unwrap_or(path);
@@ -80,7 +80,7 @@ pub(crate) fn notice<C: Component>(app: &mut App, role: Role) {
     app.add_observer(observer);
 }
 
-/// Whether there is anything to look after.
+/// Whether there is anything to check.
 pub(crate) fn any_strays(strays: Res<Strays>) -> bool {
     #[cfg(feature = "visual")]
     if strays.undrawn == Some(false) {
@@ -89,7 +89,7 @@ pub(crate) fn any_strays(strays: Res<Strays>) -> bool {
     !strays.waiting.is_empty()
 }
 
-/// Tells of what still has no element.
+/// Warns about components that still have no element.
 pub(crate) fn tell_strays(
     mut strays: ResMut<Strays>,
     elements: Query<(), IsElement>,

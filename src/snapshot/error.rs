@@ -1,32 +1,35 @@
 use bevy::prelude::Entity;
 use std::fmt;
 
-/// Why a snapshot cannot be put into a world. Nothing has been changed then.
+/// Why a snapshot cannot be restored into a world. Nothing has been changed then, except as
+/// [`CoiloverSnapshot::restore`](crate::CoiloverSnapshot::restore) says.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum SnapshotError {
     /// The world has no [`CoiloverPlugin`](crate::CoiloverPlugin), or no `RapierPhysicsPlugin`.
     NoPlugin,
-    /// This entity is no element that acts: it is gone, is disabled, or has another component now.
+    /// This entity is not an element that acts: it is gone or disabled, has lost its element, or waits for named ends.
     NoElement(Entity),
-    /// This entity is no body that Rapier knows.
+    /// This entity is not a body that Rapier knows.
     NoBody(Entity),
-    /// This entity is no collider that Rapier knows.
+    /// This entity is not a collider that Rapier knows.
     NoCollider(Entity),
     /// This entity has no joint that Rapier knows.
     NoJoint(Entity),
-    /// This entity is no Rapier context.
+    /// This entity is not a Rapier context.
     NoContext(Entity),
-    /// Two entities of the snapshot have been mapped to this one.
+    /// Two entities of the snapshot are mapped to this one.
     Twice(Entity),
-    /// Rapier calls this entity's body, collider or joint otherwise than it did: it was spawned in another order, or anew.
+    /// The body, collider or joint of this entity has another handle in Rapier than in the snapshot: it was spawned in
+    /// another order, or spawned again.
     OtherHandle(Entity),
-    /// This entity's body, collider or joint came after the snapshot: despawn it first.
+    /// The body, collider or joint of this entity was spawned after the snapshot. Despawn it first.
     Unknown(Entity),
-    /// Rapier's joints and solver iterations are not those of the tick of the snapshot: put a [`RapierSnapshot`](crate::RapierSnapshot) of the same
-    /// tick back first, or see [`CoiloverSnapshot::without_engine`](crate::CoiloverSnapshot::without_engine).
+    /// Rapier's joints and solver iterations are not those of the snapshot's tick. Restore a
+    /// [`RapierSnapshot`](crate::RapierSnapshot) of the same tick first, or see
+    /// [`CoiloverSnapshot::without_engine`](crate::CoiloverSnapshot::without_engine).
     OtherEngine,
-    /// What was read from a file or from the net names parts that it has not.
+    /// The snapshot, as read from a file or received over the network, refers to parts that it does not contain.
     Broken,
 }
 

@@ -1,4 +1,4 @@
-//! Going back to an earlier tick, or on from it in another world.
+//! Snapshots of the springs: to go back to an earlier tick, or to continue from it in another world.
 
 mod error;
 
@@ -9,27 +9,30 @@ use crate::scene::kept::Kept;
 use bevy::ecs::entity::{EntityMapper, MapEntities};
 use bevy::prelude::*;
 
-/// All that springs remember from one tick to the next: for rollback, saved games and replays.
+/// Everything that springs remember from one tick to the next: for rollback, saved games and replays.
 ///
-/// With what else there is put back beside it, the future is the same bit for bit. Take it where a tick is over, after
-/// [`CoiloverSystems::Readout`](crate::CoiloverSystems::Readout), and put it back there.
+/// If everything else is restored as well, the future is the same bit for bit. Take the snapshot at the end of a tick,
+/// after [`CoiloverSystems::Readout`](crate::CoiloverSystems::Readout), and restore it at the same point.
 ///
-/// It holds, of each element: turns counted, direction and places of its ends, the ledger of energy,
-/// [`SpringReadout`](crate::SpringReadout), the error control of its micro-steps, and what it has inside Rapier's solver. Of
-/// each body that elements act on: [`SpringLoad`](crate::SpringLoad) with `ExternalForce`, since when it has been at rest,
-/// contacts that have just ended, and what it was lent in Rapier. Of each network: its energy bound, blows that are not over,
-/// and from where iterations start.
+/// It contains:
 ///
-/// It does not hold what the game can put back itself:
+/// - Of each element: full turns counted, direction and places of its ends, the energy ledger,
+///   [`SpringReadout`](crate::SpringReadout), the error control of its micro-steps, and its state inside Rapier's
+///   solver.
+/// - Of each body that elements act on: [`SpringLoad`](crate::SpringLoad) with `ExternalForce`, since when it has been
+///   at rest, contacts that have just ended, and settings that the crate has raised for it in Rapier.
+/// - Of each network: its energy bound, the impacts that are not over, and the starting values of its iterations.
 ///
-/// - elements and their companions. A component whose stiffness, damping or rest length is another than acted last counts as
-///   changed by the game; one that is only written anew does not. Rest lengths that were found at the first step are written
-///   back where a component has none.
-/// - Rapier: bodies, contacts, joints. [`RapierSnapshot`] does, with `Transform`, `Velocity` and `Sleeping` of bodies. Put it
-///   back first.
-/// - `Transform` of ends that are no bodies, `Time<Fixed>`, and whatever else the game's own systems read.
+/// It does not contain what the game can restore itself:
 ///
-/// It takes some 700 bytes for a spring with a body of its own; [`bytes`](Self::bytes) tells.
+/// - Elements and their companions. If stiffness, damping or rest length of a component differ from those that acted
+///   last, that counts as a change by the game. Writing the same values again does not. A rest length that was found in
+///   the first step is written back if the component has none.
+/// - Rapier: bodies, contacts, joints. [`RapierSnapshot`] contains them, with `Transform`, `Velocity` and `Sleeping` of
+///   bodies. Restore it first.
+/// - `Transform` of ends that are not bodies, `Time<Fixed>`, and whatever else the game's own systems read.
+///
+/// It takes about 700 bytes for a spring with a body of its own; see [`bytes`](Self::bytes).
 ///
 /// ```
 /// # use bevy::prelude::*;
@@ -43,8 +46,8 @@ use bevy::prelude::*;
 /// # }
 /// ```
 ///
-/// In another world, or where elements have been despawned and spawned again, entities have other ids. Give it the new ones
-/// with `MapEntities`; a map from old to new is an `EntityMapper`:
+/// In another world, or if elements have been despawned and spawned again, entities have other ids. Give the new ids to
+/// the snapshot with `MapEntities`. A map from old to new ids is an `EntityMapper`:
 ///
 /// ```
 /// # use bevy::ecs::entity::{EntityHashMap, MapEntities};
@@ -61,35 +64,36 @@ use bevy::prelude::*;
 pub struct CoiloverSnapshot(Kept);
 
 impl CoiloverSnapshot {
-    /// Takes one. It is empty where there is no [`CoiloverPlugin`](crate::CoiloverPlugin).
+    /// Takes a snapshot. It is empty if the world has no [`CoiloverPlugin`](crate::CoiloverPlugin).
     pub fn take(world: &World) -> Self {
         Self(Kept::take(world))
     }
 
-    /// Has the springs of a world go on from there.
+    /// Makes the springs of a world continue from this snapshot. Elements that were spawned after the snapshot may
+    /// stay, and continue as new elements.
     ///
-    /// Elements that came after the snapshot may stay, and go on as new ones. If it does not fit the world, nothing is
-    /// changed; but if Rapier's was put back just before, springs begin anew, and leave nothing behind in Rapier of what
-    /// they had in it then.
+    /// If the snapshot does not fit the world, an error is returned and nothing is changed. There is one exception: if
+    /// a [`RapierSnapshot`] was restored just before, the springs then start afresh, and what they had inside Rapier at
+    /// the tick of the snapshot is removed.
     pub fn restore(&self, world: &mut World) -> Result<(), SnapshotError> {
         self.0.put(world)
     }
 
-    /// Leaves out what springs have inside Rapier's solver, for a world whose Rapier is not put back but only its bodies are
-    /// moved. Springs on bodies that contacts or joints hold then go on nearly as they did, not bit for bit.
+    /// Leaves out the state inside Rapier's solver, for a world whose Rapier is not restored and whose bodies are only
+    /// moved. Springs on bodies that contacts or joints hold then continue nearly as before, but not bit for bit.
     #[must_use]
     pub fn without_engine(mut self) -> Self {
         self.0.forget_engine();
         self
     }
 
-    /// All entities that it names: Rapier's contexts, then bodies, then elements. One context is taken for the one of a
-    /// world that has one, whatever it is called.
+    /// Returns all entities in the snapshot: Rapier's contexts, then bodies, then elements. If snapshot and world have
+    /// one context each, these count as the same, whatever their ids are.
     pub fn entities(&self) -> impl Iterator<Item = Entity> {
         self.0.entities()
     }
 
-    /// Bytes that it takes in memory.
+    /// Number of bytes that the snapshot takes in memory.
     pub fn bytes(&self) -> usize {
         self.0.bytes()
     }

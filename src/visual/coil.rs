@@ -5,7 +5,7 @@ use bevy::prelude::*;
 /// Draws a coil spring between the ends of the [`Spring`](crate::Spring), [`Damper`](crate::Damper) or
 /// [`SpringDamper`](crate::SpringDamper) on the same entity. Its wire stays round at any length.
 ///
-/// Beside a [`Telescope`](crate::Telescope) it sits around it, between spring seats: a coilover.
+/// Beside a [`Telescope`](crate::Telescope) the coil is wound around the telescope, between spring seats: a coilover.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
 #[type_path = "bevy_coilover"]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
@@ -13,24 +13,26 @@ use bevy::prelude::*;
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 #[require(Transform, Visibility, Placement)]
 pub struct Coil {
-    /// From the axis to the centre of the wire, m, or a share if it is [fitted](Self::fitted()).
+    /// Radius from the axis to the centre of the wire, m; a share of the length if the coil is
+    /// [fitted](Self::fitted()).
     pub radius: f32,
-    /// Half the thickness of the wire, m, or a share.
+    /// Radius of the wire, m; a share of the length if the coil is [fitted](Self::fitted()).
     pub wire_radius: f32,
-    /// Turns of the wire from end to end, the flat ones at the ends included.
+    /// Number of turns from end to end, with the closed ones at the ends.
     pub turns: f32,
     /// How the wire ends.
     pub ends: HelixEnds,
-    /// Which way it is wound.
+    /// Direction in which the wire is wound.
     pub handedness: Handedness,
-    /// Paint.
+    /// Colour of the coil.
     pub color: Color,
-    /// Its radii are shares of the length between the ends when first drawn, not metres; see [`Coil::fitted()`].
+    /// Whether the radii are shares of the length between the ends when first drawn, and not metres; see
+    /// [`Coil::fitted()`].
     pub fitted: bool,
 }
 
 impl Default for Coil {
-    /// Of the size of a car's coilover, whatever the scene; see [`Coil::fitted()`].
+    /// A coil of the size of a car's coilover, whatever the size of the scene; [`Coil::fitted()`] is one that fits.
     fn default() -> Self {
         Self {
             radius: 0.13,
@@ -44,19 +46,19 @@ impl Default for Coil {
     }
 }
 
-/// What [`Coil::from_wire`] says of a spring of round wire.
+/// Result of [`Coil::from_wire`]: a spring of round wire.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WoundCoil {
-    /// How it looks.
+    /// The coil to draw.
     pub coil: Coil,
-    /// Of the active turns, N/m.
+    /// Stiffness of the active turns, N/m.
     pub stiffness: f32,
     /// Length at which all turns touch, m.
     pub solid_length: f32,
 }
 
 impl Coil {
-    /// A coil of this size, m.
+    /// Returns a coil of this radius (from the axis to the centre of the wire, m), wire radius (m) and number of turns.
     pub fn new(radius: f32, wire_radius: f32, turns: f32) -> Self {
         Self {
             radius,
@@ -66,11 +68,11 @@ impl Coil {
         }
     }
 
-    /// A coil that fits its scene: its radius is a tenth of the length between the ends when first drawn, and its wire
-    /// 2.4 % of that length thick.
+    /// Returns a coil that fits its scene. Its radius is a tenth of the length between the ends when first drawn, and
+    /// its wire is 2.4 % of that length thick.
     ///
-    /// The length is taken once, to within 5 %, so that springs of nearly one length share a mesh. A [`Telescope`]
-    /// beside it should be [fitted](crate::Telescope::fitted()) too.
+    /// The length is measured once and rounded to within 5 %, so that springs of nearly the same length share a mesh. A
+    /// [`Telescope`] beside it should be [fitted](crate::Telescope::fitted()) too.
     ///
     /// [`Telescope`]: crate::Telescope
     pub fn fitted() -> Self {
@@ -82,7 +84,7 @@ impl Coil {
         }
     }
 
-    /// In metres, where the ends are `first` apart when first drawn.
+    /// Returns the coil in metres, for ends that are `first` metres apart when first drawn.
     pub(super) fn at(self, first: f32) -> Self {
         let scale = if self.fitted { rounded(first) } else { 1.0 };
         Self {
@@ -93,9 +95,12 @@ impl Coil {
         }
     }
 
-    /// A compression spring of real wire, its ends closed and ground: diameters of the wire and of the
-    /// coil, at the middle of the wire (m), the turns that act, and the wire's shear modulus (Pa; steel
-    /// has about 79e9). Its stiffness is G d⁴ / (8 D³ n).
+    /// Returns a compression spring of real wire with closed and ground ends. `wire_diameter` and `coil_diameter` (at
+    /// the middle of the wire) are in m. `active_turns` is the number of turns that act. `shear_modulus` is that of the
+    /// wire, Pa (steel: about 79e9). The stiffness is G d⁴ / (8 D³ n), see [`wire_stiffness`](crate::wire_stiffness).
+    ///
+    /// Returns an error if an argument is not finite and above zero, if the wire would cross the axis, or if there are
+    /// more than 1000 turns with the two closed ones.
     ///
     /// ```
     /// # use bevy_coilover::Coil;
@@ -133,7 +138,7 @@ impl Coil {
         })
     }
 
-    /// Sets the paint.
+    /// Sets the colour.
     pub const fn with_color(mut self, color: Color) -> Self {
         self.color = color;
         self
@@ -145,13 +150,13 @@ impl Coil {
         self
     }
 
-    /// Sets which way it is wound.
+    /// Sets the direction in which the wire is wound.
     pub const fn with_handedness(mut self, handedness: Handedness) -> Self {
         self.handedness = handedness;
         self
     }
 
-    /// Its shape at this length, m; of a fitted one, both are in shares.
+    /// Returns the shape of the coil at a length, m. If the coil is fitted, the length and the shape are in shares.
     pub const fn helix(&self, length: f32) -> Helix {
         Helix {
             radius: self.radius,
@@ -163,13 +168,13 @@ impl Coil {
         }
     }
 
-    /// The length at which all turns touch, m; of a fitted one, as a share.
+    /// Length at which all turns touch, m; a share if the coil is fitted.
     pub fn solid_length(&self) -> f32 {
         self.helix(1.0).solid_length()
     }
 }
 
-/// A length to within 5 %: a power of 1.1.
+/// Rounds a length to a power of 1.1, so to within 5 %.
 pub(super) fn rounded(length: f32) -> f32 {
     let step = 1.1_f32.ln();
     ((length.ln() / step).round() * step).exp()

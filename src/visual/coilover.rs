@@ -5,8 +5,8 @@ use bevy::prelude::*;
 
 /// A coil spring around a telescoping damper between two ends: physics and looks, as one bundle.
 ///
-/// It holds a [`SpringDamper`], [`Anchors`], a [`Coil`] and a [`Telescope`]. Set their values here rather than in the
-/// same bundle beside it: Bevy panics at two components of one type. Other companions, such as
+/// It consists of a [`SpringDamper`], [`Anchors`], a [`Coil`] and a [`Telescope`]. Set their values here, and do not
+/// add these components to the same bundle: Bevy panics at two components of one type. Other companions, such as
 /// [`HoldPose`](crate::HoldPose) or [`SpringTravel`](crate::SpringTravel), go beside it.
 ///
 /// ```
@@ -25,9 +25,9 @@ use bevy::prelude::*;
 /// ```
 #[derive(Bundle, Clone, Copy, Debug, PartialEq)]
 pub struct Coilover {
-    /// What acts.
+    /// The spring and damper that act.
     pub element: SpringDamper,
-    /// Where it is held, in the ends' local frames.
+    /// Points at which it is attached, in the local frames of the ends.
     pub anchors: Anchors,
     /// How the spring looks.
     pub coil: Coil,
@@ -36,8 +36,8 @@ pub struct Coilover {
 }
 
 impl Coilover {
-    /// From end A to end B: 1000 N/m and 60 N s/m, at rest at the length of the first step, held at the origins of
-    /// the ends, with the default looks, which have the size of a car's.
+    /// From end A to end B, with 1000 N/m and 60 N s/m. The rest length is the length in the first step, the anchors
+    /// are the origins of the ends, and the default looks have the size of a car's coilover.
     pub fn new(body_a: Entity, body_b: Entity) -> Self {
         Self {
             element: SpringDamper::new(body_a, body_b)
@@ -67,7 +67,7 @@ impl Coilover {
         self
     }
 
-    /// Sets the points where it is held, in the local frames of end A and end B, m.
+    /// Sets the points at which it is attached, in the local frames of end A and end B, m.
     pub const fn with_anchors(mut self, a: Vec3, b: Vec3) -> Self {
         self.anchors = Anchors::new(a, b);
         self
@@ -85,7 +85,8 @@ impl Coilover {
         self
     }
 
-    /// Scales both looks with the length between the ends: [`Coil::fitted()`] and [`Telescope::fitted()`].
+    /// Replaces both looks by ones that scale with the length between the ends: [`Coil::fitted()`] and
+    /// [`Telescope::fitted()`].
     pub fn fitted(mut self) -> Self {
         self.coil = Coil::fitted();
         self.telescope = Telescope::fitted();
@@ -93,7 +94,7 @@ impl Coilover {
     }
 }
 
-/// [`Coilover::new`], for short.
+/// Short form of [`Coilover::new`].
 pub fn coilover(body_a: Entity, body_b: Entity) -> Coilover {
     Coilover::new(body_a, body_b)
 }

@@ -1,16 +1,16 @@
-//! Sizes of an element's parts, from its looks and its length when first drawn.
+//! Computes the sizes of an element's parts from its looks and its length when first drawn.
 
 use super::coil::Coil;
 use super::layout::Layout;
 use super::telescope::Telescope;
 
-/// Stroke, as a share of the length when first drawn.
+/// Default stroke, as a share of the length when first drawn.
 const STROKE: f32 = 0.5;
-/// At full stroke this share of the tube still holds the rod.
+/// Share of the tube that still holds the rod at full stroke.
 const OVERLAP: f32 = 0.15;
 
 impl Layout {
-    /// Where the ends were `first` apart when first drawn.
+    /// Returns the layout of an element whose ends were `first` metres apart when first drawn.
     pub fn new(coil: Option<&Coil>, telescope: Option<&Telescope>, first: f32) -> Self {
         let mut out = Self::default();
         if let Some(coil) = coil {
@@ -42,7 +42,7 @@ impl Layout {
         let room = (shortest - out.body).max(0.5 * shortest);
         out.rod = telescope.rod_length.unwrap_or(rod.min(room));
         if telescope.bump_rubber {
-            // As long as leaves three quarters of the way in free.
+            // A quarter of the way in, so that three quarters stay free.
             out.bump = 0.25 * (first - out.tube - out.foot).max(0.0);
         }
         out

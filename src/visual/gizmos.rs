@@ -9,12 +9,12 @@ use bevy::gizmos::gizmos::Gizmos;
 use bevy::math::Vec3A;
 use bevy::prelude::*;
 
-/// The gizmo group that draws elements as lines, for debugging: crosses at the ends, the rest length
-/// beside the line, and the forces on both ends as arrows, red for tension and blue for compression. Rest length and
-/// forces lie along the line between the ends, or along the element's [`SpringAxis`](crate::SpringAxis).
+/// Gizmo group that draws elements as lines, for debugging: crosses at the ends, the rest length beside the line, and
+/// the forces on both ends as arrows, red for tension and blue for compression. Rest length and forces are drawn along
+/// the line between the ends, or along the element's [`SpringAxis`](crate::SpringAxis).
 ///
-/// Nothing is drawn until `all` is set or an element has [`ShowSpringGizmos`]. Needs Bevy's `GizmoPlugin`,
-/// which `DefaultPlugins` has with the feature `bevy_gizmos_render`.
+/// Nothing is drawn unless `all` is set or an element has [`ShowSpringGizmos`]. It needs Bevy's `GizmoPlugin`, which
+/// `DefaultPlugins` contains with the feature `bevy_gizmos_render`.
 ///
 /// ```
 /// # use bevy::gizmos::config::GizmoConfigStore;
@@ -30,9 +30,9 @@ use bevy::prelude::*;
 #[type_path = "bevy_coilover"]
 #[reflect(Default)]
 pub struct SpringGizmos {
-    /// Draw every element that has no [`ShowSpringGizmos`] of its own.
+    /// Whether to draw every element that has no [`ShowSpringGizmos`] of its own.
     pub all: bool,
-    /// Length of an arrow, m per N.
+    /// Length of a force arrow, m per N.
     pub scale: f32,
     /// Half the size of the crosses at the ends, m.
     pub cross: f32,
@@ -48,7 +48,7 @@ impl Default for SpringGizmos {
     }
 }
 
-/// On an element: whether its [`SpringGizmos`] are drawn, whatever the group says.
+/// On an element: whether its [`SpringGizmos`] are drawn, whatever [`SpringGizmos::all`] says.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Eq)]
 #[type_path = "bevy_coilover"]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
@@ -67,7 +67,7 @@ const COMPRESSION: Color = Color::srgb(0.15, 0.4, 1.0);
 const REST: Color = Color::srgb(0.2, 0.8, 0.3);
 const END: Color = Color::srgb(0.95, 0.9, 0.2);
 
-/// Adds the group where there are gizmos.
+/// Adds the group, if the app has gizmos.
 pub(super) fn add(app: &mut App, after: impl SystemSet) {
     if !app.world().contains_resource::<GizmoConfigStore>() {
         return;
@@ -109,7 +109,7 @@ fn draw(
             .and_then(|s| s.rest_length)
             .or_else(|| pair.and_then(|p| p.rest_length));
         if let Some(rest) = rest {
-            // Beside the line, about its middle, so that what is missing or too much shows at both ends.
+            // Beside the line and about its middle, so that a difference to the length shows at both ends.
             let beside = cross * direction.any_orthonormal_vector();
             let middle = 0.5 * (from + to) + beside;
             let half = 0.5 * rest * direction;
@@ -127,7 +127,7 @@ fn draw(
     }
 }
 
-/// Which way an element acts, at unit length.
+/// Direction along which an element acts, as a unit vector of the world.
 fn direction(ends: &Ends, axis: Option<&SpringAxis>) -> Vec3A {
     let along = match axis {
         None => ends.to - ends.from,

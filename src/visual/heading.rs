@@ -1,9 +1,9 @@
-//! Which way a drawn element is turned about its own axis.
+//! How a drawn element is rotated about its own axis.
 
 use bevy::math::{Mat3A, Vec3A};
 
-/// The direction of an element and a side of it, both in the frame of end A: so the looks turn with that
-/// end, and are carried along without spin where the direction changes (parallel transport).
+/// The direction of an element and a vector across it (the side), both in the frame of end A. So the looks turn with
+/// end A. When the direction changes, the side is carried along without spin (parallel transport).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Heading {
     axis: Vec3A,
@@ -20,19 +20,19 @@ impl Default for Heading {
 }
 
 impl Heading {
-    /// Turns to a direction of unit length by the shortest way.
+    /// Turns to a direction (unit vector in the frame of end A) by the shortest way.
     #[inline]
     pub fn turn_to(&mut self, direction: Vec3A) {
-        // Rounding must not add up. What it did in the last turn is mended here, where nothing waits for it.
+        // Rounding errors must not accumulate. That of the last turn is removed here, off the critical path.
         let side = at_unit_length(self.side, self.side.length_squared());
         let closeness = 1.0 + self.axis.dot(direction);
-        // Square to the direction whatever rounding has done to the side; but the less is left of this the
-        // nearer it is to straight back.
+        // Perpendicular to the direction, whatever rounding has done to the side. But precision is lost near a turn by
+        // 180°.
         let turned = side - (self.axis + direction) * (side.dot(direction) / closeness);
         self.side = if closeness > 1e-2 {
             turned
         } else {
-            // Straight back, every way is the shortest: the side stays.
+            // For a turn by 180° every way is the shortest: the side stays.
             let turned = if closeness > 1e-6 { turned } else { side };
             (turned - direction * turned.dot(direction))
                 .try_normalize()
@@ -54,18 +54,18 @@ impl Heading {
     }
 }
 
-/// The rotation that takes Y to an axis and X to a side of it.
+/// Rotation that maps Y to an axis and X to a vector across it.
 #[inline]
 pub(super) fn rotation(axis: Vec3A, side: Vec3A) -> Mat3A {
     Mat3A::from_cols(side, axis, side.cross(axis))
 }
 
-/// The rotation in a matrix that may scale and shear, from its first two columns.
+/// Rotation part of a matrix that may scale and shear, from its first two columns.
 #[inline]
 pub(super) fn upright(x: Vec3A, y: Vec3A) -> Mat3A {
     let z = x.cross(y);
     let (square_x, square_z) = (x.length_squared(), z.length_squared());
-    // Nearly all are rotations already, and cheap to tell.
+    // Nearly all matrices are rotations already, which is cheap to check.
     let (x, z) = if is_near_one(square_x) && is_near_one(square_z) {
         (at_unit_length(x, square_x), at_unit_length(z, square_z))
     } else {
@@ -81,8 +81,8 @@ fn is_near_one(square: f32) -> bool {
     (square - 1.0).abs() < 2e-4
 }
 
-/// A vector at unit length, from its square that is nearly one: a step of Newton's, exact to rounding, needs
-/// neither root nor division.
+/// Scales a vector to unit length, given its squared length, which is nearly 1. One step of Newton's method is exact to
+/// rounding, and needs neither a root nor a division.
 #[inline]
 fn at_unit_length(v: Vec3A, square: f32) -> Vec3A {
     v * (1.5 - 0.5 * square)
@@ -93,7 +93,7 @@ mod tests {
     use super::*;
     use bevy::math::{Quat, Vec3};
 
-    /// The rotation of a heading in the world's frame.
+    /// Rotation of a heading, in the frame of end A.
     fn at(heading: &Heading) -> Mat3A {
         rotation(heading.axis, heading.side)
     }
@@ -130,7 +130,7 @@ mod tests {
             let arc = Quat::from_rotation_arc(before.y_axis.into(), direction.into());
             heading.turn_to(direction);
             let now = at(&heading);
-            // Near straight back the shortest way is a matter of rounding.
+            // Near 180° the shortest way depends on rounding.
             if before.y_axis.dot(direction) > -0.9 {
                 assert!(now.x_axis.distance(arc * before.x_axis) < 1e-3, "step {i}");
             }

@@ -1,4 +1,4 @@
-//! Lays the parts of the elements where [`place`](super::place) has found these to be.
+//! Places the parts of elements, where [`place`](super::place) has found the elements.
 
 use super::heading::rotation;
 use super::layout::Part;
@@ -10,7 +10,7 @@ use bevy::mesh::Mesh3d;
 use bevy::prelude::*;
 use std::sync::Arc;
 
-/// Has elements laid anew that nobody has looked after because they or a part of theirs were disabled.
+/// Has elements placed again that were not updated while they or one of their parts were disabled.
 pub(super) fn recall(
     mut enabled: RemovedComponents<Disabled>,
     parts: Query<&ChildOf, With<Part>>,
@@ -24,7 +24,7 @@ pub(super) fn recall(
     }
 }
 
-/// Lays the parts.
+/// Places the parts, and chooses their level of detail.
 pub(super) fn lay(
     mut parts: Query<(
         &Part,
@@ -39,7 +39,7 @@ pub(super) fn lay(
         let Ok(mut placement) = elements.get_mut(parent.parent()) else {
             continue;
         };
-        // Whoever else has changed it, as transform propagation does, is overruled.
+        // A change by other code, such as transform propagation, is overwritten.
         let has_changed = || {
             global.is_changed()
                 || parent.is_changed()
@@ -56,7 +56,7 @@ pub(super) fn lay(
                 shows() || has_changed()
             }
             Due::All => {
-                // In the next frame it may not have its turn.
+                // In the next frame the element may not have its turn.
                 if !placement.seen && shows() {
                     placement.bypass_change_detection().shows = true;
                 }
@@ -67,8 +67,8 @@ pub(super) fn lay(
             continue;
         }
         let placement = &*placement;
-        // Its `Transform` says nothing: propagation has run, and rendering reads this one. What has
-        // not moved must not look changed, or it would be sent to the graphics card again.
+        // `GlobalTransform` is written, because propagation has run and rendering reads it. A part that has not moved
+        // must not look changed, or it would be sent to the graphics card again.
         global.set_if_neq(world(placement, *part));
         if let Some((levels, mesh)) = &mut levels {
             let wanted = &levels.0[usize::from(placement.level)];
@@ -79,7 +79,7 @@ pub(super) fn lay(
     }
 }
 
-/// Whether both are of one mesh; soon told where one is a clone of the other.
+/// Whether both handles are of the same mesh. Fast where one handle is a clone of the other.
 #[inline]
 fn is_same(one: &Handle<Mesh>, other: &Handle<Mesh>) -> bool {
     match (one, other) {
@@ -88,7 +88,7 @@ fn is_same(one: &Handle<Mesh>, other: &Handle<Mesh>) -> bool {
     }
 }
 
-/// Where a part belongs.
+/// Transform of a part in the world.
 #[inline]
 fn world(placement: &Placement, part: Part) -> GlobalTransform {
     let columns = rotation(placement.axis, placement.side);

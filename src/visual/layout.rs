@@ -1,4 +1,4 @@
-//! Where each part lies along the line from end A to end B: lengths alone, no directions.
+//! Where each part is along the line from end A to end B: only lengths, no directions.
 
 use bevy::prelude::*;
 
@@ -11,38 +11,39 @@ pub(super) enum Part {
     Collar,
     Rod,
     Bump,
-    /// Plates between which a coilover's coil sits.
+    /// Plate at end A on which a coilover's coil sits.
     SeatA,
+    /// Plate at end B on which a coilover's coil sits.
     SeatB,
     EyeA,
     EyeB,
-    /// Something of the user's, of this length where it is not scaled, m.
+    /// Something of the user's, of this length when it is not scaled, m.
     Custom(f32),
 }
 
-/// Shorter than this nothing has a direction or a size of its own, m.
+/// Lengths below this have no direction and no size, m.
 pub(super) const SHORT: f32 = 1e-5;
-/// However far they are pulled, it holds this share.
+/// Least share of the tube that holds the rod, however far the ends are pulled apart.
 const LEAST_OVERLAP: f32 = 0.05;
 
-/// Sizes of an element's parts, m; zero for what it has not.
+/// Sizes of an element's parts, m; zero for a part that it does not have.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Layout {
     pub coil_radius: f32,
     pub wire_radius: f32,
     pub tube_radius: f32,
     pub rod_radius: f32,
-    /// How far anything reaches from the line between the ends.
+    /// Greatest distance of any part from the line between the ends.
     pub reach: f32,
     /// Outer radius of the eyes.
     pub eye: f32,
-    /// From an end to where the tube or rod proper begins.
+    /// Distance from an end to where the tube or the rod itself begins.
     pub body: f32,
-    /// From an end to where the coil stands, above its spring seat.
+    /// Distance from an end to where the coil stands, on its spring seat.
     pub foot: f32,
-    /// From end A to the tube's mouth.
+    /// Distance from end A to the tube's mouth.
     pub tube: f32,
-    /// From end B to the rod's tip.
+    /// Distance from end B to the rod's tip.
     pub rod: f32,
     /// Length of the bump rubber.
     pub bump: f32,
@@ -51,25 +52,26 @@ pub(super) struct Layout {
 }
 
 impl Layout {
-    /// From end A to the tube's mouth where the ends are this far apart: the tube does not poke through
-    /// what is at end B.
+    /// Distance from end A to the tube's mouth, for ends at a distance `length`: the tube does not pass through the
+    /// fittings at end B.
     pub fn mouth(&self, length: f32) -> f32 {
         self.tube.min((length - self.foot).max(0.5 * length))
     }
 
-    /// From end B to the rod's tip: it neither leaves the tube nor pokes through its bottom.
+    /// Distance from end B to the rod's tip, for ends at a distance `length`: the rod neither leaves the tube nor
+    /// passes through its bottom.
     pub fn tip(&self, length: f32) -> f32 {
         let least = length - self.mouth(length) * (1.0 - LEAST_OVERLAP);
         self.rod.max(least).min((length - self.body).max(least))
     }
 
-    /// Length of the coil.
+    /// Length of the coil, for ends at a distance `length`.
     pub fn span(&self, length: f32) -> f32 {
         (length - 2.0 * self.foot).max(SHORT)
     }
 
-    /// The middle of a part on the line from end A, and its scale. Meshes of solids are one metre high
-    /// about their middle and of radius one; coils stand on their foot.
+    /// Position of a part's origin on the line from end A, and the scale of its mesh. Meshes of solids are one metre
+    /// high about their middle, with a radius of one. Meshes of coils stand on their foot.
     #[inline]
     pub fn lay(&self, part: Part, length: f32) -> (f32, Vec3) {
         let round = |radius: f32, low: f32, high: f32| {

@@ -1,4 +1,5 @@
-//! Drawn children that were made for an element: for the cameras that see it, and gone with its looks.
+//! Drawn children that the crate makes for an element. They are seen by the same cameras, and are removed with its
+//! looks.
 
 use bevy::camera::visibility::RenderLayers;
 use bevy::ecs::entity_disabling::Disabled;
@@ -6,11 +7,13 @@ use bevy::ecs::query::Allow;
 use bevy::ecs::system::SystemParam;
 use bevy::prelude::*;
 
-/// On a child that was made. What users bring along, such as a [`SpringSkin`](super::SpringSkin), is theirs and has none.
+/// Marks a child that the crate made. A child that users bring along, such as a [`SpringSkin`](super::SpringSkin), does
+/// not have it.
 #[derive(Component, Clone, Copy, Debug, Default)]
 pub(super) struct Made;
 
-/// Makes children of elements and removes them: those of one kind, or with [`Made`] as the kind all of them.
+/// Makes children of elements and removes them. It handles the children of one kind, or all of them with [`Made`] as
+/// the kind.
 #[derive(SystemParam)]
 pub(super) struct Maker<'w, 's, Kind: Component> {
     children: Query<'w, 's, &'static Children, Allow<Disabled>>,
@@ -28,7 +31,7 @@ impl<Kind: Component> Maker<'_, '_, Kind> {
         }
     }
 
-    /// Despawns those of an element.
+    /// Despawns the made children of an element.
     pub fn clear(&mut self, element: Entity) {
         for child in self.children.get(element).into_iter().flatten() {
             if self.made.contains(*child) {
@@ -37,14 +40,14 @@ impl<Kind: Component> Maker<'_, '_, Kind> {
         }
     }
 
-    /// Puts those of an element on its render layers, which Bevy does not hand on to children.
+    /// Puts the made children of an element on its render layers, because Bevy does not hand these on to children.
     pub fn put_on_layers(&mut self, element: Entity) {
         let layers = self.layers.get(element).ok();
         for child in self.children.get(element).into_iter().flatten() {
             if !self.made.contains(*child) {
                 continue;
             }
-            // It may be cleared in the same frame.
+            // The child may be despawned in the same frame.
             let mut child = self.commands.entity(*child);
             match layers {
                 Some(layers) => child.try_insert(layers.clone()),

@@ -1,10 +1,10 @@
-//! What one sees: coils and telescopes between the ends.
+//! Draws elements: coils and telescopes between the ends, and spirals of torsion elements.
 //!
 //! [`parts`] spawns and removes the drawn children of an element with [`made`]. Every frame [`place`] finds where the
-//! ends are, which way [`heading`] turns what is between them and how finely [`views`] finds that worth
-//! drawing, and [`lay`] lays the parts there as [`layout`] says. [`helix`] is the
-//! coil's mesh, [`round_wire`] the material that keeps its wire round when it is stretched, and [`shapes`]
-//! keeps one of each for all equal springs. [`twist`] does all of that for the [`spiral`] of a torsion element.
+//! ends are, with the rotation about the line between them from [`heading`] and the level of detail from [`views`].
+//! [`lay`] then places the parts as [`layout`] says. [`helix`] is the mesh of a coil. [`round_wire`] is the material
+//! that keeps its wire round when it is stretched. [`shapes`] keeps one mesh and one material for all equal springs.
+//! [`twist`] does all of this for the [`spiral`] of a torsion element.
 
 mod coil;
 mod coilover;
@@ -41,19 +41,19 @@ use bevy::mesh::Mesh;
 use bevy::pbr::StandardMaterial;
 use bevy::prelude::*;
 
-/// Draws [`Coil`] and [`Telescope`] between the ends of their element, [`TorsionCoil`] on its axis, and
+/// Draws [`Coil`] and [`Telescope`] between the ends of their element, [`TorsionCoil`] on the axis of its element, and
 /// [`SpringGizmos`].
 ///
-/// Add it after `DefaultPlugins`. It needs Bevy's assets, meshes and PBR materials; where they are missing
-/// it says so once and draws nothing.
+/// Add it after `DefaultPlugins`. It needs Bevy's assets, meshes and PBR materials. If they are missing, it logs an
+/// error once and draws nothing.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct CoiloverVisualPlugin;
 
-/// Says that looks are drawn.
+/// Marks an app in which looks are drawn.
 #[derive(Resource, Clone, Copy, Debug)]
 pub(crate) struct IsDrawn;
 
-/// Updates of what is drawn, in `PostUpdate` after transform propagation.
+/// System set that updates what is drawn. It runs in `PostUpdate` after transform propagation.
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct CoiloverVisualSystems;
 
@@ -76,12 +76,12 @@ impl Plugin for CoiloverVisualPlugin {
             .configure_sets(
                 PostUpdate,
                 CoiloverVisualSystems
-                    // The ends are where they will be drawn only after this; interpolation included.
+                    // Only after this, the ends are where they will be drawn, interpolation included.
                     .after(TransformSystems::Propagate)
                     .after(VisibilitySystems::UpdateFrusta)
                     .before(VisibilitySystems::VisibilityPropagate)
                     .before(VisibilitySystems::CalculateBounds)
-                    // Or a mesh that is new in a frame, as that of a spiral that turns, is missing in its picture.
+                    // Otherwise a mesh that is new in a frame, such as that of a spiral that turns, is not drawn in it.
                     .before(AssetEventSystems)
                     .run_if(can_draw),
             )

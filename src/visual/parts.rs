@@ -1,4 +1,4 @@
-//! The drawn children of an element: spawned when its looks appear or change, gone with them.
+//! The drawn children of an element: spawned when its looks are added or changed, and removed with them.
 
 use super::coil::Coil;
 use super::layout::{Layout, Part, SHORT};
@@ -20,7 +20,7 @@ use bevy::mesh::{Mesh, Mesh3d};
 use bevy::pbr::{MeshMaterial3d, StandardMaterial};
 use bevy::prelude::*;
 
-/// The meshes that a drawn coil changes between with its size on the screen.
+/// The meshes of a drawn coil, one for each level of detail.
 #[derive(Component, Clone, Debug)]
 pub(super) struct Levels(pub CoilMeshes);
 
@@ -74,7 +74,7 @@ impl Workshop<'_, '_> {
     }
 }
 
-/// Drops what cannot be drawn, and says so.
+/// Drops looks that cannot be drawn, and logs why.
 fn sound<'a, L>(
     element: Entity,
     name: &str,
@@ -91,7 +91,7 @@ fn sound<'a, L>(
     }
 }
 
-/// Spawns, renews and removes the parts of elements.
+/// Spawns, replaces and removes the parts of elements.
 pub(super) fn build(
     changed_coils: Query<Entity, Changed<Coil>>,
     changed_telescopes: Query<Entity, Changed<Telescope>>,
@@ -103,7 +103,7 @@ pub(super) fn build(
     mut waiting: Local<EntityHashSet>,
     mut workshop: Workshop,
 ) {
-    // One after the other: a search for either takes twice as long.
+    // One query after the other: a single query for both takes twice as long.
     for element in &changed_coils {
         waiting.insert(element);
     }
@@ -112,17 +112,17 @@ pub(super) fn build(
     }
     waiting.extend(no_coil.read());
     waiting.extend(no_telescope.read());
-    // Its looks can have changed meanwhile.
+    // Its looks may have changed while it was disabled.
     waiting.extend(enabled.read().filter(|element| looks.contains(*element)));
     waiting.retain(|&element| {
         let Ok((line, coil, telescope, mut placement)) = looks.get_mut(element) else {
             // Despawned, and its children with it.
             return false;
         };
-        // Lengths may follow from how far apart the ends are, so they must be there.
+        // Sizes may depend on the distance between the ends, so the ends must exist.
         let length = lines.ends(&line).map(|ends| ends.from.distance(ends.to));
         let bare = coil.is_none() && telescope.is_none();
-        // Ends that coincide say nothing of sizes, unless these are known.
+        // Ends that coincide give no sizes, unless the sizes are already known.
         let tells = |length: &f32| length.is_finite() && (*length > SHORT || placement.is_drawn());
         let Some(length) = length.filter(tells).or(bare.then_some(0.0)) else {
             return true;
@@ -145,7 +145,7 @@ pub(super) fn build(
     });
 }
 
-/// Removes what was drawn of elements that were disabled: parts are entities of their own, and would stay as they were.
+/// Removes the parts of elements that were disabled: parts are entities of their own, and would stay visible.
 pub(super) fn hide_disabled(
     disabled: Query<Entity, (Added<Disabled>, HasParts, Allow<Disabled>)>,
     mut maker: Maker<Made>,
@@ -155,7 +155,7 @@ pub(super) fn hide_disabled(
     }
 }
 
-/// Hands on the render layers of an element, where they have changed or are gone.
+/// Copies the render layers of an element to its parts, where they have changed or were removed.
 pub(super) fn hand_on_layers(
     changed: Query<Entity, (Changed<RenderLayers>, HasParts)>,
     mut removed: RemovedComponents<RenderLayers>,
@@ -166,10 +166,10 @@ pub(super) fn hand_on_layers(
     }
 }
 
-/// An element that has parts.
+/// Filter: an element that has parts.
 type HasParts = Or<(With<Placement>, With<Twist>)>;
 
-/// Takes up what users bring along for an element, and lets go of what is a skin no more.
+/// Takes in the skins that users bring along for an element, and releases entities that are no longer skins.
 pub(super) fn take_skins(
     skins: Query<(Entity, &SpringSkin, Option<&ChildOf>), Changed<SpringSkin>>,
     mut removed: RemovedComponents<SpringSkin>,
@@ -205,10 +205,11 @@ pub(super) fn take_skins(
     }
 }
 
-/// Has what was laid between the ends go to the place that its own `Transform` says.
+/// Releases an entity that was placed between the ends, so that it goes where its own `Transform` says.
 fn let_go(skin: Entity, commands: &mut Commands) {
     let mut skin = commands.entity(skin);
-    // It was passed over as long as it was laid here, and would stay where it is until it is changed.
+    // Transform propagation skipped the entity while it was placed here. It would stay there until its `Transform`
+    // changes.
     skin.remove::<Part>()
         .entry::<Transform>()
         .and_modify(|mut place| place.set_changed());

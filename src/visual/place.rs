@@ -1,4 +1,4 @@
-//! Where every element is in this frame, and what of it is worth drawing there.
+//! Finds where every element is in this frame, and what of it is worth drawing there.
 
 use super::heading::{Heading, upright};
 use super::layout::{Layout, Part, SHORT};
@@ -9,32 +9,33 @@ use bevy::ecs::system::SystemParam;
 use bevy::math::{Mat3A, Vec3A};
 use bevy::prelude::*;
 
-/// An element out of everyone's sight is placed every so many frames only. It may still throw a shadow
-/// into the picture, so it is not left alone altogether. How one in sight is seen is found out as seldom: for
-/// that long it may be drawn a little too finely or too coarsely, or once it is out of sight be laid for
-/// nothing.
+/// An element that no camera sees is placed only once in this many frames. It is not left alone altogether, because it
+/// may cast a shadow into the picture. The visibility and the level of detail of an element in sight are updated as
+/// seldom: in between, it may be drawn a little too finely or too coarsely, or be placed in vain after it has gone out
+/// of sight.
 const SELDOM: u32 = 8;
 
 /// Where an element is drawn.
 #[derive(Component, Clone, Copy, Debug, Default)]
-// Worked out anew wherever a copy stands; a scene does not know it.
+// Computed again for a copy of the entity, and not stored in scenes.
 #[component(clone_behavior = Ignore)]
 pub struct Placement {
     pub(super) due: Due,
     /// Level of detail.
     pub(super) level: u8,
-    /// Its coil has been shorter than its turns are thick, and that was said.
+    /// Whether a warning was logged that the coil is shorter than all its turns are thick.
     squeezed: bool,
-    /// It was in sight when that was last found out.
+    /// Whether the element was in sight when that was last checked.
     pub(super) seen: bool,
-    /// Some part of it was in some view in the last frame, be it for its shadow.
+    /// Whether some part of it was in some view in the last frame, even if only for its shadow.
     pub(super) shows: bool,
-    /// The state of the views for which sight and level are right.
+    /// The state of the views for which `seen` and `level` are right.
     looked: Option<u32>,
-    /// From end to end, m.
+    /// Distance from end to end, m.
     pub(super) length: f32,
-    /// In the world: unit vectors along the element and across it.
+    /// Unit vector along the element, in the world.
     pub(super) axis: Vec3A,
+    /// Unit vector across the element, in the world.
     pub(super) side: Vec3A,
     pub(super) ends: Ends,
     pub(super) layout: Layout,
@@ -43,40 +44,44 @@ pub struct Placement {
     first: Option<f32>,
 }
 
-/// Which parts of an element have to be laid anew in a frame. Those that have changed always have.
+/// Which parts of an element must be placed again in this frame. Except for `Nowhere`, parts that other code has
+/// changed are placed as well.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum Due {
-    /// Not even those: nobody knows where its ends are.
+    /// No parts: it is not known where the ends are.
     #[default]
     Nowhere,
-    /// None: all lie where they should,
+    /// No parts: all are where they should be.
     Laid,
-    /// or it does not matter where they lie, for none was seen in the last frame.
+    /// No parts: none was seen before, so the placement was not updated. It is updated in the frame after one is seen.
     Hidden,
-    /// Those that were seen in the last frame.
+    /// The parts that were seen in the last frame.
     Visible,
+    /// All parts.
     All,
 }
 
-/// What a placement follows from.
+/// What a placement is computed from.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Ends {
-    /// Two axes of end A, scaled as that is.
+    /// X axis of end A in the world, scaled as end A is.
     x: Vec3A,
+    /// Y axis of end A in the world, scaled as end A is.
     y: Vec3A,
-    /// Both anchors.
+    /// Anchor of end A in the world.
     pub from: Vec3A,
+    /// Anchor of end B in the world.
     pub to: Vec3A,
 }
 
 impl Ends {
-    /// How end A is turned.
+    /// Rotation of end A.
     #[inline]
     pub fn turn(&self) -> Mat3A {
         upright(self.x, self.y)
     }
 
-    /// Whether they are the same, found out without a jump.
+    /// Whether both are the same, computed without a branch.
     #[inline]
     fn are(&self, other: &Self) -> bool {
         let same = self.from.cmpeq(other.from)
@@ -88,7 +93,7 @@ impl Ends {
 }
 
 impl Placement {
-    /// Gives an element new looks.
+    /// Sets the layout of new looks.
     pub(super) fn dress(&mut self, layout: Layout) {
         self.layout = layout;
         self.level = 0;
@@ -97,22 +102,23 @@ impl Placement {
         self.recall();
     }
 
-    /// Whether it has been drawn before, so that its sizes are known.
+    /// Whether the element has been drawn before, so that its sizes are known.
     pub(super) fn is_drawn(&self) -> bool {
         self.first.is_some()
     }
 
-    /// Length when first drawn, m: this one, if that is now.
+    /// Length when first drawn, m. If the element was not drawn before, it is `length`.
     pub(super) fn first(&mut self, length: f32) -> f32 {
         *self.first.get_or_insert(length.max(SHORT))
     }
 
-    /// Lays all parts anew, whatever has been laid before.
+    /// Has all parts placed again, whatever was placed before.
     pub(super) fn recall(&mut self) {
         self.due = Due::Nowhere;
     }
 
-    /// Follows the ends, and says what follows from that. Some frames have their turn.
+    /// Updates the placement from the ends, and returns which parts to place. `has_turn`: in this frame, visibility and
+    /// level of detail of the element are updated.
     #[inline(always)]
     fn find(&mut self, ends: Ends, views: &Views, has_turn: bool) -> Due {
         let rests = matches!(self.due, Due::Laid | Due::All) && ends.are(&self.ends);
@@ -125,7 +131,7 @@ impl Placement {
             return Due::Nowhere;
         }
         let before = self.level;
-        // What comes into sight is seen at once.
+        // An element that comes into sight is seen at once.
         if has_turn || !self.seen {
             let middle = ends.from + 0.5 * between;
             let sight = views.sight(middle, 0.5 * length + self.layout.reach);
@@ -141,7 +147,7 @@ impl Placement {
             return Due::Laid;
         }
         let shows = self.shows;
-        // Found out anew in this frame, unless all parts are laid whatever they show.
+        // `lay` sets it again in this frame, unless all parts are placed whether they show or not.
         self.shows &= has_turn || self.seen;
         if !(has_turn || self.seen || shows || self.due == Due::Nowhere) {
             return Due::Hidden;
@@ -163,7 +169,7 @@ impl Placement {
         }
     }
 
-    /// Whether the coil's turns have become shorter than they are thick since this was last asked.
+    /// Whether the coil has become shorter than all its turns are thick since the last call.
     #[inline]
     fn has_become_squeezed(&mut self) -> bool {
         let has_moved = matches!(self.due, Due::Visible | Due::All);
@@ -174,25 +180,25 @@ impl Placement {
     }
 }
 
-/// An element as it says itself where its ends are.
+/// The components that say where the ends of an element are.
 #[derive(QueryData)]
 pub(super) struct Line {
     spring: Option<&'static Spring>,
     damper: Option<&'static Damper>,
     pair: Option<&'static SpringDamper>,
     anchors: Option<&'static Anchors>,
-    /// It has not been stepped yet: here are its anchors.
+    /// The anchors of an element that has not been stepped yet.
     points: Option<&'static WorldAnchors>,
 }
 
-/// Where entities are in this frame; parts, which follow, aside.
+/// Where entities are in this frame, except for parts, which follow the elements.
 #[derive(SystemParam)]
 pub(super) struct Lines<'w, 's> {
     globals: Query<'w, 's, &'static GlobalTransform, Without<Part>>,
 }
 
 impl Lines<'_, '_> {
-    /// Where the ends of an element are.
+    /// Where the ends of an element are; `None` if an end has no `GlobalTransform`.
     #[inline(always)]
     pub fn ends(&self, line: &LineItem) -> Option<Ends> {
         let (a, b) = if let Some(spring) = line.spring {
@@ -225,7 +231,7 @@ impl Lines<'_, '_> {
     }
 }
 
-/// Finds out where the elements are and how they are seen.
+/// Finds where the elements are and how they are seen.
 pub(super) fn place(
     mut elements: Query<(Entity, Line, &mut Placement)>,
     lines: Lines,

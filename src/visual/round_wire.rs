@@ -11,8 +11,8 @@ use bevy::render::render_resource::{AsBindGroup, ShaderType};
 use bevy::shader::ShaderRef;
 use std::path::{Path, PathBuf};
 
-/// A [`StandardMaterial`] for meshes of [`Helix`] that rebuilds the wire on the graphics card: scale the
-/// coil along its axis as you like, its wire stays round, in the picture and in shadows.
+/// A [`StandardMaterial`] for meshes of [`Helix`] that rebuilds the wire on the graphics card. The coil can be scaled
+/// along its axis, and its wire stays round, in the picture and in shadows.
 ///
 /// ```
 /// # use bevy::prelude::*;
@@ -35,13 +35,13 @@ use std::path::{Path, PathBuf};
 /// ```
 pub type RoundWireMaterial = ExtendedMaterial<StandardMaterial, RoundWire>;
 
-/// What [`RoundWireMaterial`] knows of the coil: the very [`Helix`] whose mesh it is put on.
+/// The extension of [`RoundWireMaterial`]: the coil on whose mesh the material is put. It must be the same [`Helix`].
 #[derive(Asset, AsBindGroup, Reflect, Clone, Copy, Debug, Default, PartialEq)]
 #[type_path = "bevy_coilover"]
 #[reflect(Default, Debug, PartialEq, Clone)]
 #[uniform(100, RoundWireUniform)]
 pub struct RoundWire {
-    /// The coil at the length where its model is not scaled.
+    /// The coil, with the length at which its model is not scaled.
     pub helix: Helix,
 }
 
@@ -70,7 +70,7 @@ impl From<&RoundWire> for RoundWireUniform {
     }
 }
 
-/// Where the shader is embedded, so that it is found wherever the binary runs, and its source.
+/// Path of the embedded shader, which is found wherever the binary runs, and its source.
 const SHADER: (&str, &str) = crate::compat::ROUND_WIRE;
 
 fn shader() -> ShaderRef {
@@ -91,7 +91,7 @@ impl MaterialExtension for RoundWire {
     }
 }
 
-/// Adds the material as far as the app can draw it; adds nothing where there are no assets.
+/// Adds as much of the material as the app can draw; nothing if the app has no assets.
 pub(super) fn add(app: &mut App) {
     let Some(embedded) = app.world().get_resource::<EmbeddedAssetRegistry>() else {
         return;

@@ -1,4 +1,4 @@
-//! Meshes and materials: one of each per shape and paint, so that equal springs are drawn in one batch.
+//! Meshes and materials: one for each shape and paint, so that equal springs are drawn in one batch.
 
 use super::coil::Coil;
 use super::helix::{Handedness, Helix, HelixEnds, HelixMeshBuilder};
@@ -11,25 +11,25 @@ use bevy::platform::collections::HashMap;
 use bevy::prelude::*;
 use std::sync::Arc;
 
-/// Segments per turn and around the wire, from near to far.
+/// Number of segments per turn and around the wire, from near to far.
 const DETAIL: [(u32, u32); 4] = [(44, 20), (28, 12), (18, 8), (12, 4)];
-/// Shapes and paints kept before the first search for those that nobody uses any more.
+/// Number of shapes and paints that are kept before the first search for unused ones.
 const KEPT: usize = 64;
 
 /// The meshes of one coil, from near to far.
 pub(super) type CoilMeshes = Arc<[Handle<Mesh>; DETAIL.len()]>;
 
-/// Everything of a coil but its length and paint.
+/// Everything about a coil except its length and paint.
 type CoilKey = ([u32; 3], HelixEnds, Handedness);
-/// A colour, bit by bit: colours brighter than white are not cut off.
+/// A linear colour as bits. Colours brighter than white are not clamped.
 type Packed = [u32; 4];
 
-/// How a surface takes light.
+/// How a surface reflects light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) enum Finish {
     /// Paint on metal.
     Enamel,
-    /// Ground or plated.
+    /// Ground or plated metal.
     Steel,
     Rubber,
 }
@@ -56,7 +56,7 @@ impl Finish {
     }
 }
 
-/// What has been made so far.
+/// The meshes and materials that have been made so far.
 #[derive(Resource)]
 pub(super) struct Shapes {
     coils: HashMap<CoilKey, CoilMeshes>,
@@ -64,7 +64,7 @@ pub(super) struct Shapes {
     paints: HashMap<(Packed, Finish), Handle<StandardMaterial>>,
     cylinder: Option<Handle<Mesh>>,
     eye: Option<Handle<Mesh>>,
-    /// How many may be kept before the next search for unused ones.
+    /// Number of entries at which the next search for unused ones starts.
     room: usize,
 }
 
@@ -90,7 +90,7 @@ fn packed(color: Color) -> Packed {
     LinearRgba::from(color).to_f32_array().map(f32::to_bits)
 }
 
-/// A coil as it is drawn: one metre high, so that the scale along its axis is its length.
+/// The coil of the mesh: one metre high, so that the scale along its axis is the drawn length.
 fn unit(coil: &Coil) -> Helix {
     coil.helix(1.0)
 }
@@ -145,7 +145,7 @@ impl Shapes {
             .clone()
     }
 
-    /// One metre high about its middle, and of radius one.
+    /// Cylinder of height 1 m about its middle, with a radius of 1 m.
     pub fn cylinder(&mut self, meshes: &mut Assets<Mesh>) -> Handle<Mesh> {
         self.cylinder
             .get_or_insert_with(|| {
@@ -154,7 +154,7 @@ impl Shapes {
             .clone()
     }
 
-    /// A ring of outer radius one about X.
+    /// Ring about the X axis with an outer radius of 1 m.
     pub fn eye(&mut self, meshes: &mut Assets<Mesh>) -> Handle<Mesh> {
         self.eye
             .get_or_insert_with(|| {
@@ -164,7 +164,8 @@ impl Shapes {
             .clone()
     }
 
-    /// A game that changes shapes or paints all the time must not fill the memory with old ones.
+    /// Removes unused entries when there are many, because a game that changes shapes or paints all the time must not
+    /// fill the memory.
     fn forget_unused(&mut self) {
         if self.coils.len() + self.wires.len() + self.paints.len() < self.room {
             return;

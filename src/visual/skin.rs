@@ -1,16 +1,20 @@
 use bevy::prelude::*;
 
-/// On a child of a [`Spring`](crate::Spring), [`Damper`](crate::Damper) or
-/// [`SpringDamper`](crate::SpringDamper): whatever it draws, with any mesh and any material, is laid
-/// between the ends, its +Y from end A to end B, scaled along it.
+/// On a child of a [`Spring`](crate::Spring), [`Damper`](crate::Damper) or [`SpringDamper`](crate::SpringDamper):
+/// whatever the child draws, with any mesh and any material, is placed between the ends of the element. Its +Y points
+/// from end A to end B, and it is scaled along that axis.
 ///
-/// The mesh has to stand on its origin: its foot at y = 0, its top at y = [`length`](Self::length). Bevy's cylinder, say,
-/// has its middle there unless it is made with `CylinderAnchor::Bottom`. The element gets the `Transform` and `Visibility`
-/// that a parent of drawn entities needs. Render layers stay yours: those of the element are not handed on to it.
+/// The mesh must stand on its origin: its foot at y = 0, its top at y = [`length`](Self::length). Bevy's cylinder has
+/// its middle at the origin, unless it is made with `CylinderAnchor::Bottom`. The element gets the `Transform` and
+/// `Visibility` that a parent of drawn entities needs. The render layers of the child stay yours: those of the element
+/// are not copied to it.
 ///
-/// Once this component is removed, the child stands where its own `Transform` says.
+/// If `length` is not finite and above zero, or the entity has no parent, a warning is logged and the child is not
+/// placed.
 ///
-/// A mesh scaled like that flattens or fattens its wire; [`Coil`](crate::Coil) does not.
+/// Once this component is removed, the child goes where its own `Transform` says.
+///
+/// Such scaling flattens or thickens the wire of a mesh; that of a [`Coil`](crate::Coil) stays round.
 ///
 /// ```
 /// # use bevy::prelude::*;
@@ -33,7 +37,7 @@ use bevy::prelude::*;
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 #[require(Transform, Visibility)]
 pub struct SpringSkin {
-    /// Height of what is drawn, from its foot at the origin, where it is not scaled, m.
+    /// Height of the mesh, from its foot at the origin, when it is not scaled, m.
     pub length: f32,
 }
 

@@ -1,4 +1,4 @@
-//! The strip of a spiral spring as a mesh: about Y, its outer end on X.
+//! Mesh of the strip of a spiral spring: about the Y axis, with its outer end on the X axis.
 
 use super::helix::Handedness;
 use super::torsion_coil::TorsionCoil;
@@ -7,15 +7,15 @@ use bevy::mesh::{Indices, Mesh, PrimitiveTopology};
 use bevy::prelude::*;
 use std::f32::consts::TAU;
 
-/// Segments of a turn.
+/// Number of segments per turn.
 const SEGMENTS: f32 = 40.0;
-/// However far it is unwound, so much of a turn is left.
+/// Number of turns that are left, however far the spring is unwound.
 const LEAST_TURNS: f32 = 0.25;
 
-/// Meshes are made for whole degrees: so many in a full turn.
+/// Number of twist steps in a full turn: meshes are made for whole degrees.
 const STEPS: f32 = 360.0;
 
-/// Twist from rest in whole steps, positive where it winds up.
+/// Twist from rest in whole steps, positive if it winds the spring up.
 pub(super) fn step(twist: f32) -> i32 {
     (twist * (STEPS / TAU)).round() as i32
 }
@@ -25,7 +25,7 @@ fn angle(coil: &TorsionCoil, step: i32) -> f32 {
     TAU * (coil.turns + step as f32 / STEPS).clamp(LEAST_TURNS, 2.0 * coil.turns + 1.0)
 }
 
-/// 1 where the strip goes outwards by the right hand about the axis, else -1.
+/// 1 if the strip goes outwards by the right-hand rule about the axis, else −1.
 pub(super) fn hand(coil: &TorsionCoil) -> f32 {
     match coil.handedness {
         Handedness::Right => 1.0,
@@ -33,19 +33,19 @@ pub(super) fn hand(coil: &TorsionCoil) -> f32 {
     }
 }
 
-/// The strip at a twist.
+/// Mesh of the strip at a twist step.
 pub(super) fn mesh(coil: &TorsionCoil, step: i32) -> Mesh {
     let hand = hand(coil);
     let whole = angle(coil, step);
     let count = (whole / TAU * SEGMENTS).ceil() as u32;
     let mut strip = Strip::default();
     for i in 0..=count {
-        // Share of the way from the inner end.
+        // Share of the way from the inner end to the outer end.
         let share = i as f32 / count as f32;
         let radius = coil.arbor_radius + (coil.radius - coil.arbor_radius) * share;
         let turned = -hand * whole * (1.0 - share);
         let (sine, cosine) = turned.sin_cos();
-        // Positive about Y is from X towards -Z.
+        // A positive rotation about Y goes from X towards −Z.
         let outward = Vec3::new(cosine, 0.0, -sine);
         strip.ring(radius * outward, outward, coil);
         if i > 0 {
@@ -56,7 +56,7 @@ pub(super) fn mesh(coil: &TorsionCoil, step: i32) -> Mesh {
     strip.mesh()
 }
 
-/// A rectangle's corners, and the faces that leave each: outer side, top, inner side, bottom.
+/// Number of corners of the rectangular section. Each corner starts a face: outer side, top, inner side, bottom.
 const SIDES: usize = 4;
 const VERTICES: u32 = 2 * SIDES as u32;
 
@@ -69,7 +69,7 @@ struct Strip {
 }
 
 impl Strip {
-    /// The section at one place of the strip.
+    /// Adds the section at one place of the strip.
     fn ring(&mut self, middle: Vec3, outward: Vec3, coil: &TorsionCoil) {
         let (thick, wide) = (0.5 * coil.thickness * outward, 0.5 * coil.width * Vec3::Y);
         let corners = [
@@ -88,7 +88,7 @@ impl Strip {
         }
     }
 
-    /// Faces between the last two sections.
+    /// Adds the faces between the last two sections.
     fn sides(&mut self) {
         let here = self.positions.len() as u32 - VERTICES;
         let before = here - VERTICES;
@@ -103,7 +103,7 @@ impl Strip {
         }
     }
 
-    /// What closes both ends.
+    /// Adds the faces that close both ends.
     fn caps(&mut self, hand: f32) {
         let last = self.positions.len() as u32 - VERTICES;
         for (ring, end) in [(0, -1.0), (last, 1.0)] {
@@ -119,7 +119,7 @@ impl Strip {
         }
     }
 
-    /// Two triangles, turned so that they face the way of their normal.
+    /// Adds two triangles that face the same way as the normal.
     fn face(&mut self, [a, b, c, d]: [u32; 4]) {
         let at = |i: u32| self.positions[i as usize];
         let faced = (at(b) - at(a)).cross(at(c) - at(a));
@@ -189,7 +189,7 @@ mod tests {
             let Some(Indices::U32(indices)) = mesh.indices() else {
                 panic!("indices");
             };
-            // Of a closed surface that looks outwards, the volume is positive: here, that of the strip.
+            // A closed surface with outward faces has a positive volume: here, that of the strip.
             let volume: f32 = indices
                 .chunks(3)
                 .map(|t| {

@@ -2,11 +2,11 @@ use super::coil::rounded;
 use super::place::Placement;
 use bevy::prelude::*;
 
-/// Draws a telescoping damper between the ends of the element on the same entity: a tube fixed to end A
-/// and a rod fixed to end B that slides into it.
+/// Draws a telescoping damper between the ends of the element on the same entity: a tube fixed to end A, and a rod
+/// fixed to end B that slides into the tube.
 ///
-/// Both keep their lengths as long as the ends stay within the stroke. Pulled or pushed beyond it, the rod
-/// or the tube is drawn longer or shorter than it is, rather than apart or through the other end.
+/// Tube and rod keep their lengths while the ends stay within the stroke. Beyond it, the tube or the rod is drawn
+/// longer or shorter than it is, so that they do not come apart or pass through the other end.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
 #[type_path = "bevy_coilover"]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
@@ -14,30 +14,32 @@ use bevy::prelude::*;
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 #[require(Transform, Visibility, Placement)]
 pub struct Telescope {
-    /// Of the tube, m.
+    /// Radius of the tube, m; a share of the length if the telescope is [fitted](Self::fitted()).
     pub tube_radius: f32,
-    /// Of the rod, m; less than the tube's.
+    /// Radius of the rod, less than that of the tube, m; a share of the length if the telescope is
+    /// [fitted](Self::fitted()).
     pub rod_radius: f32,
-    /// From end A to the tube's mouth, m; `None` is what the stroke allows.
+    /// Distance from end A to the tube's mouth, m; `None` for what the stroke allows.
     pub tube_length: Option<f32>,
-    /// From end B to the rod's tip in the tube, m; `None` is what the stroke needs.
+    /// Distance from end B to the rod's tip in the tube, m; `None` for what the stroke needs.
     pub rod_length: Option<f32>,
-    /// From shortest to longest, half of it either side of the length when first drawn, m; `None` is half
-    /// of that length.
+    /// Distance from the shortest to the longest length, m, half of it on either side of the length when first drawn.
+    /// `None` for half of that length.
     pub stroke: Option<f32>,
-    /// Draws an eye at each end.
+    /// Whether an eye is drawn at each end.
     pub eyes: bool,
-    /// Draws a rubber on the rod that the tube's mouth runs into.
+    /// Whether a rubber is drawn on the rod, which stops the tube's mouth.
     pub bump_rubber: bool,
-    /// Paint of the tube.
+    /// Colour of the tube.
     pub color: Color,
-    /// Its radii and lengths are shares of the length between the ends when first drawn, not metres; see
+    /// Whether radii and lengths are shares of the length between the ends when first drawn, and not metres; see
     /// [`Telescope::fitted()`].
     pub fitted: bool,
 }
 
 impl Default for Telescope {
-    /// Of the size of a car's damper, whatever the scene; see [`Telescope::fitted()`].
+    /// A telescope of the size of a car's damper, whatever the size of the scene; [`Telescope::fitted()`] is one that
+    /// fits.
     fn default() -> Self {
         Self {
             tube_radius: 0.062,
@@ -54,7 +56,7 @@ impl Default for Telescope {
 }
 
 impl Telescope {
-    /// A telescope of these radii, m.
+    /// Returns a telescope with these radii of tube and rod, m.
     pub fn new(tube_radius: f32, rod_radius: f32) -> Self {
         Self {
             tube_radius,
@@ -63,8 +65,9 @@ impl Telescope {
         }
     }
 
-    /// A telescope that fits its scene: its tube's radius is 4.8 % of the length between the ends when first drawn, its
-    /// rod's 2 %. Lengths that are set count in the same measure: `with_stroke(0.5)` is half of that length.
+    /// Returns a telescope that fits its scene. The radius of its tube is 4.8 %, and that of its rod 2 %, of the length
+    /// between the ends when first drawn. Lengths that you set are shares as well: `with_stroke(0.5)` is half of that
+    /// length.
     pub fn fitted() -> Self {
         Self {
             tube_radius: 0.048,
@@ -74,7 +77,7 @@ impl Telescope {
         }
     }
 
-    /// In metres, where the ends are `first` apart when first drawn.
+    /// Returns the telescope in metres, for ends that are `first` metres apart when first drawn.
     pub(super) fn at(self, first: f32) -> Self {
         let scale = if self.fitted { rounded(first) } else { 1.0 };
         Self {
@@ -88,26 +91,26 @@ impl Telescope {
         }
     }
 
-    /// Sets the stroke from shortest to longest, m.
+    /// Sets the stroke, the distance from the shortest to the longest length, m.
     pub const fn with_stroke(mut self, stroke: f32) -> Self {
         self.stroke = Some(stroke);
         self
     }
 
-    /// Draws eyes and a bump rubber too.
+    /// Draws eyes and a bump rubber as well.
     pub const fn with_fittings(mut self) -> Self {
         self.eyes = true;
         self.bump_rubber = true;
         self
     }
 
-    /// Sets the paint of the tube.
+    /// Sets the colour of the tube.
     pub const fn with_color(mut self, color: Color) -> Self {
         self.color = color;
         self
     }
 
-    /// Whether it can be drawn, and if not, which field is wrong and how.
+    /// Checks whether it can be drawn. The error says which field is wrong, and how.
     pub(super) fn check(&self) -> Result<(), String> {
         for (field, value) in [
             ("tube_radius", Some(self.tube_radius)),

@@ -5,9 +5,9 @@ use bevy::prelude::*;
 /// Draws a spiral spring, as in a clock, for the [`TorsionSpring`](crate::TorsionSpring),
 /// [`TorsionDamper`](crate::TorsionDamper) or [`TorsionSpringDamper`](crate::TorsionSpringDamper) on the same entity.
 ///
-/// A strip lies in the plane across the element's axis. Its inner end is fixed to an arbor, a pin on body A; its outer
-/// end is fixed to body B and goes around with it. So the spiral has its [`turns`](Self::turns) at the rest angle, and
-/// more or fewer as it is twisted.
+/// The strip lies in the plane perpendicular to the element's axis. Its inner end is fixed to an arbor, a pin on body
+/// A. Its outer end is fixed to body B and moves around with it. So the spiral has its [`turns`](Self::turns) at the
+/// rest angle, and more or fewer of them when it is twisted.
 ///
 /// ```
 /// # use bevy::prelude::*;
@@ -27,29 +27,31 @@ use bevy::prelude::*;
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 #[require(Transform, Visibility, Twist)]
 pub struct TorsionCoil {
-    /// Middle of the spiral, in body A's frame, m: a point of the hinge.
+    /// Middle of the spiral, in body A's frame, m: a point on the axis of the hinge.
     pub center: Vec3,
-    /// From the axis to the outer end, m, or a share if it is [fitted](Self::fitted).
+    /// Radius from the axis to the outer end, m; a share if the spiral is [fitted](Self::fitted).
     pub radius: f32,
-    /// From the axis to the inner end, which is the arbor's radius, m, or a share.
+    /// Radius from the axis to the inner end, which is the arbor's radius, m; a share if the spiral is
+    /// [fitted](Self::fitted).
     pub arbor_radius: f32,
-    /// Of the strip, along the axis, m, or a share.
+    /// Size of the strip along the axis, m; a share if the spiral is [fitted](Self::fitted).
     pub width: f32,
-    /// Of the strip, across the axis, m, or a share.
+    /// Size of the strip across the axis, m; a share if the spiral is [fitted](Self::fitted).
     pub thickness: f32,
-    /// Turns of the strip where it has no moment.
+    /// Number of turns of the strip at the rest angle.
     pub turns: f32,
     /// `Right`: a positive angle winds it up. `Left`: a positive angle unwinds it.
     pub handedness: Handedness,
-    /// Paint of the strip.
+    /// Colour of the strip.
     pub color: Color,
-    /// Its sizes are shares of the size of what it turns, not metres. That size is how far body B, or the farthest point
-    /// of its collider, is from the centre when first drawn; 0.5 m where both are there and B has no collider.
+    /// Whether the sizes are shares of the size of what the spring turns, and not metres. The size of what it turns is
+    /// the distance from the centre to body B, or to the farthest point of body B's collider, when first drawn. It is
+    /// 0.5 m if body B is at the centre and has no collider.
     pub fitted: bool,
 }
 
 impl Default for TorsionCoil {
-    /// Fits its scene: a quarter as large as what it turns. See [`fitted`](Self::fitted).
+    /// A spiral that fits its scene: a quarter as large as what it turns. See [`fitted`](Self::fitted).
     fn default() -> Self {
         Self {
             center: Vec3::ZERO,
@@ -65,12 +67,12 @@ impl Default for TorsionCoil {
     }
 }
 
-/// Beyond this a mesh gets too large to draw.
+/// Most turns of a spiral. With more, the mesh gets too large to draw.
 const MOST_TURNS: f32 = 100.0;
 
 impl TorsionCoil {
-    /// A spiral of this radius (m) and so many turns. The arbor and the strip follow from the radius; set them otherwise
-    /// where that does not suit.
+    /// Returns a spiral of this radius (m) and number of turns. The sizes of arbor and strip follow from the radius;
+    /// set them yourself if that does not suit.
     pub fn new(radius: f32, turns: f32) -> Self {
         let shares = Self::default();
         let scale = radius / shares.radius;
@@ -87,19 +89,19 @@ impl TorsionCoil {
         self
     }
 
-    /// Sets the turns that it has where it has no moment.
+    /// Sets the number of turns at the rest angle.
     pub const fn with_turns(mut self, turns: f32) -> Self {
         self.turns = turns;
         self
     }
 
-    /// Sets which way it is wound.
+    /// Sets the direction in which the strip is wound.
     pub const fn with_handedness(mut self, handedness: Handedness) -> Self {
         self.handedness = handedness;
         self
     }
 
-    /// Sets the paint of the strip.
+    /// Sets the colour of the strip.
     pub const fn with_color(mut self, color: Color) -> Self {
         self.color = color;
         self
@@ -115,7 +117,7 @@ impl TorsionCoil {
         }
     }
 
-    /// In metres, where what it turns is of this size (m).
+    /// Returns the spiral in metres, where what it turns has this size (m).
     pub(super) fn at(self, size: f32) -> Self {
         if !self.fitted {
             return self;
@@ -126,7 +128,7 @@ impl TorsionCoil {
         }
     }
 
-    /// Whether it can be drawn, and if not, which field is wrong and how.
+    /// Checks whether it can be drawn. The error says which field is wrong, and how.
     pub(super) fn check(&self) -> Result<(), String> {
         for (field, value) in [
             ("radius", self.radius),

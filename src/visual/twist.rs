@@ -1,4 +1,4 @@
-//! Spirals of torsion elements: their parts are spawned, turned with the bodies, and wound up.
+//! Spirals of torsion elements: spawns their parts, turns them with the bodies, and winds them up.
 
 use super::made::Maker;
 use super::shapes::{Finish, Shapes};
@@ -19,37 +19,39 @@ use bevy::prelude::*;
 use bevy_rapier3d::prelude::Collider;
 use std::f32::consts::TAU;
 
-/// A spiral out of everyone's sight is turned every so many frames only: it may throw a shadow into the picture.
+/// A spiral that no camera sees is turned only once in this many frames, because it may cast a shadow into the picture.
 const SELDOM: u32 = 8;
-/// Of what a spiral turns where nothing tells, m.
+/// Size of what a spiral turns, if it cannot be measured, m.
 const SIZE: f32 = 0.5;
-/// Meshes kept before the first search for those that nobody shows: a spring that swings shows the same few again.
+/// Number of meshes that are kept before the first search for unused ones. A spring that swings shows the same few
+/// again.
 const KEPT: usize = 256;
 
 /// Where the spiral of an element is.
 #[derive(Component, Clone, Copy, Debug, Default)]
-// Worked out anew wherever a copy stands; a scene does not know it.
+// Computed again for a copy of the entity, and not stored in scenes.
 #[component(clone_behavior = Ignore)]
 pub struct Twist {
-    /// In metres; `None` while it is not drawn.
+    /// The spiral in metres; `None` while it is not drawn.
     coil: Option<TorsionCoil>,
-    /// Size of what it turns when first drawn, m.
+    /// Size of what the spiral turns, when first drawn, m.
     first: Option<f32>,
-    /// What its place follows from.
+    /// The pose from which `places` were computed.
     from: Option<Pose>,
-    /// In the world.
+    /// Transforms of the parts in the world, in the order of [`Winding`].
     places: [GlobalTransform; 3],
     step: i32,
 }
 
-/// What a place follows from.
+/// What the places of the parts are computed from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Pose {
     rotation: Quat,
     center: Vec3,
     axis: Vec3,
-    /// Twist of body B against body A, and without moment, rad.
+    /// Twist of body B against body A, rad.
     angle: f32,
+    /// Twist without moment, rad.
     rest: f32,
 }
 
@@ -62,11 +64,11 @@ pub(super) enum Winding {
     Pin,
 }
 
-/// The step of its twist that a strip shows.
+/// The twist step that a strip shows.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Wound(i32);
 
-/// A torsion element as it says itself what turns against what.
+/// The components that say what a torsion element connects.
 #[derive(QueryData)]
 pub(super) struct Turn {
     spring: Option<&'static TorsionSpring>,
@@ -76,7 +78,7 @@ pub(super) struct Turn {
 }
 
 impl TurnItem<'_, '_> {
-    /// Both ends, the axis, and the rest angle if it has one.
+    /// Returns both ends, the axis, and the rest angle if the element has one.
     fn element(&self) -> Option<(Entity, Entity, Vec3, Option<f32>)> {
         if let Some(s) = self.spring {
             Some((s.body_a, s.body_b, s.axis, s.rest_angle))
@@ -104,7 +106,7 @@ impl Turns<'_, '_> {
         let (rotation, other) = (a.rotation(), b.rotation());
         let between = rotation.inverse() * other;
         let twist = 2.0 * between.xyz().dot(axis).atan2(between.w);
-        // What is drawn may be between two steps, so the read-out tells full turns only.
+        // The drawn pose may lie between two steps, so only the number of full turns is taken from the readout.
         let full = turn.readout.map_or(0.0, |r| r.length);
         let angle = twist + TAU * ((full - twist) / TAU).round();
         let center = a.transform_point(center);
@@ -119,7 +121,7 @@ impl Turns<'_, '_> {
         (is_finite && pose.rest.is_finite()).then_some(pose)
     }
 
-    /// Size of what is turned, m.
+    /// Size of what the element turns, m.
     fn size(&self, turn: &TurnItem, pose: &Pose) -> Option<f32> {
         let (_, body, ..) = turn.element()?;
         let at = self.globals.get(body).ok()?;
@@ -134,7 +136,7 @@ impl Turns<'_, '_> {
     }
 }
 
-/// Strips at whole steps of their twist, so that equal springs share them.
+/// Meshes of strips at whole twist steps, so that equal springs share them.
 #[derive(Resource)]
 pub(super) struct Spirals {
     meshes: HashMap<([u32; 5], bool, i32), Handle<Mesh>>,
@@ -169,7 +171,7 @@ impl Spirals {
     }
 }
 
-/// Spawns, renews and removes the parts of spirals.
+/// Spawns, replaces and removes the parts of spirals.
 pub(super) fn wind(
     changed: Query<Entity, Changed<TorsionCoil>>,
     mut removed: RemovedComponents<TorsionCoil>,
@@ -185,7 +187,7 @@ pub(super) fn wind(
 ) {
     waiting.extend(&changed);
     waiting.extend(removed.read());
-    // Its looks can have changed meanwhile.
+    // Its looks may have changed while it was disabled.
     waiting.extend(enabled.read().filter(|element| elements.contains(*element)));
     waiting.sort_unstable();
     waiting.dedup();
@@ -193,7 +195,7 @@ pub(super) fn wind(
         let Ok((turn, coil, mut twist)) = elements.get_mut(element) else {
             return false;
         };
-        // Sizes may follow from where the bodies are, so they must be there.
+        // Sizes may depend on where the bodies are, so the bodies must exist.
         let center = coil.map_or(Vec3::ZERO, |coil| coil.center);
         let known = turns
             .pose(&turn, center)
@@ -230,7 +232,7 @@ pub(super) fn wind(
 }
 
 impl Twist {
-    /// Follows the bodies; whether anything has moved.
+    /// Updates the places of the parts from the bodies; returns whether anything has moved.
     fn follow(&mut self, coil: &TorsionCoil, pose: Pose) -> bool {
         if self.from == Some(pose) {
             return false;
@@ -239,7 +241,7 @@ impl Twist {
         let hand = spiral::hand(coil);
         let twist = pose.angle - pose.rest;
         self.step = spiral::step(hand * twist);
-        // The inner end stays with body A, the outer one goes around with body B, exactly.
+        // The inner end stays with body A, and the outer end goes around with body B exactly.
         let side = pose.axis.any_orthonormal_vector();
         let outer = Quat::from_axis_angle(pose.axis, hand * TAU * coil.turns + twist) * side;
         let axis = Vec3A::from(pose.rotation * pose.axis).normalize();
@@ -300,7 +302,7 @@ pub(super) fn turn(
     }
 }
 
-/// Lays the parts where their elements have them, and changes a strip where it is wound further.
+/// Places the parts, and changes the mesh of a strip whose twist step has changed.
 pub(super) fn lay(
     elements: Query<&Twist>,
     mut parts: Query<(&Winding, &ChildOf, &mut GlobalTransform)>,
@@ -312,8 +314,8 @@ pub(super) fn lay(
         if let Ok(twist) = elements.get(parent.parent())
             && twist.from.is_some()
         {
-            // Its `Transform` says nothing: propagation has run, and rendering reads this one. What has not moved must
-            // not look changed, or it would be sent to the graphics card again.
+            // `GlobalTransform` is written, because propagation has run and rendering reads it. A part that has not
+            // moved must not look changed, or it would be sent to the graphics card again.
             global.set_if_neq(twist.places[*part as usize]);
         }
     }

@@ -1,23 +1,23 @@
-//! From where a scene is seen: what is out of sight, and how finely the rest is worth drawing.
+//! The cameras that see a scene: what is out of sight, and how finely the rest is worth drawing.
 
 use bevy::camera::primitives::Frustum;
 use bevy::camera::{Camera, Projection};
 use bevy::math::Vec3A;
 use bevy::prelude::*;
 
-/// The least thickness of a wire, in pixels, for each level of detail but the coarsest.
+/// Least thickness of a wire, in pixels, for each level of detail except the coarsest.
 const FINE_ENOUGH: [f32; 3] = [14.0, 5.0, 1.5];
-/// A level is left only when the thickness is beyond its bounds by this factor, lest it flickers.
+/// Factor by which the thickness must pass a bound before the level changes, so that the level does not flicker.
 const HYSTERESIS: f32 = 1.15;
 
 /// A camera.
 #[derive(Clone, Copy, PartialEq)]
 struct View {
-    /// Components x, y, z and w of the planes that bound what it sees, four planes at a time: a ball is
-    /// beyond one where their product with its centre is less than its radius below zero.
+    /// Components x, y, z and w of the planes that bound the view, four planes at a time. A ball is beyond a plane if
+    /// the product of the plane with the ball's centre is below minus the radius.
     planes: [[Vec4; 4]; 2],
     position: Vec3A,
-    /// Pixels that a metre takes, at one metre's distance in perspective.
+    /// Pixels per metre; in perspective, at a distance of one metre.
     focal: f32,
     perspective: bool,
 }
@@ -26,7 +26,7 @@ impl View {
     fn planes(frustum: &Frustum) -> [[Vec4; 4]; 2] {
         let plane = |i: usize| frustum.half_spaces.get(i).map(|p| p.normal_d());
         [0, 4].map(|first| {
-            // Nothing is beyond a plane that is not there.
+            // Nothing is beyond a plane that does not exist.
             let four = [0, 1, 2, 3].map(|i| plane(first + i).unwrap_or(Vec4::W * f32::MAX));
             Mat4::from_cols(four[0], four[1], four[2], four[3])
                 .transpose()
@@ -35,19 +35,19 @@ impl View {
         })
     }
 
-    /// Whether any of a ball is in sight.
+    /// Whether any part of a ball is in sight.
     #[inline]
     fn sees(&self, center: Vec3A, radius: f32) -> bool {
         let (cx, cy, cz) = (center.x, center.y, center.z);
         let heights = |[x, y, z, w]: &[Vec4; 4]| (*x * cx + *y * cy) + (*z * cz + *w);
         let [sides, ends] = &self.planes;
-        // Without a jump between the two.
+        // Both groups of planes at once, without a branch.
         let lowest = heights(sides).min(heights(ends));
         !lowest.cmple(Vec4::splat(-radius)).any()
     }
 }
 
-/// All active cameras; none where nothing is rendered.
+/// All active cameras; empty where nothing is rendered.
 #[derive(Default)]
 pub(super) struct Views {
     now: Vec<View>,
@@ -55,20 +55,20 @@ pub(super) struct Views {
     changes: u32,
 }
 
-/// What is looked up of a camera.
+/// The components of a camera that are read.
 pub(super) type Cameras<'a> = (&'a Camera, &'a Projection, &'a Frustum, &'a GlobalTransform);
 
 /// How an element is seen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Sight {
-    /// By any camera.
+    /// Whether any camera sees it.
     pub seen: bool,
-    /// The most pixels that a metre there takes in any camera.
+    /// Pixels per metre at its place, in the camera in which it appears largest.
     pub pixels: f32,
 }
 
 impl Views {
-    /// Looks at the cameras of this frame.
+    /// Reads the cameras of this frame.
     pub fn update<'a>(&mut self, cameras: impl Iterator<Item = Cameras<'a>>) {
         std::mem::swap(&mut self.now, &mut self.before);
         self.now.clear();
@@ -91,13 +91,13 @@ impl Views {
             .wrapping_add(u32::from(self.now != self.before));
     }
 
-    /// A number that is another one whenever the cameras have changed.
+    /// A number that changes whenever the cameras change.
     #[inline]
     pub const fn state(&self) -> u32 {
         self.changes
     }
 
-    /// How a ball is seen. Without cameras everything is, and closely.
+    /// How a ball is seen. Without cameras everything counts as seen from close by.
     #[inline]
     pub fn sight(&self, center: Vec3A, radius: f32) -> Sight {
         let mut out = Sight {
@@ -121,7 +121,7 @@ impl Views {
     }
 }
 
-/// The level of detail for a thickness in pixels, coming from some level; 0 is the finest.
+/// Level of detail for a thickness in pixels, given the previous level; 0 is the finest.
 #[inline]
 pub(super) fn level(pixels: f32, before: u8) -> u8 {
     let stays = STAYS.get(usize::from(before));
@@ -137,7 +137,7 @@ pub(super) fn level(pixels: f32, before: u8) -> u8 {
         .count() as u8
 }
 
-/// A bound as it is for those that are below it, or for those that are above.
+/// A bound with hysteresis: for a thickness that rises past it, or for one that falls.
 const fn beyond(bound: f32, rising: bool) -> f32 {
     if rising {
         bound * HYSTERESIS
@@ -146,7 +146,7 @@ const fn beyond(bound: f32, rising: bool) -> f32 {
     }
 }
 
-/// Thicknesses from and up to which each level is kept.
+/// Range of thickness, in pixels, in which each level is kept.
 const STAYS: [(f32, f32); FINE_ENOUGH.len() + 1] = [
     (beyond(FINE_ENOUGH[0], false), f32::INFINITY),
     (beyond(FINE_ENOUGH[1], false), beyond(FINE_ENOUGH[0], true)),

@@ -1,4 +1,4 @@
-//! From the wire's formula to triangles.
+//! Turns the formula of the wire into triangles.
 
 use super::wire::Wire;
 use super::{Helix, HelixError};
@@ -7,30 +7,30 @@ use bevy::math::{Vec2, Vec3, Vec4};
 use bevy::mesh::{Indices, Mesh, MeshBuilder, PrimitiveTopology};
 use std::f32::consts::TAU;
 
-/// Builds the mesh of a [`Helix`], as for every primitive of Bevy.
+/// Builds the mesh of a [`Helix`], as Bevy's mesh builders do for its primitives.
 ///
-/// The mesh has positions, normals, tangents, and UVs from 0 to 1 along the wire and around it. On the caps
-/// of its ends the latter is 2 greater at the rim and 4 in the middle, which a texture that repeats does not
-/// see and [`RoundWireMaterial`](crate::RoundWireMaterial) does.
+/// The mesh has positions, normals, tangents and UVs. U goes from 0 to 1 along the wire, and V from 0 to 1 around it.
+/// On the end caps, V is 2 greater at the rim and 4 in the middle. A repeating texture does not show this, but
+/// [`RoundWireMaterial`](crate::RoundWireMaterial) uses it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HelixMeshBuilder {
     /// The coil.
     pub helix: Helix,
-    /// Segments along the wire, per turn.
+    /// Number of segments along the wire, per turn.
     pub along: u32,
-    /// Segments around the wire; rounded up to a multiple of four, which makes length and radii exact.
+    /// Number of segments around the wire, rounded up to a multiple of four. This makes length and radii exact.
     pub around: u32,
 }
 
 /// Most segments along a wire, whatever was asked for.
 const MOST_RINGS: f32 = 100_000.0;
 
-/// What the caps of the ends have as second UV: this and more at the rim, that in the middle.
+/// V coordinate on the end caps: `CAP_RIM` plus the share around the wire at the rim, `CAP_MIDDLE` in the middle.
 const CAP_RIM: f32 = 2.0;
 const CAP_MIDDLE: f32 = 4.0;
 
 impl HelixMeshBuilder {
-    /// 48 segments a turn, 32 around the wire.
+    /// 48 segments per turn and 32 around the wire.
     pub const fn new(helix: Helix) -> Self {
         Self {
             helix,
@@ -39,14 +39,15 @@ impl HelixMeshBuilder {
         }
     }
 
-    /// Sets the segments per turn, and around the wire.
+    /// Sets the number of segments per turn, and around the wire.
     pub const fn resolution(mut self, along: u32, around: u32) -> Self {
         self.along = along;
         self.around = around;
         self
     }
 
-    /// The mesh, or why there is none.
+    /// Returns the mesh, or an error if the coil cannot be wound. Logs a warning if the coil is shorter than its solid
+    /// length.
     pub fn try_build(&self) -> Result<Mesh, HelixError> {
         self.helix.check()?;
         if self.helix.length < 0.999 * self.helix.solid_length() {
@@ -59,7 +60,7 @@ impl HelixMeshBuilder {
         Ok(self.triangles())
     }
 
-    /// The mesh of a coil that has been checked, whatever length it is built at.
+    /// Returns the mesh of a coil that has been checked, without a warning about its length.
     pub(crate) fn triangles(&self) -> Mesh {
         let wire = Wire::new(&self.helix);
         let turns = self.helix.turns;
@@ -112,7 +113,7 @@ impl HelixMeshBuilder {
 }
 
 impl MeshBuilder for HelixMeshBuilder {
-    /// The mesh; an empty one and a message where the coil cannot be wound.
+    /// Returns the mesh. If the coil cannot be wound, logs an error and returns an empty mesh.
     fn build(&self) -> Mesh {
         self.try_build().unwrap_or_else(|wrong| {
             log::error!("Helix: {wrong}; its mesh is empty");

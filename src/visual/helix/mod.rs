@@ -19,17 +19,17 @@ use wire::Wire;
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[reflect(Default, Debug, PartialEq, Clone)]
 pub enum HelixEnds {
-    /// Steady pitch up to the cut.
+    /// Constant pitch up to the cut.
     Open,
-    /// The last turn at each end lies wire on wire, and keeps that pitch however far the coil is stretched.
+    /// The last turn at each end lies wire on wire. It keeps that pitch however far the coil is stretched.
     Closed,
-    /// The same, ground flat as a seat.
+    /// The last turn at each end lies wire on wire, and is ground flat as a seat.
     #[default]
     ClosedGround,
 }
 
 impl HelixEnds {
-    /// Turns that do not act, both ends together.
+    /// Number of turns that do not act, both ends together.
     pub const fn dead_turns(self) -> f32 {
         match self {
             Self::Open => 0.0,
@@ -38,38 +38,38 @@ impl HelixEnds {
     }
 }
 
-/// Which way a coil is wound.
+/// Direction in which a coil is wound.
 #[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[type_path = "bevy_coilover"]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[reflect(Default, Debug, PartialEq, Clone)]
 pub enum Handedness {
-    /// Like a common screw.
+    /// Right-handed, like a common screw.
     #[default]
     Right,
-    /// The other way.
+    /// Left-handed.
     Left,
 }
 
-/// A coil of round wire about +Y that stands on the origin and is `length` high, wire included.
+/// A coil of round wire about the Y axis. It stands on the origin and is `length` high, with the thickness of the wire.
 ///
-/// The wire's section is a circle perpendicular to the wire; its ends are capped.
+/// The cross-section of the wire is a circle perpendicular to the wire. The ends of the wire are capped.
 #[derive(Reflect, Clone, Copy, Debug, PartialEq)]
 #[type_path = "bevy_coilover"]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[reflect(Default, Debug, PartialEq, Clone)]
 pub struct Helix {
-    /// From the axis to the middle of the wire, m.
+    /// Radius from the axis to the middle of the wire, m.
     pub radius: f32,
-    /// Half the wire's thickness, m.
+    /// Radius of the wire, m.
     pub wire_radius: f32,
-    /// Turns from end to end, dead ones included.
+    /// Number of turns from end to end, with the dead ones.
     pub turns: f32,
     /// Height, m.
     pub length: f32,
     /// How the wire ends.
     pub ends: HelixEnds,
-    /// Which way it is wound.
+    /// Direction in which the wire is wound.
     pub handedness: Handedness,
 }
 
@@ -91,15 +91,15 @@ impl Default for Helix {
 /// Why a coil cannot be wound.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum HelixError {
-    /// The field is not finite, or not positive; its name and value.
+    /// A field is not finite and above zero: its name and value.
     NotPositive(&'static str, f32),
-    /// The wire, with this radius, would cross the axis of a coil of that radius (m).
+    /// The wire would cross the axis of the coil: radius of the wire and radius of the coil, m.
     WireTooThick(f32, f32),
-    /// More turns than a mesh should have.
+    /// There are more than 1000 turns: their number.
     TooManyTurns(f32),
 }
 
-/// Beyond this a mesh gets too large to draw.
+/// Most turns of a coil. With more, the mesh gets too large to draw.
 const MOST_TURNS: f32 = 1000.0;
 
 impl fmt::Display for HelixError {
@@ -122,8 +122,8 @@ impl fmt::Display for HelixError {
 impl std::error::Error for HelixError {}
 
 impl Helix {
-    /// A coil of this radius, wire radius (m), turns and length (m), right-handed, its ends closed and
-    /// ground.
+    /// Returns a right-handed coil of this radius (m), wire radius (m), number of turns and length (m), with closed and
+    /// ground ends.
     pub fn new(radius: f32, wire_radius: f32, turns: f32, length: f32) -> Self {
         Self {
             radius,
@@ -140,13 +140,14 @@ impl Helix {
         self
     }
 
-    /// Sets which way it is wound.
+    /// Sets the direction in which the wire is wound.
     pub const fn with_handedness(mut self, handedness: Handedness) -> Self {
         self.handedness = handedness;
         self
     }
 
-    /// Whether a wire can be wound so, and if not, why.
+    /// Checks whether such a wire can be wound. Returns an error if a size is not finite and above zero, if the wire
+    /// would cross the axis, or if there are more than 1000 turns.
     pub fn check(&self) -> Result<(), HelixError> {
         for (field, value) in [
             ("radius", self.radius),
@@ -167,7 +168,7 @@ impl Helix {
         Ok(())
     }
 
-    /// The length at which all turns touch, m. Shorter than that, wire would pass through wire.
+    /// Length at which all turns touch, m. In a shorter coil, wire would pass through wire.
     pub fn solid_length(&self) -> f32 {
         let thickness = 2.0 * self.wire_radius;
         match self.ends {
@@ -181,7 +182,7 @@ impl Helix {
         Wire::new(self).length()
     }
 
-    /// Volume of the wire, m³; what is ground off ground ends counts.
+    /// Volume of the wire, m³, with what is ground off ground ends.
     pub fn wire_volume(&self) -> f32 {
         PI * self.wire_radius * self.wire_radius * self.wire_length()
     }

@@ -1,4 +1,4 @@
-//! Is the mesh a closed tube of round wire, of the length and the radii asked for?
+//! Tests that the mesh is a closed tube of round wire, with the length and the radii that were asked for.
 
 use super::*;
 use bevy::math::{Vec3Swizzles, Vec4Swizzles};
@@ -83,14 +83,14 @@ fn length_and_radii_are_exact() {
     }
 }
 
-/// Vertices at the same place are one: rings begin and end on a seam, and caps have normals of their own.
+/// Merges vertices at the same place: rings begin and end on a seam, and caps have normals of their own.
 fn welded(mesh: &Mesh) -> (usize, Vec<[usize; 3]>) {
     let positions = vectors(mesh, Mesh::ATTRIBUTE_POSITION);
     let mut known: HashMap<[i64; 3], usize> = HashMap::new();
     let mut same = Vec::new();
     for p in &positions {
         let key = [p.x, p.y, p.z].map(|x| (f64::from(x) * 1e6).round() as i64);
-        // Rounding may put equals on both sides of a step.
+        // Rounding may put equal positions into neighbouring cells.
         let near =
             (-1..=1).flat_map(|x| (-1..=1).flat_map(move |y| (-1..=1).map(move |z| [x, y, z])));
         let found = near
@@ -179,7 +179,7 @@ fn faces_and_normals_turn_outward_and_tangents_follow_the_wire() {
     }
 }
 
-/// The same formula as the shader's, over all stretches that it will see.
+/// This is the same formula as in the shader, tested over all stretches that the shader will see.
 #[test]
 fn the_section_stays_a_circle_at_any_stretch() {
     for helix in all_kinds().filter(|h| h.ends != HelixEnds::ClosedGround) {
@@ -192,7 +192,7 @@ fn the_section_stays_a_circle_at_any_stretch() {
             for i in 0..=200 {
                 let turn = helix.turns * i as f32 / 200.0;
                 let frame = wire.frame(turn);
-                // The direction of the wire by difference: the section is square to it.
+                // Direction of the wire by finite differences: the section is perpendicular to it.
                 let step = 1e-3;
                 let (before, after) = (wire.frame(turn - step), wire.frame(turn + step));
                 let along = (after.center - before.center).normalize();
@@ -227,13 +227,13 @@ fn closed_ends_keep_their_pitch_while_the_rest_stretches() {
 
 #[test]
 fn no_valid_coil_has_a_point_that_is_not_a_number() {
-    // Random, but the same every time.
+    // Random, but the same in every run.
     let mut state = 0x2545_f491_4f6c_dd1d_u64;
     let mut random = |low: f32, high: f32| {
         state ^= state << 13;
         state ^= state >> 7;
         state ^= state << 17;
-        // Even over magnitudes.
+        // Uniform in the logarithm.
         let share = (state >> 40) as f32 / (1_u64 << 24) as f32;
         low * (high / low).powf(share)
     };

@@ -1,4 +1,4 @@
-//! The wire as a formula: where a coil of given length has the surface of its wire.
+//! The wire as a formula: the surface of the wire of a coil of a given length.
 //!
 //! `assets/shaders/tube.wgsl` evaluates the same formula on the graphics card; change both.
 
@@ -6,20 +6,20 @@ use super::{Handedness, Helix, HelixEnds};
 use bevy::math::Vec3;
 use std::f32::consts::TAU;
 
-/// Turns at each closed end that lie wire on wire.
+/// Number of turns at each closed end that lie wire on wire.
 const DEAD: f32 = 1.0;
-/// Turns over which the pitch goes from the closed end's to the active coils'.
+/// Number of turns over which the pitch changes from that of the closed end to that of the active turns.
 const BLEND: f32 = 0.5;
 
-/// A point of the wire's surface.
+/// A point on the surface of the wire.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct WirePoint {
     pub position: Vec3,
-    /// Outward, of unit length.
+    /// Outward unit vector.
     pub normal: Vec3,
 }
 
-/// The centre line at some turn, with the frame of the wire's section.
+/// The centre line after some turns, with the frame of the wire's cross-section.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct WireFrame {
     pub center: Vec3,
@@ -27,31 +27,34 @@ pub(crate) struct WireFrame {
     pub tangent: Vec3,
     /// Away from the coil's axis.
     pub outward: Vec3,
-    /// Perpendicular to both, upwards.
+    /// Perpendicular to `tangent` and `outward`, upwards.
     pub upward: Vec3,
-    /// A ground end cuts the section below this share of the wire's radius (−1 cuts nothing)...
+    /// A ground end cuts off the section below this share of the wire's radius; −1 cuts off nothing.
     low: f32,
-    /// ... and above this one.
+    /// A ground end cuts off the section above this share of the wire's radius; 1 cuts off nothing.
     high: f32,
 }
 
-/// A wire wound about +Y from 0 to `length`.
+/// A wire wound about the Y axis, from y = 0 to y = `length`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Wire {
     radius: f32,
     wire_radius: f32,
     turns: f32,
-    /// +1 for a right-handed coil.
+    /// +1 for a right-handed coil, −1 for a left-handed one.
     hand: f32,
     ground: bool,
-    /// Turns of one closed end, and of the blend beside it.
+    /// Number of turns of one closed end.
     dead: f32,
+    /// Number of turns of the blend beside a closed end.
     blend: f32,
-    /// Rise per turn of the ends, and of the active coils, m.
+    /// Rise per turn of the closed ends, m.
     end_pitch: f32,
+    /// Rise per turn of the active turns, m.
     pitch: f32,
-    /// Height of the centre line at its start, and what it climbs, m.
+    /// Height of the centre line at its start, m.
     start: f32,
+    /// Height that the centre line climbs from end to end, m.
     rise: f32,
 }
 
@@ -87,8 +90,8 @@ impl Wire {
             start: 0.0,
             rise: 0.0,
         };
-        // The tip of the wire touches the seat, and how far depends on how steep the wire is there,
-        // which depends on what is left to climb: three rounds settle that to rounding.
+        // The tip of the wire touches the seat. Its height depends on the slope of the wire there, and the slope
+        // depends on the height that is left to climb. Three iterations converge to rounding.
         for _ in 0..3 {
             let slope = wire.end_pitch / (TAU * radius);
             let cosine = 1.0 / (1.0 + slope * slope).sqrt();
@@ -99,7 +102,7 @@ impl Wire {
             };
             wire.rise = (length - 2.0 * wire.start).max(0.0);
             let even = wire.rise / turns;
-            // Closed ends lie wire on wire; squeezed further, all turns share what room there is.
+            // Closed ends lie wire on wire. In a coil that is shorter than that allows, all turns have the same pitch.
             wire.end_pitch = if open {
                 even
             } else {
@@ -111,7 +114,7 @@ impl Wire {
         wire
     }
 
-    /// What the centre line has climbed after some turns from an end, and its rise per turn there.
+    /// Height that the centre line has climbed after some turns from an end, m, and its rise per turn there, m.
     fn climb(&self, turn: f32) -> (f32, f32) {
         let (dead, blend) = (self.dead, self.blend);
         let more = self.pitch - self.end_pitch;
@@ -131,12 +134,12 @@ impl Wire {
         }
     }
 
-    /// The section of the wire after this many turns from the foot.
+    /// Cross-section of the wire after this number of turns from the foot.
     pub fn frame(&self, turn: f32) -> WireFrame {
         let (from_foot, from_top) = (turn.max(0.0), (self.turns - turn).max(0.0));
         let lower = from_foot <= from_top;
         let (climbed, pitch) = self.climb(from_foot.min(from_top));
-        // The half with the top is the half with the foot, turned over.
+        // The upper half is the lower half turned over.
         let above = self.start + climbed;
         let height = if lower {
             above
@@ -165,7 +168,7 @@ impl Wire {
         }
     }
 
-    /// A point of the surface, at an angle about the wire from outward (rad).
+    /// Point of the surface at an angle (rad) about the wire, counted from `outward`.
     pub fn surface(&self, frame: &WireFrame, angle: f32) -> WirePoint {
         let (sin, cos) = angle.sin_cos();
         let cut = sin.clamp(frame.low, frame.high);
@@ -182,7 +185,7 @@ impl Wire {
         }
     }
 
-    /// The middle of the section, from which an end cap is drawn.
+    /// Middle of the section, from which an end cap is drawn.
     pub fn middle(&self, frame: &WireFrame) -> Vec3 {
         let up = 0.5 * (frame.low + frame.high);
         frame.center + self.wire_radius * up * frame.upward
@@ -192,7 +195,7 @@ impl Wire {
     pub fn length(&self) -> f32 {
         let along = |pitch: f32, turns: f32| turns * pitch.hypot(TAU * self.radius);
         let active = self.turns - 2.0 * (self.dead + self.blend);
-        // Simpson's rule is exact enough over half a turn of slowly changing pitch.
+        // Simpson's rule is accurate enough over half a turn of slowly changing pitch.
         let middle = 0.5 * (self.end_pitch + self.pitch);
         let blend =
             (along(self.end_pitch, 1.0) + 4.0 * along(middle, 1.0) + along(self.pitch, 1.0)) / 6.0
