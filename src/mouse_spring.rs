@@ -203,19 +203,30 @@ fn along(axis: Vec3, entity: Entity, spring: &MouseSpring, mass: f32) -> impl Bu
 }
 
 /// Effective mass of a body at one of its points (body's frame, scale applied, m) along an axis of the world, kg: the
-/// inverse of 1/m + (r × n) · I⁻¹ (r × n). What else holds the body does not count. A body with any locked rotation
-/// axis counts as one that does not turn, and locked translation axes do not count.
+/// inverse of 1/m + (r × n) · I⁻¹ (r × n), without the components of n and r × n that the body's locked axes take. What else holds
+/// the body does not count.
 fn mass_at(body: &RapierBody, point: Vec3, axis: Vec3) -> f32 {
     let properties = &body.mass_properties().local_mprops;
     let rotation = body.position().rotation;
+    let locked = body.locked_axes();
+    let free =
+        |axes: [LockedAxes; 3]| Vec3::from(axes.map(|axis| 1.0 - f32::from(locked.contains(axis))));
     let torque = (rotation * (point - properties.local_com)).cross(axis);
+    let torque = torque
+        * free([
+            LockedAxes::ROTATION_LOCKED_X,
+            LockedAxes::ROTATION_LOCKED_Y,
+            LockedAxes::ROTATION_LOCKED_Z,
+        ]);
+    let along = axis
+        * free([
+            LockedAxes::TRANSLATION_LOCKED_X,
+            LockedAxes::TRANSLATION_LOCKED_Y,
+            LockedAxes::TRANSLATION_LOCKED_Z,
+        ]);
     let about = (rotation * properties.principal_inertia_local_frame).inverse() * torque;
-    let turned = if body.locked_axes().intersects(LockedAxes::ROTATION_LOCKED) {
-        0.0
-    } else {
-        (about * about).dot(properties.inv_principal_inertia)
-    };
-    (properties.inv_mass + turned).recip()
+    let turned = (about * about).dot(properties.inv_principal_inertia);
+    (properties.inv_mass * along.length_squared() + turned).recip()
 }
 
 fn release(entity: Entity, grip: &Grip, commands: &mut Commands) {

@@ -108,7 +108,8 @@ mod tests {
             assert_eq!(recommend(50.0, 0.0, bad, DT, 1e-9), 1);
             assert_eq!(recommend(50.0, 0.0, 1.0, bad, 1e-9), 1);
             assert_eq!(recommend(50.0, 0.0, 1.0, DT, bad), 1);
-            assert_eq!(recommend(bad, bad, 1.0, DT, 1.0), 1);
+            // Nonsense counts as no spring and no damper, which are not taken for a stiff pair.
+            assert_eq!(recommend(bad, bad, 1.0, DT, 1e-4), 2);
         }
         assert_eq!(recommend(f32::MAX, 0.0, 1.0, DT, 1.0), 256);
     }

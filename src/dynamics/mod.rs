@@ -38,9 +38,12 @@ mod strut;
 mod system;
 pub(crate) mod tolerance;
 
-/// The nearest number that is finite in single precision: no overflow reaches the engine or a user.
+/// The nearest number that is finite in single precision, and 0 for NaN: no overflow reaches the engine or a user.
 pub(crate) fn single(number: f64) -> f32 {
     const MOST: f64 = f32::MAX as f64;
+    if number.is_nan() {
+        return 0.0;
+    }
     number.clamp(-MOST, MOST) as f32
 }
 

@@ -134,7 +134,9 @@ impl System {
     pub(super) fn prepare(&mut self) {
         if self.is_dense() {
             self.factorise();
-        } else {
+        }
+        if self.factor.is_none() {
+            // Large, or stiff beyond what f64 can factorise.
             self.invert_blocks();
         }
     }

@@ -11,7 +11,7 @@ pub struct Breakable {
     /// Greatest magnitude of the force of spring, damper and stops together
     /// ([`SpringReadout::force`](crate::SpringReadout::force)), N. Infinite for no limit.
     pub force: f32,
-    /// Greatest length, m. Infinite for no limit. The sign counts: a negative angle does not exceed a positive limit.
+    /// Greatest magnitude of the length, m, or of the angle of a torsion element, rad. Infinite for no limit.
     pub length: f32,
     /// What happens to the element when it breaks.
     pub then: WhenBroken,

@@ -1,7 +1,7 @@
 //! Companions, the components beside an element that change its law: read, checked and combined into one law.
 
 use crate::dynamics::guide::Guide;
-use crate::dynamics::law::{DragLaw, Law, Recipe, SpringForce, Stop, Table};
+use crate::dynamics::law::{DragLaw, Function, Law, Recipe, SpringForce, Stop, Table};
 use crate::element::*;
 use crate::input::check::{Fault, MOST, Parameters, direction, finite, number};
 use crate::input::lists::with_companions;
@@ -205,7 +205,13 @@ impl BesideItem<'_, '_> {
                 "DampingLaw",
                 "stands together with CustomDampingLaw; use one of them",
             )),
-            (None, Some(own)) => Ok(DragLaw::Custom(Arc::new(Theirs(own.0.clone())))),
+            (None, Some(own)) => {
+                let law = Theirs(own.0.clone());
+                if law.force(0.0).abs() > 0.0 {
+                    return Err(Fault::new("CustomDampingLaw", "has a force at rest"));
+                }
+                Ok(DragLaw::Custom(Arc::new(law)))
+            }
             (None | Some(DampingLaw::Linear), None) => {
                 Ok(DragLaw::Linear(f64::from(p.numbers.damping)))
             }

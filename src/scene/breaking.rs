@@ -12,7 +12,7 @@ pub(crate) fn break_overloaded(
 ) {
     for (entity, limit, readout) in &elements {
         let force = readout.force();
-        if force.abs() <= limit.force && readout.length <= limit.length {
+        if force.abs() <= limit.force && readout.length.abs() <= limit.length {
             continue;
         }
         if limit.force.is_nan() || limit.length.is_nan() {

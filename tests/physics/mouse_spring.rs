@@ -217,11 +217,12 @@ fn a_pointer_that_was_wrong_and_lets_go_leaves_no_fault() {
     assert!(lab.app.world().get::<SpringFault>(mouse).is_none());
 }
 
-#[test]
-fn a_scaled_body_is_held_for_the_mass_that_it_has_at_the_point_where_that_is() {
+/// A body is held for the mass that it has at a point, if it can turn about such axes of the world.
+fn is_held_for_its_mass(locked: LockedAxes, turns: Vec3) {
     let mut lab = Lab::weightless();
     let (mass, inertia) = (2.0, 0.05);
     let body = lab.spawn(brick(mass, Vec3::splat(inertia), Vec3::ZERO));
+    lab.app.world_mut().entity_mut(body).insert(locked);
     lab.get_mut::<Transform>(body).scale = Vec3::new(4.0, 1.0, 1.0);
     // In the world 0.4 m from its centre, along X.
     let (point, lever) = (Vec3::X * 0.1, Vec3::X * 0.4);
@@ -234,7 +235,7 @@ fn a_scaled_body_is_held_for_the_mass_that_it_has_at_the_point_where_that_is() {
         let SpringAxis::World(axis) = *axis else {
             panic!("{axis:?}");
         };
-        let turned = lever.cross(axis).length_squared() / inertia;
+        let turned = (turns * lever.cross(axis)).length_squared() / inertia;
         let there = (mass.recip() + turned).recip();
         let wanted = there * (std::f32::consts::TAU * FREQUENCY).powi(2);
         let share = spring.stiffness / wanted;
@@ -245,4 +246,11 @@ fn a_scaled_body_is_held_for_the_mass_that_it_has_at_the_point_where_that_is() {
         count += 1;
     }
     assert_eq!(count, 3);
+}
+
+#[test]
+fn a_scaled_body_is_held_for_the_mass_that_it_has_at_the_point_where_that_is() {
+    is_held_for_its_mass(LockedAxes::empty(), Vec3::ONE);
+    is_held_for_its_mass(LockedAxes::ROTATION_LOCKED_Y, Vec3::new(1.0, 0.0, 1.0));
+    is_held_for_its_mass(LockedAxes::ROTATION_LOCKED, Vec3::ZERO);
 }

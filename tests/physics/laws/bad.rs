@@ -156,6 +156,11 @@ fn numbers_out_of_range() {
 #[test]
 fn a_function_of_ones_own_that_gives_nan() {
     check(CustomSpringLaw::new(|_| f64::NAN), "ForceLaw", "NaN");
+    check(
+        CustomDampingLaw::new(|v| 5.0 + v),
+        "CustomDampingLaw",
+        "at rest",
+    );
     // Sound where it is, NaN where it goes: bounded, and said once it is there.
     let (fault, said) = spoilt(CustomSpringLaw::new(|x: f64| {
         if x < 0.2 { f64::NAN } else { 100.0 * x }

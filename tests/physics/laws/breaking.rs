@@ -4,6 +4,7 @@ use crate::harness::*;
 use bevy::ecs::entity_disabling::Disabled;
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
+use bevy_rapier3d::prelude::*;
 
 #[derive(Resource, Default)]
 struct Broken(Vec<SpringBroke>);
@@ -75,4 +76,22 @@ fn mended_while_the_engine_rests_it_does_not_break_by_what_it_showed_before() {
     lab.run(0.1);
     assert_eq!(lab.app.world().resource::<Broken>().0.len(), 1);
     assert!(lab.app.world().get::<Disabled>(element).is_none());
+}
+
+#[test]
+fn twisted_too_far_either_way_a_torsion_spring_breaks() {
+    for turn in [1.5_f32, -1.5] {
+        let mut lab = Lab::weightless();
+        let post = lab.spawn((RigidBody::Fixed, Transform::default()));
+        let arm = lab.spawn(brick(1.0, Vec3::ONE, Vec3::ZERO));
+        lab.get_mut::<Velocity>(arm).angular = Vec3::Z * turn;
+        let spring = TorsionSpring::new(post, arm, Vec3::Z).with_stiffness(0.1);
+        let element = lab.spawn((spring, Breakable::at_length(1.0)));
+        lab.run(0.5);
+        let world = lab.app.world();
+        assert!(world.get_entity(element).is_ok(), "{turn}: it holds");
+        lab.run(0.5);
+        let world = lab.app.world();
+        assert!(world.get_entity(element).is_err(), "{turn}: it breaks");
+    }
 }
