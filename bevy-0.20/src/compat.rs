@@ -1,5 +1,5 @@
-// What is called otherwise, or lies elsewhere, in another version of Bevy and Rapier. `src/compat.rs` is for Bevy 0.19,
-// `bevy-0.20/src/compat.rs` for 0.20; both have the same names.
+// Names and functions that differ between versions of Bevy and Rapier. `src/compat.rs` is for Bevy 0.19 and
+// `bevy-0.20/src/compat.rs` is for Bevy 0.20. Both define the same names.
 
 use bevy::ecs::lifecycle::{Add, Insert, Remove};
 use bevy::prelude::On;
@@ -14,16 +14,16 @@ pub(crate) use bevy::curve::{Curve, Interval};
 #[cfg(feature = "visual")]
 pub(crate) use bevy::shape::Primitive3d;
 
-/// What an observer gets of a component that was added.
+/// Parameter of an observer that runs when a component is added to an entity.
 pub(crate) type Added<'w, 't, C> = On<'w, 't, Add<C>>;
 
-/// What an observer gets of a component that was inserted, there before or not.
+/// Parameter of an observer that runs when a component is inserted, whether or not the entity had it before.
 pub(crate) type Inserted<'w, 't, C> = On<'w, 't, Insert<C>>;
 
-/// What an observer gets of a component that is about to be removed.
+/// Parameter of an observer that runs when a component is about to be removed.
 pub(crate) type Removed<'w, 't, C> = On<'w, 't, Remove<C>>;
 
-/// The shader of round wires; how its name ends tells Bevy the language.
+/// Path and source of the shader of round wires. Bevy takes the shader language from the end of the path.
 #[cfg(feature = "visual")]
 pub(crate) const ROUND_WIRE: (&str, &str) = (
     "bevy_coilover/shaders/round_wire.wesl",
@@ -33,18 +33,18 @@ pub(crate) const ROUND_WIRE: (&str, &str) = (
     ),
 );
 
-/// Where two colliders touch.
+/// Contact manifolds of two colliders.
 pub(crate) fn manifolds(pair: &ContactPair) -> &[ContactManifold] {
     pair.manifolds()
 }
 
-/// Metres between two shapes; 0 where they touch, or where nobody knows.
+/// Distance between two shapes, m; 0 where they touch, or where Rapier cannot compute it for these shapes.
 pub(crate) fn distance(at: [&Pose; 2], shapes: [&dyn Shape; 2]) -> f32 {
     let [(a, first), (b, second)] = [(at[0], shapes[0]), (at[1], shapes[1])];
     query::distance(a, first, b, second).map_or(0.0, |apart| apart.distance)
 }
 
-/// Takes a body, with all that hangs on it, out of the engine.
+/// Removes a body from the engine, together with its colliders and joints.
 pub(crate) fn remove(
     handle: RigidBodyHandle,
     bodies: &mut RigidBodySet,
@@ -70,15 +70,15 @@ pub(crate) fn remove(
     );
 }
 
-/// Soft bodies.
+/// Soft bodies of a context.
 pub(crate) type SoftBodies = SoftBodySet;
 
-/// Those of a context.
+/// Returns the soft bodies of a context.
 pub(crate) fn soft_bodies(set: &RapierRigidBodySet) -> SoftBodies {
     set.soft_bodies.clone()
 }
 
-/// Puts them back.
+/// Restores the soft bodies of a context.
 pub(crate) fn put_soft_bodies(set: &mut RapierRigidBodySet, soft: &SoftBodies) {
     set.soft_bodies.clone_from(soft);
 }

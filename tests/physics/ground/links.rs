@@ -19,7 +19,7 @@ fn arm(scene: &mut Stand, post: Entity) -> Entity {
         Transform::from_xyz(0.275, 0.0, 0.0),
         (
             AdditionalMassProperties::MassProperties(mass),
-            MultibodyJoint::new(post, hinge.into()),
+            MultibodyJoint::new(post, TypedJoint::from(hinge)),
         ),
     )
 }
@@ -80,7 +80,7 @@ fn a_ball_that_hangs_on_a_heavy_link_keeps_time_and_energy() {
         Transform::IDENTITY,
         (
             AdditionalMassProperties::MassProperties(mass),
-            MultibodyJoint::new(post, slider.into()),
+            MultibodyJoint::new(post, TypedJoint::from(slider)),
         ),
     );
     let ball = AdditionalMassProperties::Mass(1.0);

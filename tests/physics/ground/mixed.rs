@@ -83,7 +83,7 @@ fn won(seed: u64, omega_dt: f32, seconds: f64) -> f64 {
                 .local_anchor2(middle - at);
             let mut body = scene.lab.app.world_mut().entity_mut(body);
             if omega_dt <= SOFT && dice.pick(3) == 0 {
-                body.insert(MultibodyJoint::new(other, ball.into()));
+                body.insert(MultibodyJoint::new(other, TypedJoint::from(ball)));
             } else {
                 body.insert(ImpulseJoint::new(other, ball));
             }

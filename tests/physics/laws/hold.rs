@@ -113,7 +113,7 @@ fn arm(lab: &mut Lab, post: Entity, mass: f32, inertia: Vec3, at: Vec3, is_link:
     let arm = lab.spawn(brick(mass, inertia, at));
     let mut entity = lab.app.world_mut().entity_mut(arm);
     if is_link {
-        entity.insert(MultibodyJoint::new(post, hinge.into()));
+        entity.insert(MultibodyJoint::new(post, TypedJoint::from(hinge)));
     } else {
         entity.insert(ImpulseJoint::new(post, hinge));
     }
