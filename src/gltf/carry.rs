@@ -1,45 +1,45 @@
-//! What a loaded scene carries into the world: Rapier's components cannot be in a scene, since they do not reflect, and
-//! they depend on where the scene is placed.
+//! Components that a loaded scene carries into the world in place of Rapier's components. Rapier's components cannot
+//! be in a scene: they do not implement `Reflect`, and they depend on where the scene is placed.
 
 use super::physics::{Implicit, JointKind, Material, Motion};
 use bevy::prelude::*;
 use std::sync::Arc;
 
-/// A body that is to be.
+/// Marks a node that becomes a rigid body.
 #[derive(Component, Reflect, Clone, Debug)]
 #[reflect(opaque, Component, Clone, Debug)]
 #[type_path = "bevy_coilover"]
 pub(crate) struct LoadedBody(pub(super) Arc<Motion>);
 
-/// Triangles of a collider.
+/// Triangle mesh of a collider.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Mesh {
     pub(super) vertices: Vec<Vec3>,
     pub(super) triangles: Vec<[u32; 3]>,
 }
 
-/// Geometry of a collider, in its node's space.
+/// Geometry of a collider, in the space of its node.
 #[derive(Clone, Debug)]
 pub(super) enum Shape {
     Implicit(Implicit),
     Mesh { mesh: Arc<Mesh>, hull: bool },
 }
 
-/// A collider that is to be.
+/// Marks a node that gets a collider.
 #[derive(Component, Reflect, Clone, Debug)]
 #[reflect(opaque, Component, Clone, Debug)]
 #[type_path = "bevy_coilover"]
 pub(crate) struct LoadedCollider {
     pub(super) shape: Shape,
     pub(super) material: Option<Material>,
-    /// Memberships and filters, as bits.
+    /// Memberships and filters of the `CollisionGroups`, as bits. `None` if the file has no filters.
     pub(super) groups: Option<(u32, u32)>,
     pub(super) trigger: bool,
-    /// File and node, for messages.
+    /// File and node, for log messages.
     pub(super) place: String,
 }
 
-/// A joint that is to be, from its own node to another.
+/// Marks a node that a joint connects to another node.
 #[derive(Component, Reflect, Clone, Debug)]
 #[reflect(opaque, Component, Clone, Debug)]
 #[type_path = "bevy_coilover"]
@@ -48,6 +48,6 @@ pub(crate) struct LoadedJoint {
     pub(super) connected: Entity,
     pub(super) kind: Arc<JointKind>,
     pub(super) collide: bool,
-    /// File and node, for messages.
+    /// File and node, for log messages.
     pub(super) place: String,
 }

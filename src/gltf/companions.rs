@@ -1,4 +1,4 @@
-//! The companions of an element, as `BEVY_coilover` writes them.
+//! Reads the companions of an element (the components beside it) from `BEVY_coilover`.
 
 use super::element::KINDS;
 use super::json::{Object, Variant, numbers};
@@ -7,7 +7,7 @@ use bevy::ecs::entity_disabling::Disabled;
 use bevy::prelude::*;
 use serde_json::Value;
 
-/// Companions' keys.
+/// JSON keys of the companions.
 const KEYS: [&str; 15] = [
     "anchors",
     "springLaw",
@@ -26,7 +26,7 @@ const KEYS: [&str; 15] = [
     "showSpringGizmos",
 ];
 
-/// Puts all companions that an extension has beside the element of a kind.
+/// Inserts all companions that the extension object describes. `kind` is the key of the element.
 pub(super) fn insert(object: &Object, kind: &str, entity: &mut EntityWorldMut) {
     let mut known = KEYS.to_vec();
     known.extend(KINDS.map(|(key, _)| key));
@@ -57,7 +57,7 @@ pub(super) fn insert(object: &Object, kind: &str, entity: &mut EntityWorldMut) {
         entity.insert(action);
     }
     if let Some(travel) = object.object("springTravel") {
-        // About or along an axis, lengths have a sign, and none is the least.
+        // Angles, and lengths along an axis, can be negative. Without a minimum, the least of them is then -∞.
         let signed = kind.starts_with("torsion") || object.has("springAxis");
         entity.insert(spring_travel(&travel, signed));
     }
@@ -117,7 +117,7 @@ pub(super) fn insert(object: &Object, kind: &str, entity: &mut EntityWorldMut) {
     }
 }
 
-/// A variant without data.
+/// Reads a variant that has no data.
 pub(super) fn choice<T, const N: usize>(
     object: &Object,
     key: &str,
@@ -134,7 +134,7 @@ pub(super) fn choice<T, const N: usize>(
     chosen.map(|(_, value)| value)
 }
 
-/// The object that a variant has for data.
+/// Returns the JSON object that holds the data of a variant.
 fn data<'a>(object: &Object<'a>, variant: &Variant<'a>) -> Option<Object<'a>> {
     Object::new(
         variant.data.unwrap_or(&Value::Null),
@@ -218,7 +218,7 @@ fn damping_law(object: &Object, variant: &Variant) -> Option<DampingLaw> {
     })
 }
 
-/// A table whose points are pairs. A point that is none is left out.
+/// Reads a table of points, each an array of two numbers. A malformed point is reported and left out.
 fn table(data: &Object) -> ForceTable {
     data.only(&["points"]);
     let mut points = Vec::new();

@@ -1,4 +1,4 @@
-//! One node's `BEVY_coilover` as components.
+//! Turns the `BEVY_coilover` extension of a node into components.
 
 use super::companions;
 use super::json::{Object, Told};
@@ -6,10 +6,10 @@ use crate::element::*;
 use bevy::prelude::*;
 use serde_json::Value;
 
-/// Name of the extension.
+/// Name of the glTF extension.
 pub(super) const NAME: &str = "BEVY_coilover";
 
-/// The elements' keys, and fields besides the ends.
+/// JSON keys of the elements, each with its allowed fields.
 pub(super) const KINDS: [(&str, &[&str]); 6] = [
     ("spring", &["a", "b", "stiffness", "restLength"]),
     ("damper", &["a", "b", "damping"]),
@@ -28,9 +28,10 @@ pub(super) const KINDS: [(&str, &[&str]); 6] = [
     ),
 ];
 
-/// Puts the element that an extension describes on an entity. `find` knows the entity of a node of this scene.
+/// Inserts the element that an extension describes into an entity. `find` returns the entity of a node of this scene.
 ///
-/// What is wrong is told. An end that is missing stays [`Entity::PLACEHOLDER`], so that the element has a fault.
+/// Errors in the file are reported to `told`. A missing end stays [`Entity::PLACEHOLDER`], so that the element gets a
+/// fault.
 pub(super) fn insert(
     value: &Value,
     place: &str,

@@ -1,4 +1,5 @@
-//! What a scene carries becomes Rapier's bodies, colliders and joints, once the scene stands at its place.
+//! Turns the components that a loaded scene carries into Rapier's bodies, colliders and joints. Runs in `PostUpdate`,
+//! when the scene has its place in the world.
 
 use super::carry::{LoadedBody, LoadedCollider, LoadedJoint};
 use super::place::{above, place};
@@ -8,21 +9,24 @@ use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
 use bevy_rapier3d::rapier::prelude::{MassProperties as RapierMass, Pose, SharedShape};
 
-/// Whether a scene has brought anything.
+/// Run condition: whether a scene has brought components that wait to be expanded.
 pub(super) fn any_loaded(
     loaded: Query<(), Or<(With<LoadedBody>, With<LoadedCollider>, With<LoadedJoint>)>>,
 ) -> bool {
     !loaded.is_empty()
 }
 
-/// Subdivisions of round shapes that are scaled unevenly, as Rapier has by default.
+/// Number of subdivisions with which Rapier approximates round shapes that are scaled unevenly. This is Rapier's
+/// default.
 pub(super) const SUBDIVISIONS: u32 = 10;
 
-/// Sizes of colliders (m) and their distances from the origin, beyond which Rapier's collision detection panics.
+/// Limits of a collider's size and of its distance from the origin, m. Beyond them, Rapier's collision detection
+/// panics.
 const LARGEST: f32 = 1e6;
 const SMALLEST: f32 = 1e-5;
 
-/// Gives all that scenes have brought to Rapier.
+/// Expands everything that scenes have brought: colliders first, then bodies, whose mass needs the colliders, then
+/// joints.
 pub(super) fn expand(world: &mut World) {
     let mut weights = EntityHashMap::<RapierMass>::default();
     let colliders = take::<LoadedCollider>(world);
@@ -68,11 +72,11 @@ pub(super) fn expand(world: &mut World) {
     }
 }
 
-/// All components of a kind, taken away from their entities.
+/// Removes all components of a type from their entities and returns them.
 fn take<C: Component>(world: &mut World) -> Vec<(Entity, C)> {
     let mut query = world.query_filtered::<Entity, With<C>>();
     let mut entities: Vec<_> = query.iter(world).collect();
-    // As the scene has them, whatever else is in the world.
+    // Sorted, so that the order is that of the scene, whatever else is in the world.
     entities.sort_unstable();
     let taken = entities.into_iter().filter_map(|entity| {
         let loaded = world.entity_mut(entity).take::<C>()?;
@@ -81,7 +85,7 @@ fn take<C: Component>(world: &mut World) -> Vec<(Entity, C)> {
     taken.collect()
 }
 
-/// The body that an entity is or stands below.
+/// Returns the body that an entity belongs to: the entity itself or its nearest ancestor that is a body.
 pub(super) fn owner(world: &World, entity: Entity) -> Option<Entity> {
     let mut up = std::iter::once(entity).chain(above(world, entity));
     up.find(|entity| {
@@ -89,10 +93,11 @@ pub(super) fn owner(world: &World, entity: Entity) -> Option<Entity> {
     })
 }
 
-/// Puts a body where nothing above it moves or turns: bevy_rapier3d 0.36 writes wrong places into bodies below what is turned.
+/// Moves a body to a place in the hierarchy where no ancestor moves or rotates it, because bevy_rapier3d 0.36 writes
+/// wrong transforms into bodies below rotated entities.
 ///
-/// One below another of the file goes to where the uppermost of these hangs: to the file, each goes its own way. If what is
-/// above is turned, an entity between them undoes that.
+/// In the file, nested bodies move independently. So a body below other bodies of the file moves up to the parent of
+/// the topmost of them. A new entity in between undoes the transform of that parent.
 fn stand_free(world: &mut World, body: Entity, at: Transform, moving: &EntityHashSet) {
     let moving_above = above(world, body).filter(|entity| moving.contains(entity));
     let top = moving_above.last().unwrap_or(body);
@@ -113,7 +118,7 @@ fn stand_free(world: &mut World, body: Entity, at: Transform, moving: &EntityHas
     world.entity_mut(body).insert((at, ChildOf(level)));
 }
 
-/// The collider of an entity, and what it weighs in its body's frame.
+/// Adds the collider of an entity. Returns its mass properties at [`mass::DENSITY`], in the frame of its body.
 fn add_collider(
     world: &mut World,
     entity: Entity,
@@ -123,7 +128,7 @@ fn add_collider(
     let place_of = &loaded.place;
     let here = place(world, entity)?;
     if here.scale == Vec3::ZERO {
-        // The file's way to say that there is none.
+        // In glTF, a scale of zero on all axes disables the collider.
         return None;
     }
     if here.scale.cmpeq(Vec3::ZERO).any() {
@@ -157,7 +162,8 @@ fn add_collider(
     let mut node = world.entity_mut(entity);
     node.insert(Collider::from(shape));
     if mirrored {
-        // Rapier would take a ball for something else, and a mirrored shape is itself.
+        // With a negative scale, Rapier would turn a ball into another shape. These shapes equal their mirror images,
+        // so the sign is dropped.
         node.insert(ColliderScale::Absolute(scale));
     }
     if let Some(material) = &loaded.material {
@@ -186,7 +192,7 @@ fn add_collider(
         ));
     }
     let body = body?;
-    // The body has all of the mass.
+    // The mass is set on the body, so the collider has none.
     node.insert(ColliderMassProperties::Density(0.0));
     if loaded.trigger {
         return None;

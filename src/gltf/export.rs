@@ -1,4 +1,4 @@
-//! Out again: bodies, colliders, joints and elements of a world as a glTF file.
+//! Writes bodies, colliders, joints and elements of a world as a glTF file.
 
 use super::export_element::{element, ends};
 use super::export_filters::Filters;
@@ -15,19 +15,20 @@ use serde_json::{Value, json};
 /// A glTF file, made by [`export_gltf`].
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ExportedGltf {
-    /// The file's text: a `.gltf` with its buffers inside.
+    /// Text of the `.gltf` file, with its buffers embedded.
     pub text: String,
-    /// What could not be written, or comes back as something else: one sentence each, with the entity and the component.
+    /// What could not be written, or reads back as something else. Each sentence names the entity, and the component
+    /// where one is concerned.
     pub left_out: Vec<String>,
 }
 
-/// Writes what stands on and below `roots` as a glTF file, as it is now: bodies, colliders and joints of Rapier as
-/// `KHR_physics_rigid_bodies`, elements as `BEVY_coilover`, with the nodes that they stand on. What is drawn is not
-/// written.
+/// Writes `roots` and their descendants in their present state as a glTF file. Bodies, colliders and joints of Rapier
+/// become `KHR_physics_rigid_bodies`, and elements become `BEVY_coilover`. Nodes are written for these and for the
+/// entities that they need. Meshes for rendering are not written.
 ///
-/// Numbers read back as the same numbers of single precision. Each root's place is that in the world; one that stands below
-/// another root stays there. Physics need not have made a step. `docs/gltf.md` says what the format cannot hold;
-/// [`ExportedGltf::left_out`] says it of this world.
+/// All numbers read back as the same `f32`. Each root gets its transform in the world; a root below another root
+/// stays there. Physics need not have run a step. `docs/gltf.md` lists what the format cannot hold, and
+/// [`ExportedGltf::left_out`] lists what was lost of this world.
 ///
 /// ```
 /// # use bevy::prelude::*;
@@ -45,7 +46,7 @@ pub fn export_gltf(world: &World, roots: impl IntoIterator<Item = Entity>) -> Ex
     let mut seen = EntityHashSet::default();
     asked.retain(|root| world.get_entity(*root).is_ok() && seen.insert(*root));
     let kept = kept(world, &asked);
-    // A node has one place in a file: what stands below another root is written there.
+    // Each node is in the file once: a root below another root is written there.
     let stands_alone = |root: &Entity| !above(world, *root).any(|above| seen.contains(&above));
     let roots: Vec<_> = asked.into_iter().filter(stands_alone).collect();
     let mut writer = Writer {
@@ -62,7 +63,8 @@ pub fn export_gltf(world: &World, roots: impl IntoIterator<Item = Entity>) -> Ex
     writer.write(&roots)
 }
 
-/// What there is to write: roots, entities that say something, ends, and all that they stand below.
+/// Returns the entities to write: the roots, bodies, colliders and elements below them, the ends of those elements,
+/// and all ancestors of these up to the roots.
 fn kept(world: &World, roots: &[Entity]) -> EntityHashSet {
     let mut below = Vec::new();
     let mut seen = EntityHashSet::default();
@@ -94,10 +96,10 @@ fn kept(world: &World, roots: &[Entity]) -> EntityHashSet {
     kept
 }
 
-/// Writes a file, node by node.
+/// State of writing one file, node by node.
 pub(super) struct Writer<'w> {
     pub(super) world: &'w World,
-    /// Of the node of an entity.
+    /// Index of the node of each entity.
     pub(super) index: EntityHashMap<usize>,
     order: Vec<Entity>,
     pub(super) nodes: Vec<Value>,
@@ -106,7 +108,7 @@ pub(super) struct Writer<'w> {
 }
 
 impl Writer<'_> {
-    /// Gives indices to an entity and what is kept below it.
+    /// Assigns node indices to an entity and to its kept descendants.
     fn number(&mut self, root: Entity, kept: &EntityHashSet) {
         let mut open = vec![root];
         while let Some(entity) = open.pop() {
@@ -201,7 +203,7 @@ impl Writer<'_> {
         if let Some(name) = here.get::<Name>() {
             node.add("name", name.as_str().into());
         }
-        // A root that stands below something else is where it is in the world.
+        // A root with a parent outside the file gets its transform in the world.
         let moved = is_root && here.contains::<ChildOf>();
         let place = if moved {
             place(self.world, entity)
@@ -245,7 +247,8 @@ impl Writer<'_> {
         node.value()
     }
 
-    /// Motion and collider of an entity, and the node below it that has the collider where this is scaled by itself.
+    /// Returns motion and collider of an entity. If the collider has a scale of its own, it goes on a child node with
+    /// that scale, and the index of that node is returned.
     fn physics(&mut self, here: EntityRef) -> (Fields, Option<usize>) {
         let mut physics = Fields::default();
         if let Some(motion) = motion(here, self.world, &mut self.left_out) {
@@ -266,7 +269,8 @@ impl Writer<'_> {
         (physics, Some(self.add_node(node.value())))
     }
 
-    /// A collider's key and what it says, and whether its shape is its own mirror image.
+    /// Returns the key of a collider (`collider` or `trigger`), its value, and whether its shape equals its mirror
+    /// image.
     fn collider(&mut self, here: EntityRef) -> Option<(&'static str, Value, bool)> {
         let geometry = match self.shared.geometry(here.get::<Collider>()?) {
             Ok(geometry) => geometry,
@@ -280,7 +284,7 @@ impl Writer<'_> {
         let geometry = match geometry {
             Geometry::Shape(shape) => json!({ "shape": shape }),
             Geometry::Mesh { mesh, hull } => {
-                // On a node of its own, outside the scene, so that nothing more is drawn.
+                // The mesh goes on a separate node outside the scene, so that it is not drawn.
                 let node = self.add_node(json!({ "mesh": mesh }));
                 json!({ "node": node, "convexHull": hull })
             }
@@ -298,14 +302,15 @@ impl Writer<'_> {
         Some(("collider", fields.value(), symmetric))
     }
 
-    /// The index of a node that is no entity's; it comes after those of all entities.
+    /// Adds a node that belongs to no entity and returns its index. These nodes come after the nodes of all entities.
     fn add_node(&mut self, node: Value) -> usize {
         self.shared.more_nodes.push(node);
         self.index.len() + self.shared.more_nodes.len() - 1
     }
 }
 
-/// Groups of a collider: in Rapier, one without any is in all, and touches all.
+/// Returns the groups of a collider. In Rapier, a collider without `CollisionGroups` is in all groups and touches
+/// all.
 fn groups(collider: EntityRef) -> CollisionGroups {
     let groups = collider.get::<CollisionGroups>();
     groups.copied().unwrap_or_default()

@@ -1,4 +1,4 @@
-//! An element as `BEVY_coilover` writes it: the way back from [`element`](super::element).
+//! Writes an element as `BEVY_coilover`; [`element`](super::element) reads it back.
 
 use super::left_out::LeftOut;
 use super::number::{Fields, number, numbers, vector};
@@ -9,7 +9,7 @@ use bevy::ecs::entity_disabling::Disabled;
 use bevy::prelude::*;
 use serde_json::{Value, json};
 
-/// The ends of an element.
+/// Returns the ends of an element; `None` if the entity is not an element.
 pub(super) fn ends(entity: EntityRef) -> Option<[Entity; 2]> {
     macro_rules! ends {
         ($($element:ident),*) => {
@@ -22,7 +22,8 @@ pub(super) fn ends(entity: EntityRef) -> Option<[Entity; 2]> {
     None
 }
 
-/// What an element says, if the entity is one. `node` knows the index of an end's node.
+/// Returns the extension object of an element; `None` if the entity is not an element. `node` returns the index of an
+/// end's node.
 pub(super) fn element(
     entity: EntityRef,
     world: &World,
@@ -90,7 +91,8 @@ pub(super) fn element(
     Some(all.value())
 }
 
-/// Where an element is held. Points of the world, which the next step would take as points of the ends, are so taken here.
+/// Returns the anchors of an element. `WorldAnchors` that wait for the next step are converted to the frames of the
+/// ends, as that step would do.
 fn anchors(
     entity: EntityRef,
     ends: [Entity; 2],

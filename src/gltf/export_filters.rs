@@ -1,18 +1,20 @@
-//! Collision groups as filters: each combination of groups that colliders have is a system of its own, which names all
-//! systems that it touches.
+//! Writes collision groups as filters. Each distinct `CollisionGroups` value becomes one collision system, whose
+//! filter names all systems that it touches.
 //!
-//! Rapier's colliders touch where one group of each is wanted by the other. In the file a collider has to be named by the
-//! other with all of its systems, and one without systems is named by nobody. So those without groups get a filter too.
+//! In Rapier, two colliders touch if each has a membership that the other's filters contain. In the file, a collider
+//! is let through only if the other collider names all of its systems, and a collider without systems cannot be
+//! named. So colliders without groups get a filter too.
 
 use bevy_rapier3d::prelude::CollisionGroups;
 use serde_json::{Value, json};
 
-/// The filters of a file, by their combinations of groups.
+/// The filters of a file: one for each distinct value of `CollisionGroups`.
 #[derive(Default)]
 pub(super) struct Filters(Vec<CollisionGroups>);
 
 impl Filters {
-    /// Those that colliders with these groups need: none, if all touch all.
+    /// Returns the filters that colliders with these groups need. There are none if every collider has the default
+    /// groups.
     pub(super) fn of(colliders: impl IntoIterator<Item = CollisionGroups>) -> Self {
         let mut all: Vec<CollisionGroups> = Vec::new();
         for groups in colliders {
@@ -26,12 +28,12 @@ impl Filters {
         Self(all)
     }
 
-    /// The index of a collider's filter, if it needs one.
+    /// Returns the index of a collider's filter, if it needs one.
     pub(super) fn index(&self, groups: CollisionGroups) -> Option<usize> {
         self.0.iter().position(|other| *other == groups)
     }
 
-    /// As the file has them.
+    /// Returns the JSON objects of the filters.
     pub(super) fn values(&self) -> Vec<Value> {
         let name = |index: usize| format!("group_{index}");
         let filter = |(index, own): (usize, &CollisionGroups)| {
@@ -39,7 +41,7 @@ impl Filters {
             let touched = others.filter(|(_, other)| touch(own, other));
             let mut names: Vec<String> = touched.map(|(index, _)| name(index)).collect();
             if names.is_empty() {
-                // The draft asks for one name at least.
+                // The draft of the extension requires at least one name.
                 names.push("nothing".into());
             }
             json!({ "collisionSystems": [name(index)], "collideWithSystems": names })
@@ -61,7 +63,7 @@ mod tests {
     use crate::gltf::physics::Shared;
     use bevy_rapier3d::prelude::Group;
 
-    /// Filters as a file with them is read: memberships and filters of each, as bits.
+    /// Writes the filters and reads them back. Returns memberships and filters of each as bits.
     fn read(filters: &Filters) -> Vec<(u32, u32)> {
         let file = json!({ "collisionFilters": filters.values() });
         let told = Told::default();

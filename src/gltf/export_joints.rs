@@ -1,4 +1,4 @@
-//! Joints of Rapier's as `KHR_physics_rigid_bodies` writes them: each as two nodes below its bodies.
+//! Writes Rapier's joints as `KHR_physics_rigid_bodies`. Each joint becomes two nodes, one below each of its bodies.
 
 use super::expand::owner;
 use super::export::Writer;
@@ -15,7 +15,7 @@ use bevy_rapier3d::rapier::prelude::Pose;
 use serde_json::{Value, json};
 
 impl Writer<'_> {
-    /// Writes the joints of what is exported; after all other nodes, so that their indices are known.
+    /// Writes the joints of all exported entities. Runs after all other nodes, so that their indices are known.
     pub(super) fn joints(&mut self, order: &[Entity]) {
         for entity in self.joint_entities(order) {
             let world = self.world;
@@ -31,7 +31,7 @@ impl Writer<'_> {
         }
     }
 
-    /// A joint from a body to that of an entity.
+    /// Writes a joint between the body `parent` and the body that the entity `here` belongs to.
     fn joint(&mut self, here: EntityRef, parent: Entity, raw: &RawJoint) {
         let owner = owner(self.world, here.id());
         let index = |body: Option<Entity>| Some((body?, self.index.get(&body?).copied()?));
@@ -53,7 +53,7 @@ impl Writer<'_> {
         self.frame(a, raw.local_frame1, json!({ super::physics::NAME: joint }));
     }
 
-    /// A node below a body's, at a joint's frame; its index.
+    /// Adds a node below a body's node, at the frame of a joint. Returns its index.
     fn frame(&mut self, (body, node): (Entity, usize), at: Pose, extensions: Value) -> usize {
         let scale = place(self.world, body).map_or(Vec3::ONE, |place| steady(place.scale));
         let frame = Fields::default()
@@ -69,7 +69,7 @@ impl Writer<'_> {
         index
     }
 
-    /// What holds a joint: anything on or below what is exported.
+    /// Returns all entities with a joint: exported entities and their descendants.
     fn joint_entities(&self, order: &[Entity]) -> Vec<Entity> {
         let mut found = Vec::new();
         let mut seen = EntityHashSet::default();
@@ -89,7 +89,7 @@ impl Writer<'_> {
     }
 }
 
-/// Limits and drives of a joint.
+/// Returns the limits and drives of a joint as JSON.
 fn kind(joint: &RawJoint, entity: EntityRef, left_out: &mut LeftOut) -> Value {
     let bits = |mask: u8, first: usize| -> Vec<usize> {
         (0..3).filter(|i| mask & (1 << (first + i)) != 0).collect()

@@ -1,4 +1,5 @@
-//! Mass of a body as its components say it. Rapier's own numbers are those of its last step, and there may have been none.
+//! Computes the mass of a body from its components. Rapier's own values are those of its last step, and there may
+//! have been no step yet.
 
 use super::expand::SUBDIVISIONS;
 use super::place::{above, place};
@@ -8,27 +9,27 @@ use bevy_rapier3d::rapier::prelude::{
     ColliderMassProps, MassProperties as RapierMass, Pose, SharedShape,
 };
 
-/// A collider that counts for its body.
+/// A collider that adds to the mass of its body.
 struct Part {
     shape: SharedShape,
     weight: ColliderMassProps,
-    /// In the body's frame.
+    /// Pose in the body's frame.
     at: Pose,
 }
 
-/// Mass properties of a whole body: what its colliders weigh, and what is added to that, as Rapier sums them up.
+/// Returns the mass properties of a whole body: its colliders plus the additional mass, summed as Rapier does it.
 pub(super) fn mass(world: &World, body: EntityRef) -> MassProperties {
     let parts = parts(world, body.id());
     let weights = parts
         .iter()
         .map(|part| (part.weight.mass_properties(&*part.shape), part.at))
-        // What weighs nothing would bring its place with it.
+        // A massless collider is skipped, because its position would still affect the sum.
         .filter(|(weight, _)| *weight != RapierMass::default());
     let own = weights
         .map(|(weight, at)| weight.transform_by(&at))
         .reduce(|sum, weight| sum + weight);
     let all = match (body.get::<AdditionalMassProperties>(), own) {
-        // As they were given: Rapier has reciprocals, and these lose the last digits.
+        // Returned exactly as given: Rapier stores reciprocals, which would change the last digits.
         (Some(AdditionalMassProperties::MassProperties(given)), None) => return *given,
         (Some(AdditionalMassProperties::MassProperties(given)), Some(own)) => {
             own + given.into_rapier()
@@ -38,7 +39,7 @@ pub(super) fn mass(world: &World, body: EntityRef) -> MassProperties {
             own
         }
         (Some(AdditionalMassProperties::Mass(mass)), None) => {
-            // Colliders that weigh nothing still say how the mass is spread.
+            // Even massless colliders determine how the mass is distributed.
             let volumes = parts
                 .iter()
                 .map(|part| part.shape.mass_properties(1.0).transform_by(&part.at));
@@ -51,7 +52,7 @@ pub(super) fn mass(world: &World, body: EntityRef) -> MassProperties {
     MassProperties::from_rapier(all)
 }
 
-/// The colliders on a body and below it, but for those of bodies below it.
+/// Returns the colliders of a body: on it and on its descendants, except those of other bodies below it.
 fn parts(world: &World, body: Entity) -> Vec<Part> {
     let mut parts = Vec::new();
     let mut open = vec![body];
@@ -90,7 +91,7 @@ fn part(world: &World, body: Entity, here: EntityRef) -> Option<Part> {
     })
 }
 
-/// What Rapier scales a collider's shape by.
+/// Returns the scale that Rapier applies to the shape of a collider.
 fn scale(world: &World, collider: EntityRef) -> Vec3 {
     let of_node = || place(world, collider.id()).unwrap_or_default().scale;
     match collider.get::<ColliderScale>() {
@@ -100,7 +101,7 @@ fn scale(world: &World, collider: EntityRef) -> Vec3 {
     }
 }
 
-/// Where Rapier has a collider on its body.
+/// Returns the transform of a collider relative to its body, as Rapier computes it.
 fn offset(world: &World, body: Entity, collider: Entity) -> Transform {
     let local = |entity| world.get::<Transform>(entity).copied().unwrap_or_default();
     let up = std::iter::once(collider).chain(above(world, collider));

@@ -1,4 +1,4 @@
-//! Rapier's bodies and colliders as `KHR_physics_rigid_bodies` writes them.
+//! Writes Rapier's bodies and colliders as `KHR_physics_rigid_bodies`.
 
 use super::export_filters::Filters;
 use super::export_mass::mass;
@@ -10,7 +10,7 @@ use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
 use serde_json::{Value, json};
 
-/// What nodes share in a file.
+/// Lists of the file that nodes refer to by index.
 #[derive(Default)]
 pub(super) struct Parts {
     pub(super) shapes: Vec<Value>,
@@ -21,17 +21,17 @@ pub(super) struct Parts {
     pub(super) accessors: Vec<Value>,
     pub(super) views: Vec<Value>,
     pub(super) buffer: Vec<u8>,
-    /// Nodes beside those of entities: meshes of colliders, and colliders that are scaled by themselves.
+    /// Nodes that belong to no entity: meshes of colliders, and colliders with a scale of their own.
     pub(super) more_nodes: Vec<Value>,
 }
 
-/// Where a collider's geometry is in the file.
+/// Index of a collider's geometry in the file.
 pub(super) enum Geometry {
     Shape(usize),
     Mesh { mesh: usize, hull: bool },
 }
 
-/// The index of a value in a list, which gets it if it has not.
+/// Returns the index of a value in a list, and adds the value if the list does not contain it.
 fn index(list: &mut Vec<Value>, value: Value) -> usize {
     list.iter().position(|v| *v == value).unwrap_or_else(|| {
         list.push(value);
@@ -48,7 +48,8 @@ impl Parts {
         index(&mut self.joints, value)
     }
 
-    /// A collider's shape, before its entity's scale; what it is, if the format has it not.
+    /// Adds the shape of a collider, without the scale of its entity. The error says why the format cannot hold the
+    /// shape.
     pub(super) fn geometry(&mut self, collider: &Collider) -> Result<Geometry, &'static str> {
         let shape = match collider.as_unscaled_typed_shape() {
             ColliderView::Ball(ball) => {
@@ -123,7 +124,7 @@ impl Parts {
     }
 }
 
-/// How a body moves; nothing for one that is fixed.
+/// Returns the `motion` of a body; `None` for a fixed body.
 pub(super) fn motion(body: EntityRef, world: &World, left_out: &mut LeftOut) -> Option<Value> {
     let kind = *body.get::<RigidBody>()?;
     let mut motion = Fields::default();
@@ -181,7 +182,7 @@ pub(super) fn motion(body: EntityRef, world: &World, left_out: &mut LeftOut) -> 
     Some(motion.value())
 }
 
-/// Friction and restitution of a collider, if it has any of its own.
+/// Returns the material of a collider; `None` if it has neither `Friction` nor `Restitution`.
 pub(super) fn material(collider: EntityRef) -> Option<Value> {
     let (friction, restitution) = (collider.get::<Friction>(), collider.get::<Restitution>());
     if friction.is_none() && restitution.is_none() {
@@ -193,7 +194,7 @@ pub(super) fn material(collider: EntityRef) -> Option<Value> {
         CoefficientCombineRule::Multiply => "multiply",
         _ => "average",
     };
-    // What is not given is as Rapier takes it; a reader would take other numbers.
+    // A missing component is written with Rapier's default, because a reader of the file would use other defaults.
     let friction = friction.copied().unwrap_or_default();
     let restitution = restitution.copied().unwrap_or_default();
     let fields = Fields::default()
@@ -205,7 +206,8 @@ pub(super) fn material(collider: EntityRef) -> Option<Value> {
     Some(fields.value())
 }
 
-/// What a collider is scaled by beside the scale of its node, if anything. A symmetric shape is not mirrored.
+/// Returns the scale of a collider relative to its node, if it has one other than 1. A shape that equals its mirror
+/// image loses the signs.
 pub(super) fn own_scale(collider: EntityRef, world: &World, symmetric: bool) -> Option<Vec3> {
     let scale = match collider.get::<ColliderScale>()? {
         ColliderScale::Relative(scale) => *scale,
@@ -214,6 +216,7 @@ pub(super) fn own_scale(collider: EntityRef, world: &World, symmetric: bool) -> 
         }
     };
     let scale = steady(if symmetric { scale.abs() } else { scale });
-    // A node that is scaled to nothing has no collider in the file, whatever stands below it.
+    // A node with a scale of zero gives a scale that is not finite. In the file, that node has no collider in any
+    // case.
     (scale.is_finite() && scale != Vec3::ONE).then_some(scale)
 }

@@ -1,17 +1,19 @@
-//! Collision filters as bits: one for each filter of the file, so that any rule on sets of names holds exactly.
+//! Converts collision filters to bits. Each filter of the file gets one bit, so that every rule on sets of names
+//! holds exactly.
 
 use super::physics::{Filter, Shared};
 
-/// The last bit is that of colliders without a filter.
+/// Bit of the colliders without a filter: the last one.
 const UNFILTERED: u32 = 31;
 
-/// Memberships and filters for each filter of a file, and last for colliders without one.
+/// Returns memberships and filters for each filter of the file, and at the end those for colliders without a filter.
 pub(super) fn groups(shared: &Shared) -> Vec<(u32, u32)> {
     let none = Filter::default();
     let filters = shared.filters.iter().map(|f| f.as_ref().unwrap_or(&none));
     let all: Vec<&Filter> = filters.chain([&none]).collect();
     let last = all.len() - 1;
-    // Filters beyond the last bit share it, and collide as if they were the first that has it.
+    // Filters beyond the 31st share its bit. Two filters that share it touch if each may touch some filter with that
+    // bit. All other pairs are exact.
     let bit = |i: usize| {
         if i == last {
             UNFILTERED
@@ -28,10 +30,10 @@ pub(super) fn groups(shared: &Shared) -> Vec<(u32, u32)> {
     groups.map(|(i, a)| (1 << bit(i), mask(a))).collect()
 }
 
-/// How many filters a file can have before they mix.
+/// Greatest number of filters for which every filter has a bit of its own.
 pub(super) const MOST: usize = UNFILTERED as usize;
 
-/// Whether what is in `b`'s systems may touch `a`.
+/// Whether the rules of filter `a` allow contact with a collider that has filter `b`. The reverse must hold too.
 fn accepts(a: &Filter, b: &Filter) -> bool {
     if let Some(only) = &a.only {
         return !b.systems.is_empty() && b.systems.iter().all(|system| only.contains(system));
@@ -70,7 +72,7 @@ mod tests {
             let (a, b) = (groups[a], groups[b]);
             a.0 & b.1 != 0 && b.0 & a.1 != 0
         };
-        // The last is that of colliders without a filter.
+        // Index 4 stands for colliders without a filter.
         let wanted = [
             (0, 0, true),
             (0, 1, false),

@@ -1,7 +1,7 @@
-//! Files that are wrong in random ways: nothing panics, nothing hangs, and nothing of it reaches the engine as NaN.
+//! Tests with files that are wrong in random ways: nothing panics or hangs, and no NaN reaches the engine.
 //!
-//! `COILOVER_FUZZ_SECONDS=60 cargo test --workspace --lib fuzz` runs for a minute; without the variable it takes a few
-//! seconds. `COILOVER_FUZZ_SEED` starts elsewhere.
+//! `COILOVER_FUZZ_SECONDS=60 cargo test --workspace --lib fuzz` runs for a minute; without the variable it takes a
+//! few seconds. `COILOVER_FUZZ_SEED` sets another seed.
 
 use super::handler::Handler;
 use super::json::Told;
@@ -13,7 +13,7 @@ use bevy_rapier3d::prelude::*;
 use serde_json::{Map, Value, json};
 use std::time::{Duration, Instant};
 
-/// Numbers from a seed, the same everywhere (Marsaglia's xorshift).
+/// Random numbers from a seed, equal on all systems (Marsaglia's xorshift).
 struct Dice(u64);
 
 impl Dice {
@@ -28,7 +28,7 @@ impl Dice {
         of[self.roll(of.len())].clone()
     }
 
-    /// Anything that JSON can say.
+    /// Returns a random JSON value.
     fn anything(&mut self, depth: usize) -> Value {
         match self.roll(if depth > 3 { 8 } else { 10 }) {
             0 => Value::Null,
@@ -58,7 +58,7 @@ impl Dice {
         }
     }
 
-    /// Changes what one of some extensions says, and leaves it an extension.
+    /// Changes the content of one extension at random. The extension's own key stays.
     fn spoil_one(&mut self, extensions: &mut Value) {
         if let Some(map) = extensions.as_object_mut() {
             let which = self.roll(map.len());
@@ -68,7 +68,7 @@ impl Dice {
         }
     }
 
-    /// Changes a value somewhere.
+    /// Changes a random value inside a JSON value.
     fn spoil(&mut self, value: &mut Value) {
         let stop = self.roll(4) == 0;
         match value {
@@ -94,7 +94,7 @@ impl Dice {
     }
 }
 
-/// All that the extensions can say, and all of it right.
+/// Returns a valid file that uses most of what the extensions offer.
 fn scene() -> Value {
     let element = |kind: &str, more: Value| {
         let mut extension = json!({
@@ -205,10 +205,11 @@ fn lab() -> App {
     app
 }
 
-/// Loads a file's nodes into the world as the loader would, and steps; what was told of it.
+/// Loads the nodes of a file into the world as Bevy's loader would, and runs three frames. Returns what was reported,
+/// or `None` if the file is not glTF.
 fn play(app: &mut App, file: &Value) -> Option<Vec<String>> {
     let text = file.to_string();
-    // What the format itself forbids, Bevy's loader refuses before us.
+    // A file that is not valid glTF is refused by Bevy's loader before this crate sees it.
     let gltf = gltf::Gltf::from_slice(text.as_bytes()).ok()?;
     let told = Told::default();
     let handler = Handler::of(&gltf.document, "fuzz".into());
@@ -250,7 +251,7 @@ fn play(app: &mut App, file: &Value) -> Option<Vec<String>> {
 #[test]
 fn a_right_file_is_told_nothing() {
     let told = play(&mut lab(), &scene()).expect("it is glTF");
-    // Node 4 asks for a mesh that this file has not.
+    // Node 4 refers to a mesh that this file does not have.
     let others: Vec<_> = told
         .iter()
         .filter(|line| !line.contains("no triangles"))

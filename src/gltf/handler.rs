@@ -1,4 +1,5 @@
-//! Takes part in Bevy's loading of a glTF file.
+//! Extension handler of Bevy's glTF loader: reads this crate's extensions and puts their components on the loaded
+//! scene.
 
 use super::carry::{LoadedBody, LoadedCollider, LoadedJoint, Mesh, Shape};
 use super::json::Told;
@@ -17,26 +18,26 @@ use gltf::scene::Transform;
 use serde_json::Value;
 use std::sync::Arc;
 
-/// Nodes below each other that are followed: as many as Bevy's own loader can, which goes down by recursion.
+/// Greatest depth of nodes that is followed. Bevy's own loader recurses and cannot go deeper either.
 const DEEPEST: usize = 512;
 
-/// State of one load; Bevy clones an empty one for each.
+/// State of one load. For each load, Bevy clones an empty handler.
 #[derive(Clone, Default)]
 pub(super) struct Handler {
     file: Arc<File>,
-    /// By index of the mesh: geometry that colliders ask for.
+    /// Geometry that colliders need, by index of the mesh.
     meshes: HashMap<usize, Mesh>,
-    /// By index of the node: entities of the scene that is being built.
+    /// Entities of the scene that is being loaded, by index of the node.
     entities: HashMap<usize, Entity>,
 }
 
-/// What the file says, apart from any scene.
+/// Content of the file that does not depend on the scene.
 #[derive(Default)]
 struct File {
     path: String,
     nodes: Vec<Node>,
     shared: Option<Shared>,
-    /// Meshes that colliders ask for.
+    /// Indices of the meshes that colliders need.
     wanted: HashSet<usize>,
 }
 
@@ -107,7 +108,7 @@ impl File {
         file
     }
 
-    /// Visits a node and all below it, each with its place in the first one's space.
+    /// Visits a node and its descendants, each with its transform in the space of the first node.
     fn below<'a>(&'a self, first: usize, visit: &mut impl FnMut(&'a Node, Affine3A)) {
         let mut open = vec![(first, Affine3A::IDENTITY, 0)];
         let mut seen = HashSet::new();
@@ -211,7 +212,7 @@ impl GltfExtensionHandler for Handler {
 }
 
 impl Handler {
-    /// With what a file says.
+    /// Returns a handler that has read a file.
     #[cfg(test)]
     pub(super) fn of(document: &gltf::Document, path: String) -> Self {
         Self {
@@ -220,7 +221,7 @@ impl Handler {
         }
     }
 
-    /// Puts on a scene's entities what the file says of their nodes.
+    /// Inserts into the entities of a scene the components that the file defines for their nodes.
     pub(super) fn fill(&self, entities: &HashMap<usize, Entity>, world: &mut World, told: &Told) {
         let file = &*self.file;
         let Some(shared) = &file.shared else { return };
@@ -294,7 +295,7 @@ impl Handler {
         }
     }
 
-    /// Geometry of a node's collider.
+    /// Returns the geometry of a node's collider. `made` caches meshes by node.
     fn shape(
         &self,
         source: Source,
@@ -327,7 +328,7 @@ impl Handler {
         }
     }
 
-    /// All triangles on a node and below it.
+    /// Returns the triangles of a node and its descendants, in the space of that node.
     fn mesh(&self, node: usize) -> Mesh {
         let mut all = Mesh::default();
         self.file.below(node, &mut |node, place| {
@@ -344,7 +345,7 @@ impl Handler {
     }
 }
 
-/// Adds a primitive's triangles; what is none of them, or points nowhere, is left out.
+/// Adds the triangles of a primitive. Points, lines and triangles with indices out of range are left out.
 fn add_primitive(mesh: &mut Mesh, primitive: &gltf::Primitive, buffers: &[Vec<u8>]) {
     let reader = primitive.reader(|buffer| buffers.get(buffer.index()).map(Vec::as_slice));
     let Some(positions) = reader.read_positions() else {

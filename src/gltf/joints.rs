@@ -1,4 +1,5 @@
-//! Joints: what is rigid becomes a joint of Rapier's, what is soft or driven becomes elements of ours.
+//! Creates joints. Rigid limits become a Rapier joint. Soft limits and drives become elements of this crate, except
+//! for drives in acceleration mode without stiffness or with a target velocity, which become Rapier motors.
 
 use super::carry::LoadedJoint;
 use super::expand::owner;
@@ -12,7 +13,7 @@ use bevy_rapier3d::rapier::dynamics::{JointAxis, MotorModel};
 const LINEAR: [JointAxis; 3] = [JointAxis::LinX, JointAxis::LinY, JointAxis::LinZ];
 const ANGULAR: [JointAxis; 3] = [JointAxis::AngX, JointAxis::AngY, JointAxis::AngZ];
 
-/// An axis of the joint as Rapier names it.
+/// Returns Rapier's name for an axis of the joint.
 fn axis(linear: bool, index: usize) -> JointAxis {
     if linear {
         LINEAR[index]
@@ -21,7 +22,7 @@ fn axis(linear: bool, index: usize) -> JointAxis {
     }
 }
 
-/// Makes a joint between a node and the one it is connected to.
+/// Creates a joint between a node and its connected node.
 pub(super) fn add(world: &mut World, node: Entity, joint: &LoadedJoint) {
     let told = |what: &str| log::warn!("{}: joint: {what}", joint.place);
     let other = joint.connected;
@@ -83,7 +84,7 @@ pub(super) fn add(world: &mut World, node: Entity, joint: &LoadedJoint) {
         }
     }
     if acts {
-        // On an entity of its own, since a body can have but one.
+        // On a separate entity, because a body can hold only one joint component.
         world.spawn((
             ImpulseJoint::new(body_a, TypedJoint::GenericJoint(rigid)),
             ChildOf(body_b),
@@ -91,7 +92,8 @@ pub(super) fn add(world: &mut World, node: Entity, joint: &LoadedJoint) {
     }
 }
 
-/// What a joint holds on to where no body is: the nearest collider above, or the node itself, made a fixed body.
+/// Returns the body to use where a node of the joint has none: the node itself or its nearest ancestor with a
+/// collider, else the node. That entity becomes a fixed body.
 fn anchor(world: &mut World, node: Entity) -> Entity {
     let mut current = Some(node);
     let mut found = node;
@@ -106,7 +108,7 @@ fn anchor(world: &mut World, node: Entity) -> Entity {
     found
 }
 
-/// A limit that does not give: whether anything of it holds, and what of it does not.
+/// Applies a rigid limit to a joint. Returns whether any of it takes effect, and a message if part of it does not.
 fn hold(joint: &mut GenericJoint, limit: &Limit) -> (bool, Option<&'static str>) {
     let axes: Vec<_> = (0..3).filter(|i| limit.axes[*i]).collect();
     let mut mask = JointAxesMask::empty();
@@ -128,7 +130,7 @@ fn hold(joint: &mut GenericJoint, limit: &Limit) -> (bool, Option<&'static str>)
         joint.set_limits(axis(limit.linear, only), ends);
         return (true, None);
     }
-    // A distance, or the angle of a cone: never negative.
+    // The value is a distance or the angle of a cone, so it is never negative.
     let min = limit.min.unwrap_or(0.0).max(0.0);
     let Some(max) = limit.max else {
         let lacks = "a rigid limit with only a min on two or three axes is not honoured";
@@ -149,7 +151,7 @@ fn hold(joint: &mut GenericJoint, limit: &Limit) -> (bool, Option<&'static str>)
     };
     let coupled = joint.raw.coupled_axes;
     if coupled.intersects(kind) && coupled & kind != mask {
-        // Rapier takes the axes of both together, and panics where these are three angles.
+        // Rapier would couple the axes of both limits together, and panics if these are all three angles.
         let lacks =
             "a second rigid limit on two or three axes, not those of the first, is left out";
         return (false, Some(lacks));
@@ -160,7 +162,7 @@ fn hold(joint: &mut GenericJoint, limit: &Limit) -> (bool, Option<&'static str>)
     (true, (min > 0.0).then_some(lacks))
 }
 
-/// A drive as a motor of Rapier's.
+/// Applies a drive to a joint as a Rapier motor.
 fn motor(joint: &mut GenericJoint, drive: &Drive) {
     let axis = axis(drive.linear, drive.axis);
     let model = if drive.acceleration {

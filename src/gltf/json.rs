@@ -1,23 +1,25 @@
-//! Reading of JSON that may be wrong anywhere: what is wrong is told with its place and left out.
+//! Reads JSON that may be wrong anywhere. Each error is reported with its place in the file, and the wrong part is
+//! left out.
 
 use bevy::prelude::*;
 use serde_json::{Map, Value};
 use std::cell::RefCell;
 
-/// What was wrong with a file, each thing once.
+/// Errors found in a file.
 #[derive(Debug, Default)]
 pub(super) struct Told(RefCell<Vec<String>>);
 
-/// Beyond this many, only their number is told: a broken file may have a million of them.
+/// Greatest number of errors that are logged one by one. Of the rest only the number is logged: a broken file may
+/// have a million.
 const MOST_TOLD: usize = 32;
 
 impl Told {
-    /// Notes that something at a place is wrong.
+    /// Adds an error at a place of the file.
     pub(super) fn tell(&self, place: &str, what: impl std::fmt::Display) {
         self.0.borrow_mut().push(format!("{place}: {what}"));
     }
 
-    /// Logs all that was told of a file.
+    /// Logs the errors of a file.
     pub(super) fn log(self, file: &str) {
         let told = self.0.into_inner();
         for line in told.iter().take(MOST_TOLD) {
@@ -34,10 +36,10 @@ impl Told {
     }
 }
 
-/// Most that a number of a body, shape or joint can be: beyond, Rapier's squares are infinite.
+/// Greatest magnitude of a number of a body, shape or joint. Larger numbers give infinite squares in Rapier.
 const MOST: f32 = 1e12;
 
-/// An object of the file, with its place for messages.
+/// A JSON object, with its place in the file for messages.
 #[derive(Clone)]
 pub(super) struct Object<'a> {
     map: &'a Map<String, Value>,
@@ -53,7 +55,7 @@ pub(super) struct Variant<'a> {
 }
 
 impl Variant<'_> {
-    /// Whether it has that name; the first letter may be small.
+    /// Whether the variant has this name. The first letter may be in lower case.
     pub(super) fn is(&self, name: &str) -> bool {
         let first = |text: &str| text.chars().next().map(|c| c.to_ascii_lowercase());
         first(self.name) == first(name) && self.name.get(1..) == name.get(1..)
@@ -61,7 +63,7 @@ impl Variant<'_> {
 }
 
 impl<'a> Object<'a> {
-    /// A value that should be an object; told if it is none.
+    /// Wraps a value that should be an object; reports an error and returns `None` if it is not.
     pub(super) fn new(value: &'a Value, place: String, told: &'a Told) -> Option<Self> {
         let map = value.as_object();
         if map.is_none() {
@@ -86,7 +88,7 @@ impl<'a> Object<'a> {
         format!("{}.{key}", self.place)
     }
 
-    /// Tells that the value of a key is wrong.
+    /// Reports an error in the value of a key.
     pub(super) fn tell(&self, key: &str, what: impl std::fmt::Display) {
         self.told.tell(&self.place_of(key), what);
     }
@@ -99,7 +101,7 @@ impl<'a> Object<'a> {
         self.map.get(key)
     }
 
-    /// Tells of keys that nobody reads.
+    /// Reports all keys that are not `known`.
     pub(super) fn only(&self, known: &[&str]) {
         for key in self.map.keys() {
             if !known.contains(&key.as_str()) && key != "extensions" && key != "extras" {
@@ -122,12 +124,12 @@ impl<'a> Object<'a> {
         read
     }
 
-    /// A number as it is, which may be beyond single precision and then is infinite.
+    /// Returns a number. One beyond single precision becomes infinite.
     pub(super) fn number(&self, key: &str) -> Option<f32> {
         self.wanted(key, "a number", |v| v.as_f64().map(|x| x as f32))
     }
 
-    /// A number that an engine can do with.
+    /// Returns a number of at most 1e12, which Rapier can use.
     pub(super) fn finite(&self, key: &str) -> Option<f32> {
         self.wanted(key, "a number below 1e12", |v| {
             v.as_f64().map(|x| x as f32).filter(|x| x.abs() <= MOST)
@@ -146,7 +148,7 @@ impl<'a> Object<'a> {
         self.wanted(key, "a text", Value::as_str)
     }
 
-    /// So many numbers.
+    /// Returns an array of exactly `N` numbers.
     pub(super) fn numbers<const N: usize>(&self, key: &str) -> Option<[f32; N]> {
         self.wanted(key, &format!("an array of {N} numbers"), numbers)
     }
@@ -155,7 +157,7 @@ impl<'a> Object<'a> {
         self.numbers(key).map(Vec3::from_array)
     }
 
-    /// A vector that an engine can do with.
+    /// Returns a vector of numbers of at most 1e12, which Rapier can use.
     pub(super) fn finite_vector(&self, key: &str) -> Option<Vec3> {
         let vector = self.vector(key)?;
         if !vector.abs().cmple(Vec3::splat(MOST)).all() {
@@ -174,7 +176,8 @@ impl<'a> Object<'a> {
         list.map_or(&[], Vec::as_slice)
     }
 
-    /// The objects of an array, each with its place; those that are none are told of and left out.
+    /// Returns the objects of an array, each with its place. An item that is not an object is reported and becomes
+    /// `None`.
     pub(super) fn objects(&self, key: &str) -> Vec<Option<Object<'a>>> {
         let place = self.place_of(key);
         let objects = self.list(key).iter().enumerate();
@@ -183,14 +186,14 @@ impl<'a> Object<'a> {
             .collect()
     }
 
-    /// Texts of an array.
+    /// Returns the strings of an array.
     pub(super) fn texts(&self, key: &str) -> Option<Vec<&'a str>> {
         self.wanted(key, "an array of texts", |value| {
             value.as_array()?.iter().map(Value::as_str).collect()
         })
     }
 
-    /// A text, or an object with one key.
+    /// Returns a variant: a string, or an object with one key.
     pub(super) fn variant(&self, key: &str) -> Option<Variant<'a>> {
         let place = self.place_of(key);
         self.wanted(key, "the name of a variant, or an object of one", |value| {

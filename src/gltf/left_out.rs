@@ -1,4 +1,4 @@
-//! What a file cannot hold is told, with the entity and the component.
+//! Collects what an exported file cannot hold, with the entity and the component.
 
 use super::export_element::ends;
 use bevy::ecs::entity_disabling::Disabled;
@@ -6,12 +6,12 @@ use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
 use std::fmt::Display;
 
-/// One sentence for each thing that is not in the file, or is there as something else.
+/// Sentences about things that are missing from the file, or are written as something else.
 #[derive(Default)]
 pub(super) struct LeftOut(Vec<String>);
 
 impl LeftOut {
-    /// Tells something of an entity, with its name where it has one.
+    /// Adds a sentence about an entity, with its name if it has one.
     pub(super) fn tell(&mut self, entity: EntityRef, what: impl Display) {
         let id = entity.id();
         self.0.push(match entity.get::<Name>() {
@@ -20,7 +20,7 @@ impl LeftOut {
         });
     }
 
-    /// Tells of an entity's components for which the file has no word.
+    /// Adds a sentence for each component that the file cannot hold, or holds as something else.
     pub(super) fn tell_unwritten(&mut self, entity: EntityRef) {
         macro_rules! tell {
             ($($component:ident),*) => {

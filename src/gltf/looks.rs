@@ -1,11 +1,11 @@
-//! How an element looks, as `BEVY_coilover` writes it.
+//! Reads the visual components of an element from `BEVY_coilover`.
 
 use super::companions::choice;
 use super::json::Object;
 use crate::visual::{Coil, Handedness, HelixEnds, ShowSpringGizmos, Telescope};
 use bevy::prelude::*;
 
-/// Puts the looks that an extension has beside an element.
+/// Inserts the visual components that the extension object describes.
 pub(super) fn insert(object: &Object, entity: &mut EntityWorldMut) {
     if let Some(look) = object.object("coil") {
         entity.insert(coil(&look));
@@ -82,7 +82,7 @@ fn telescope(look: &Object) -> Telescope {
     }
 }
 
-/// Linear RGB, or RGBA.
+/// Reads a colour in linear RGB or RGBA.
 fn color(look: &Object) -> Option<Color> {
     let list = look.list("color");
     if !look.has("color") {

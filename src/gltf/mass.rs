@@ -1,14 +1,15 @@
-//! Mass of a body from its motion and its colliders.
+//! Computes the mass of a loaded body from its `motion` and its colliders.
 
 use super::physics::Motion;
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::{LockedAxes, MassProperties};
 use bevy_rapier3d::rapier::prelude::MassProperties as RapierMass;
 
-/// Of a body whose mass the file leaves open: that of water, kg/m³.
+/// Density of a body whose mass the file does not give: that of water, kg/m³.
 pub(super) const DENSITY: f32 = 1000.0;
 
-/// A scale that is 1 but for rounding, as 1: a turned node's comes out of its matrix with other last digits.
+/// Replaces a scale of ±1 with rounding errors by exactly ±1. A scale that is extracted from the matrix of a rotated
+/// node has such errors.
 pub(super) fn steady(scale: Vec3) -> Vec3 {
     let near = |x: f32| {
         if (x.abs() - 1.0).abs() < 1e-5 {
@@ -20,8 +21,9 @@ pub(super) fn steady(scale: Vec3) -> Vec3 {
     Vec3::from_array(scale.to_array().map(near))
 }
 
-/// Mass properties of a body and the axes on which it is infinitely heavy. `shapes` is what its colliders weigh at
-/// [`DENSITY`], in the body's frame; `scale` is that of its node.
+/// Returns the mass properties of a body, and the axes to lock because the mass or the whole inertia is infinite.
+/// `shapes` holds the mass properties of its colliders at [`DENSITY`], in the body's frame. `scale` is the scale of
+/// its node.
 pub(super) fn mass(
     motion: &Motion,
     shapes: RapierMass,
@@ -52,7 +54,7 @@ pub(super) fn mass(
             shapes.principal_inertia_local_frame,
         )
     } else {
-        // Nothing says how large it is: a cube with edges of 1 m.
+        // The size is unknown: inertia of a cube with edges of 1 m.
         (Vec3::ZERO, Vec3::splat(mass / 6.0), Quat::IDENTITY)
     };
     if let Some(given) = motion.centre_of_mass {

@@ -1,10 +1,10 @@
-//! Springs, bodies and joints from glTF files.
+//! Reads springs, bodies and joints from glTF files, and writes them.
 //!
-//! [`handler`] takes part in Bevy's loader: [`physics`] and [`element`] (with [`companions`] and [`looks`]) read the JSON
-//! through [`json`], which tells what is wrong. Elements go into the scene as components; what Rapier is to have is carried
-//! by the components of [`carry`], and [`expand`] gives it to Rapier once the scene stands in the world: [`shapes`],
-//! [`mass`], [`filters`], [`joints`], and [`soft`] for what gives in a joint. [`export`] is the way back; [`left_out`] tells
-//! what does not go with it.
+//! [`handler`] is called by Bevy's loader. [`physics`] and [`element`] (with [`companions`] and [`looks`]) read the
+//! JSON through [`json`], which reports errors. Elements go into the scene as components. The components of [`carry`]
+//! hold what is meant for Rapier, and [`expand`] passes it on once the scene is in the world, with [`shapes`],
+//! [`mass`], [`filters`], [`joints`], and [`soft`] for soft limits and drives of joints. [`export`] writes files;
+//! [`left_out`] collects what a file cannot hold.
 
 mod carry;
 mod companions;
@@ -41,12 +41,13 @@ use bevy::prelude::*;
 use bevy::transform::TransformSystems;
 
 /// Reads springs, bodies, colliders and joints from glTF files: the extensions `BEVY_coilover`,
-/// `KHR_physics_rigid_bodies` and `KHR_implicit_shapes`, as `docs/gltf.md` says.
+/// `KHR_physics_rigid_bodies` and `KHR_implicit_shapes`, as `docs/gltf.md` describes.
 ///
-/// It is part of [`CoiloverPlugins`](crate::CoiloverPlugins). Beside [`CoiloverPlugin`](crate::CoiloverPlugin) alone, add
-/// it before files are loaded.
+/// It is part of [`CoiloverPlugins`](crate::CoiloverPlugins). If you use only
+/// [`CoiloverPlugin`](crate::CoiloverPlugin), add this plugin too, before any file is loaded.
 ///
-/// In a scene that is spawned, springs are there at once, and bodies, colliders and joints by the end of the frame.
+/// When a scene is spawned, its springs exist at once. Its bodies, colliders and joints exist by the end of the
+/// frame.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct CoiloverGltfPlugin;
 
@@ -57,7 +58,7 @@ impl Plugin for CoiloverGltfPlugin {
         handlers
             .write_blocking()
             .push(Box::new(handler::Handler::default()));
-        // A scene with a type that is not registered does not spawn.
+        // A scene that contains an unregistered type does not spawn.
         crate::plugin::register_elements(app);
         app.register_type::<crate::SpringReadout>()
             .register_type::<Disabled>()

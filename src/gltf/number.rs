@@ -1,9 +1,9 @@
-//! Numbers of single precision as JSON: the shortest that reads back as the same.
+//! Writes `f32` numbers as JSON, in the shortest form that reads back as the same number.
 
 use bevy::prelude::*;
 use serde_json::{Map, Number, Value};
 
-/// A number; what JSON has not (NaN, infinity) is `null`.
+/// Returns a number as JSON; `null` for NaN and infinity, which JSON does not have.
 pub(super) fn number(x: f32) -> Value {
     let shortest = x.to_string().parse().ok().filter(|_| x.is_finite());
     shortest
@@ -19,7 +19,7 @@ pub(super) fn vector(v: Vec3) -> Value {
     numbers(v.to_array())
 }
 
-/// An object that is filled key by key; `null` is left out.
+/// A JSON object under construction. Values that are `null` are left out.
 #[derive(Default)]
 pub(super) struct Fields(Map<String, Value>);
 

@@ -1,4 +1,4 @@
-//! `KHR_physics_rigid_bodies` and `KHR_implicit_shapes` as data, read from JSON that may be wrong.
+//! Reads `KHR_physics_rigid_bodies` and `KHR_implicit_shapes` into plain data. The JSON may be wrong.
 
 use super::companions::choice;
 use super::json::{Object, Told};
@@ -8,19 +8,19 @@ use bevy::prelude::*;
 use bevy_rapier3d::prelude::CoefficientCombineRule;
 use serde_json::Value;
 
-/// Name of the extension of nodes and file.
+/// Name of the glTF extension that nodes and the file itself have.
 pub(super) const NAME: &str = "KHR_physics_rigid_bodies";
-/// Name of the extension with the shapes.
+/// Name of the glTF extension that holds the shapes.
 pub(super) const SHAPES: &str = "KHR_implicit_shapes";
 
-/// How a body moves.
+/// The `motion` of a node: how its body moves.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Motion {
     pub(super) kinematic: bool,
-    /// kg; zero is infinite.
+    /// Mass, kg. Zero means infinite.
     pub(super) mass: Option<f32>,
     pub(super) centre_of_mass: Option<Vec3>,
-    /// kg m²; zero is infinite.
+    /// Principal moments of inertia, kg m². Zero means infinite.
     pub(super) inertia: Option<Vec3>,
     pub(super) inertia_frame: Quat,
     pub(super) linear_velocity: Vec3,
@@ -28,7 +28,7 @@ pub(super) struct Motion {
     pub(super) gravity_factor: f32,
 }
 
-/// A shape, before its node's scale.
+/// A shape without the scale of its node. A plane without `x` or `z` is endless in that direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Implicit {
     Plane { x: Option<f32>, z: Option<f32> },
@@ -38,7 +38,7 @@ pub(super) enum Implicit {
     Capsule { height: f32, bottom: f32, top: f32 },
 }
 
-/// Where the geometry of a collider is.
+/// Source of a collider's geometry.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Source {
     Shape(usize),
@@ -69,7 +69,7 @@ pub(super) struct Filter {
     pub(super) never: Option<Vec<String>>,
 }
 
-/// What a node says.
+/// Content of the physics extension of one node.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct NodePhysics {
     pub(super) motion: Option<Motion>,
@@ -77,7 +77,8 @@ pub(super) struct NodePhysics {
     pub(super) joint: Option<Joint>,
 }
 
-/// What the file says once for all nodes. What could not be read is `None`, so that indices hold.
+/// Lists that the nodes of a file refer to by index. An item that could not be read is `None`, so that the indices
+/// stay right.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Shared {
     pub(super) shapes: Vec<Option<Implicit>>,
@@ -106,7 +107,7 @@ fn read_all<T>(root: &Object, key: &str, read: impl Fn(&Object) -> Option<T>) ->
     objects.iter().map(|o| read(o.as_ref()?)).collect()
 }
 
-/// A number above zero, or what it is if it is not given.
+/// Returns a number above zero, or `default` if the key is missing.
 fn size(object: &Object, key: &str, default: f32) -> Option<f32> {
     if !object.has(key) {
         return Some(default);
@@ -204,7 +205,7 @@ fn material(object: &Object) -> Material {
         }
         value.max(0.0)
     };
-    // The specification leaves defaults open in the text; its schema says these.
+    // The text of the specification gives no defaults; its schema gives these.
     let resting = amount("staticFriction", 0.6);
     let friction = amount("dynamicFriction", 0.6);
     if object.has("staticFriction") && resting != friction {
@@ -252,7 +253,7 @@ impl NodePhysics {
             .object("collider")
             .and_then(|o| read_collider(&o, false));
         if let Some(trigger) = object.object("trigger") {
-            // A compound trigger has its volumes on the nodes below it.
+            // A compound trigger has no geometry of its own: its volumes are on the nodes below it.
             let volume = trigger
                 .has("geometry")
                 .then(|| read_collider(&trigger, true))

@@ -1,4 +1,4 @@
-//! Joints of `KHR_physics_rigid_bodies` as data.
+//! Reads the joints of `KHR_physics_rigid_bodies` into plain data.
 
 use super::json::{Object, index};
 
@@ -8,7 +8,7 @@ pub(super) struct Limit {
     pub(super) axes: [bool; 3],
     pub(super) min: Option<f32>,
     pub(super) max: Option<f32>,
-    /// Absent is rigid.
+    /// Stiffness, N/m or N m/rad. `None` for a rigid limit.
     pub(super) stiffness: Option<f32>,
     pub(super) damping: f32,
 }
@@ -25,14 +25,14 @@ pub(super) struct Drive {
     pub(super) damping: f32,
 }
 
-/// Limits and drives that joints share.
+/// Limits and drives, which several joints may share.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct JointKind {
     pub(super) limits: Vec<Limit>,
     pub(super) drives: Vec<Drive>,
 }
 
-/// A node's joint.
+/// The joint of a node: indices of the connected node and of the shared [`JointKind`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Joint {
     pub(super) connected: usize,

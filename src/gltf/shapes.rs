@@ -1,4 +1,4 @@
-//! Shapes of colliders for Rapier.
+//! Builds the shapes of colliders for Rapier.
 
 use super::carry::Shape;
 use super::physics::Implicit;
@@ -6,11 +6,11 @@ use bevy::prelude::*;
 use bevy_rapier3d::parry::shape::SharedShape;
 use std::f32::consts::{PI, TAU};
 
-/// Points around a rim whose hull stands for a round shape that Rapier has not.
+/// Number of points on each circle of the convex hull that approximates a round shape which Rapier does not have.
 const RIM: u32 = 32;
 
 impl Shape {
-    /// As Rapier has it, before any scale; the reason, if it cannot.
+    /// Builds the shape for Rapier, without any scale. The error says why that is not possible.
     pub(super) fn build(&self) -> Result<SharedShape, &'static str> {
         match self {
             Self::Implicit(shape) => shape.build(),
@@ -31,7 +31,7 @@ impl Shape {
         }
     }
 
-    /// Whether its mirror image is itself.
+    /// Whether the shape equals its mirror image, up to a rotation.
     pub(super) fn is_symmetric(&self) -> bool {
         matches!(self, Self::Implicit(_))
     }
@@ -42,7 +42,7 @@ impl Implicit {
         Ok(match self {
             Self::Plane { x: None, z: None } => SharedShape::halfspace(Vec3::Y),
             Self::Plane { x, z } => {
-                // One endless side: long enough for a game.
+                // An endless side is 10 km long, which is enough for a game.
                 let [x, z] = [x, z].map(|side| 0.5 * side.unwrap_or(1e4));
                 let corner = |i, k| Vec3::new(i * x, 0.0, k * z);
                 let corners = vec![
@@ -96,7 +96,7 @@ fn hull(points: impl Iterator<Item = Vec3>) -> Result<SharedShape, &'static str>
     SharedShape::convex_hull(&points).ok_or("has no convex hull")
 }
 
-/// A circle at a height.
+/// Returns points on a horizontal circle at height `y`.
 fn rim(y: f32, radius: f32) -> impl Iterator<Item = Vec3> {
     (0..RIM).map(move |i| {
         let (sin, cos) = (TAU * i as f32 / RIM as f32).sin_cos();
@@ -104,7 +104,7 @@ fn rim(y: f32, radius: f32) -> impl Iterator<Item = Vec3> {
     })
 }
 
-/// Circles of a ball whose middle is at a height.
+/// Returns points on a sphere whose centre is at height `y`.
 fn ball(y: f32, radius: f32) -> impl Iterator<Item = Vec3> {
     (0..=RIM / 2).flat_map(move |i| {
         let (sin, cos) = (PI * i as f32 / (RIM / 2) as f32).sin_cos();

@@ -1,17 +1,17 @@
-//! Soft limits and drives of joints as elements.
+//! Turns soft limits and drives of joints into elements.
 
 use super::physics_joint::{Drive, Limit};
 use crate::element::*;
 use bevy::prelude::*;
 use std::f32::consts::TAU;
 
-/// The two frames of a joint.
+/// The two attachment frames of a joint.
 pub(super) struct Frames {
-    /// The joint's node and the one it is connected to.
+    /// The joint's node and its connected node.
     pub(super) nodes: [Entity; 2],
-    /// Where they are.
+    /// Transforms of the two nodes in the world.
     pub(super) places: [Transform; 2],
-    /// Where their bodies are.
+    /// Transforms of the two bodies in the world.
     pub(super) bodies: [Transform; 2],
 }
 
@@ -23,7 +23,7 @@ impl Frames {
             .with_damping(damping)
     }
 
-    /// An axis of the joint, in the frame of body A.
+    /// Returns an axis of the joint, in the frame of body A.
     fn axis(&self, index: usize) -> Vec3 {
         self.bodies[0].rotation.inverse() * (self.places[0].rotation * Vec3::AXES[index])
     }
@@ -35,7 +35,8 @@ impl Frames {
             .with_damping(damping)
     }
 
-    /// What the angle of the bodies is more than that of the joint's frames, which the file means.
+    /// Returns the angle between the bodies less the angle between the joint's frames, rad. The file counts angles
+    /// between the joint's frames; elements count them between the bodies.
     fn offset(&self, index: usize) -> f32 {
         let between = |frames: &[Transform; 2], axis: Vec3| {
             twist(frames[0].rotation.inverse() * frames[1].rotation, axis)
@@ -43,20 +44,20 @@ impl Frames {
         between(&self.bodies, self.axis(index)) - between(&self.places, Vec3::AXES[index])
     }
 
-    /// Spawns an element below the joint's node, so that it goes with the scene.
+    /// Spawns an element as a child of the joint's node, so that it is despawned with the scene.
     fn spawn(&self, world: &mut World, element: impl Bundle) -> Entity {
         world.spawn((element, ChildOf(self.nodes[0]))).id()
     }
 }
 
-/// Angle of a rotation about an axis.
+/// Returns the angle of a rotation about an axis, from -π to π, rad.
 fn twist(rotation: Quat, axis: Vec3) -> f32 {
     let along = Vec3::new(rotation.x, rotation.y, rotation.z).dot(axis.normalize_or_zero());
     let angle = 2.0 * along.atan2(rotation.w);
     (angle + TAU / 2.0).rem_euclid(TAU) - TAU / 2.0
 }
 
-/// A limit that gives, as elements between the joint's nodes; the reason, if that cannot be.
+/// Adds a soft limit as elements between the joint's nodes. The error says why that is not possible.
 pub(super) fn add_limit(
     world: &mut World,
     frames: &Frames,
@@ -70,7 +71,7 @@ pub(super) fn add_limit(
         return Ok(());
     }
     let same = min.filter(|min| Some(*min) == max);
-    // Stops at both ends of a range, and nothing between.
+    // Stops at both ends of a range, without force in between.
     let stops = |none: f32| {
         SpringTravel::new(min.unwrap_or(none), max.unwrap_or(f32::INFINITY), stiffness)
             .with_stop_damping(damping)
@@ -131,12 +132,13 @@ pub(super) fn add_limit(
     Ok(())
 }
 
-/// Whether a drive is an element: one in units of acceleration is, if it has a stiffness to be tuned.
+/// Whether a drive becomes an element. A drive in acceleration mode does so only if it has a stiffness, from which
+/// the element can be tuned, and no target velocity.
 pub(super) fn is_ours(drive: &Drive) -> bool {
     !drive.acceleration || (drive.stiffness > 0.0 && drive.velocity == 0.0)
 }
 
-/// A drive as an element: tension = stiffness · (x − target) + damping · (rate − target rate).
+/// Adds a drive as an element: tension = stiffness · (x − target) + damping · (rate − target rate).
 pub(super) fn add_drive(world: &mut World, frames: &Frames, drive: &Drive) {
     let (stiffness, damping) = (drive.stiffness, drive.damping);
     if stiffness == 0.0 && damping == 0.0 {
@@ -159,7 +161,7 @@ pub(super) fn add_drive(world: &mut World, frames: &Frames, drive: &Drive) {
         element.insert(MaxForce(most));
     }
     if drive.acceleration {
-        // Stiffness and damping are those of 1 kg; the mass is known at the first step.
+        // Stiffness and damping are given for 1 kg. The effective mass is only known at the first step.
         let root = stiffness.sqrt();
         element.insert(SpringTuning::frequency(root / TAU, 0.5 * damping / root));
     }

@@ -1,4 +1,4 @@
-//! Edits reach the world, before a tick.
+//! Applies edits to the world, before a tick.
 
 use super::bench::Bench;
 use super::model::snapshot::Snapshot;
@@ -8,7 +8,7 @@ pub(super) fn has_edits(bench: Res<Bench>) -> bool {
     !bench.pending.is_empty()
 }
 
-/// Carries over what was edited, and nothing else.
+/// Applies the pending edits. Everything that was not edited stays as it is.
 pub(super) fn apply(world: &mut World) {
     let edits = std::mem::take(&mut world.resource_mut::<Bench>().pending);
     for (entity, from, to) in edits {

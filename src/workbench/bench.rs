@@ -1,4 +1,4 @@
-//! The state between model and view: what is shown, and what the view asks for.
+//! State shared by model and view: what is shown, and the requests of the view.
 
 use super::model::facts::Subject;
 use super::model::history::{Edit, History};
@@ -9,20 +9,20 @@ use super::model::rows::Rows;
 use super::model::snapshot::Snapshot;
 use bevy::prelude::*;
 
-/// What the view cannot do itself.
+/// A request of the view that the view cannot carry out itself.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Ask {
     Pause(bool),
     Step,
     Speed(f32),
-    /// Text for the clipboard, and what it is.
+    /// Copies a text to the clipboard. The second field names its format for the message.
     Copy(String, &'static str),
-    /// What was copied, into the chosen element.
+    /// Pastes the clipboard into the chosen element.
     Paste,
-    /// A table of the record, into a file.
+    /// Writes a table of the record to a file.
     Csv(String),
     Picture,
-    /// A preset under a name.
+    /// Saves a preset: its name and its text.
     Save(String, String),
     Load(String),
 }
@@ -35,7 +35,7 @@ pub(crate) enum Plots {
     Law,
 }
 
-/// How the game's clock runs.
+/// State of the game's virtual clock.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Clock {
     pub paused: bool,
@@ -51,7 +51,7 @@ impl Default for Clock {
     }
 }
 
-/// Everything that the view shows.
+/// Everything that the view shows or changes.
 #[derive(Resource, Default)]
 pub(crate) struct Bench {
     pub rows: Rows,
@@ -60,23 +60,25 @@ pub(crate) struct Bench {
     pub history: History,
     pub record: Record,
     pub clock: Clock,
-    /// The key with which the mouse pulls bodies.
+    /// Key with which the mouse pulls bodies; `None` for no pulling.
     pub grab: Option<KeyCode>,
-    /// The time of the record that is looked at; none for the present.
+    /// Time in the record that is shown, s; `None` for the present.
     pub scrub: Option<f64>,
     pub plots: Plots,
-    /// Name under which the next preset is saved, and those that there are.
+    /// Name for the next preset to save.
     pub preset_name: String,
+    /// Names of the saved presets.
     pub presets: Vec<String>,
-    /// What the last command came to.
+    /// Result of the last command, for the user.
     pub message: Option<String>,
     pub asks: Vec<Ask>,
-    /// Changes that wait for the next tick: what differs between the two is carried over.
+    /// Edits that wait for the next tick: the element, its numbers before and its numbers after. Only numbers that
+    /// differ between the two are written.
     pub pending: Vec<(Entity, Snapshot, Snapshot)>,
 }
 
 impl Bench {
-    /// Chooses an element, or none.
+    /// Chooses an element, or none. A new choice clears the record.
     pub fn select(&mut self, entity: Option<Entity>) {
         if self.selected != entity {
             self.selected = entity;
@@ -87,7 +89,7 @@ impl Bench {
         }
     }
 
-    /// Changes the chosen element.
+    /// Changes the chosen element. `what` names the change for the undo button.
     pub fn edit(&mut self, what: &'static str, after: Snapshot) {
         let Some(subject) = &self.subject else {
             return;
@@ -105,7 +107,7 @@ impl Bench {
         });
     }
 
-    /// Takes the last edit back.
+    /// Undoes the last edit.
     pub fn undo(&mut self) {
         if let Some(edit) = self.history.undo() {
             self.message = Some(format!("{} is as before", edit.what));
@@ -113,7 +115,7 @@ impl Bench {
         }
     }
 
-    /// Does the edit again that was taken back last.
+    /// Redoes the edit that was undone last.
     pub fn redo(&mut self) {
         if let Some(edit) = self.history.redo() {
             self.message = Some(format!("{} is changed again", edit.what));
@@ -121,7 +123,7 @@ impl Bench {
         }
     }
 
-    /// The chosen element as it was before its first edit.
+    /// Resets the chosen element to its numbers before its first edit that is kept.
     pub fn reset(&mut self) {
         let Some(subject) = &self.subject else {
             return;
@@ -133,7 +135,7 @@ impl Bench {
         }
     }
 
-    /// Puts a preset into the chosen element.
+    /// Loads a preset into the chosen element.
     pub fn load(&mut self, name: &str, text: &str) {
         let Some(subject) = &self.subject else {
             return;
@@ -155,7 +157,7 @@ impl Bench {
         {
             subject.now.carry(&from, &to);
         }
-        // A drag makes one change a frame; while the game is paused they would pile up.
+        // A drag makes one change per frame. While the game is paused the changes would pile up, so they are merged.
         if let Some((last, _, until)) = self.pending.last_mut()
             && *last == entity
             && is_like(&*until, &from)
@@ -166,7 +168,7 @@ impl Bench {
         }
     }
 
-    /// An element as it is once all that waits is done.
+    /// Returns the numbers of an element as they will be after all pending edits.
     pub fn with_pending(&self, entity: Entity, mut snapshot: Snapshot) -> Snapshot {
         for (of, from, to) in &self.pending {
             if *of == entity {
@@ -176,7 +178,7 @@ impl Bench {
         snapshot
     }
 
-    /// The sample that is looked at.
+    /// Returns the sample that is shown: at the chosen time of the record, or the present one.
     pub fn sample(&self) -> Option<Sample> {
         if let Some(time) = self.scrub {
             return self.record.at(time).copied();
@@ -208,11 +210,11 @@ mod tests {
             subject: Some(subject),
             ..Bench::default()
         };
-        // What the view does in a frame in which nobody touches anything.
+        // The view does this in a frame without user input.
         bench.edit("a number", now.clone());
         assert_eq!(bench.history.next(), [None, None]);
         assert!(bench.pending.is_empty());
-        // One drag, over ten frames.
+        // One drag over ten frames.
         for step in 1..=10 {
             if let Some(damping) = now.part.damping_mut() {
                 *damping = 10.0 * step as f32;

@@ -1,16 +1,17 @@
-//! The clipboard of the system, or where there is none, one of the workbench's own.
+//! The system clipboard, or a private clipboard of the workbench if the system has none.
 
 use arboard::Clipboard;
 use std::cell::RefCell;
 
 thread_local! {
-    /// What was copied is there as long as this is.
+    /// Handle to the system clipboard. It is kept alive, because on some systems a copied text is lost when it is
+    /// dropped.
     static SYSTEM: RefCell<Option<Clipboard>> = const { RefCell::new(None) };
-    /// What was copied last, where the system did not take it.
+    /// Text that was copied last, if the system clipboard did not take it.
     static OWN: RefCell<Option<String>> = const { RefCell::new(None) };
 }
 
-/// Keeps a text for other programs, and says what came of it.
+/// Copies a text, and returns a message about the result.
 pub(super) fn copy(text: String, what: &str) -> String {
     let kept = with_system(|system| system.set_text(text.as_str()));
     let told = match &kept {
@@ -21,7 +22,7 @@ pub(super) fn copy(text: String, what: &str) -> String {
     told
 }
 
-/// The text that was copied last, here or in another program.
+/// Returns the text in the private clipboard, or else the text in the system clipboard.
 pub(super) fn paste() -> Result<String, String> {
     let own = OWN.with_borrow(Clone::clone);
     own.map_or_else(|| with_system(Clipboard::get_text), Ok)
@@ -30,7 +31,7 @@ pub(super) fn paste() -> Result<String, String> {
 fn with_system<T>(
     act: impl FnOnce(&mut Clipboard) -> Result<T, arboard::Error>,
 ) -> Result<T, String> {
-    // Tests run side by side, and leave alone what somebody has copied.
+    // Tests run in parallel, and must not change the user's clipboard.
     if cfg!(test) {
         return Err("a test has no clipboard".into());
     }

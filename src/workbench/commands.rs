@@ -1,4 +1,4 @@
-//! What the view asks for and cannot do itself: the clock, the clipboard, files.
+//! Carries out requests of the view that need the world or the system: clock, clipboard and files.
 
 use super::bench::{Ask, Bench};
 use super::{CoiloverWorkbench, clipboard};
@@ -6,7 +6,7 @@ use bevy::prelude::*;
 use bevy::render::view::screenshot::{Screenshot, save_to_disk};
 use std::path::{Path, PathBuf};
 
-/// Does all that was asked for in this frame.
+/// Carries out all requests of this frame.
 pub(super) fn obey(world: &mut World) {
     let mut bench = world.resource_mut::<Bench>();
     let asks = std::mem::take(&mut bench.asks);
@@ -74,7 +74,7 @@ pub(super) fn obey(world: &mut World) {
     }
 }
 
-/// One tick more, and then it stands.
+/// Runs one tick in the next frame and leaves the game paused.
 fn step(world: &mut World) {
     if let Some(mut clock) = world.get_resource_mut::<Time<Virtual>>() {
         clock.pause();
@@ -109,7 +109,7 @@ fn said(done: std::io::Result<PathBuf>) -> String {
     }
 }
 
-/// A title as a name that every system of files takes.
+/// Turns a title into a file name that is valid on every file system.
 fn file_name(title: &str) -> String {
     let fits = |c: char| c.is_alphanumeric() || c == '-' || c == '_';
     let name: String = title
@@ -124,7 +124,7 @@ fn file_name(title: &str) -> String {
     }
 }
 
-/// The first name that is free.
+/// Returns the first path `name_1`, `name_2`, … that does not exist.
 fn free(folder: &Path, name: &str, ending: &str) -> PathBuf {
     let file = |i: u32| folder.join(format!("{name}_{i}.{ending}"));
     (1..10_000)
@@ -133,7 +133,7 @@ fn free(folder: &Path, name: &str, ending: &str) -> PathBuf {
         .unwrap_or_else(|| file(10_000))
 }
 
-/// The file of a preset: RON where its name ends so, else JSON.
+/// Returns the path of a preset: a RON file if the name ends with `.ron`, else a JSON file.
 fn preset(folder: &Path, name: &str) -> PathBuf {
     let (name, ending) = match name.strip_suffix(".ron") {
         Some(name) => (name, "ron"),
@@ -144,7 +144,7 @@ fn preset(folder: &Path, name: &str) -> PathBuf {
         .join(format!("{}.{ending}", file_name(name)))
 }
 
-/// Those that there are, by name.
+/// Returns the names of the saved presets, sorted.
 pub(super) fn presets(folder: &Path) -> Vec<String> {
     let files = std::fs::read_dir(folder.join("presets"));
     let name = |entry: std::io::Result<std::fs::DirEntry>| {

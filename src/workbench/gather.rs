@@ -1,4 +1,4 @@
-//! What the world has, for the view.
+//! Reads from the world what the view shows. Runs in `PostUpdate`; the record gets a sample after each tick.
 
 use super::CoiloverWorkbench;
 use super::bench::{Bench, Clock};
@@ -20,20 +20,20 @@ use bevy_rapier3d::prelude::{
     RapierConfiguration, RapierContextEntityLink, RigidBody, Sleeping, TimestepMode,
 };
 
-/// Frames in which each number of the list has its turn once.
+/// Number of frames over which the numbers in the list are refreshed once.
 const FRAMES: usize = 16;
 
-/// Seconds between two sortings of the list, and between two looks at names.
+/// Time between two sortings of the list, s. Changes of elements and names are taken up at the same times.
 const SORT: f32 = 0.25;
 
-/// What is read of a body: what it is, whether it sleeps, and in which world of the engine it is.
+/// Components that are read of a body: its kind, whether it sleeps, and its Rapier context.
 type Body<'a> = (
     &'a RigidBody,
     Option<&'a Sleeping>,
     Option<&'a RapierContextEntityLink>,
 );
 
-/// What is read of the world. The chosen element can be disabled, and is explained then too.
+/// Parameters that read the world. The chosen element may be disabled; the panel says so.
 #[derive(SystemParam)]
 pub(super) struct Look<'w, 's> {
     readouts: Query<'w, 's, (Entity, &'static SpringReadout), IsElement>,
@@ -54,14 +54,14 @@ pub(super) struct Look<'w, 's> {
     real: Res<'w, Time<Real>>,
 }
 
-/// When the list was last looked at.
+/// State of the list between frames: the time of its last sorting, s, and whether its elements or names have changed.
 #[derive(Default)]
 pub(super) struct Looked {
     at: Option<f32>,
     stale: bool,
 }
 
-/// Reads all that is shown in this frame.
+/// Reads everything that is shown in this frame.
 pub(super) fn gather(world: &mut World, state: &mut SystemState<Look>, mut looked: Local<Looked>) {
     world.resource_scope(|world, mut bench: Mut<Bench>| {
         let bench = &mut *bench;
@@ -100,7 +100,7 @@ pub(super) fn gather(world: &mut World, state: &mut SystemState<Look>, mut looke
 }
 
 impl Look<'_, '_> {
-    /// Keeps the list.
+    /// Updates the list of elements.
     fn list(&self, bench: &mut Bench, looked: &mut Looked) {
         let rows = &mut bench.rows;
         looked.stale |= self.readouts.iter().len() != rows.total()
@@ -130,7 +130,7 @@ impl Look<'_, '_> {
         }
     }
 
-    /// Its name, or those of its ends.
+    /// Returns the name of an element, or a name made of the names of its ends.
     fn label(&self, element: Entity, ends: Option<[Entity; 2]>) -> String {
         if let Ok(name) = self.names.get(element) {
             return name.as_str().into();
@@ -143,7 +143,7 @@ impl Look<'_, '_> {
         }
     }
 
-    /// The name of an entity, or of the nearest one above it that has one.
+    /// Returns the name of an entity, or of its nearest ancestor that has one.
     fn named(&self, entity: Entity) -> Option<&str> {
         let up = std::iter::once(entity).chain(self.parents.iter_ancestors(entity));
         let mut names = up.filter_map(|entity| self.names.get(entity).ok());
@@ -184,7 +184,8 @@ impl Look<'_, '_> {
         }
     }
 
-    /// Cosine between gravity and an element, from its still end to its load.
+    /// Returns the cosine between gravity and the direction from the end that is not dynamic to the dynamic end,
+    /// which is the load. `None` if not exactly one end is dynamic.
     fn slope(&self, now: &Snapshot, ends: &[End; 2], gravity: Vec3) -> Option<f32> {
         let [a, b] = ends;
         let to_load = match [a, b].map(|end| end.kind == EndKind::Dynamic) {
@@ -203,13 +204,14 @@ impl Look<'_, '_> {
         Some(slope).filter(|slope| slope.is_finite())
     }
 
-    /// The body that an entity is, or that it is below.
+    /// Returns the body that an entity belongs to: the entity itself or its nearest ancestor that is a body.
     fn body(&self, entity: Entity) -> Option<Body<'_>> {
         let mut up = std::iter::once(entity).chain(self.parents.iter_ancestors(entity));
         up.find_map(|entity| self.bodies.get(entity).ok())
     }
 
-    /// Gravity where its bodies are: each world of the engine has its own.
+    /// Returns gravity in the Rapier context of the ends' bodies, m/s². Each context has its own. Zero if no end is a
+    /// body.
     fn gravity(&self, ends: [Entity; 2]) -> Vec3 {
         let context = |end| self.body(end)?.2;
         let context = ends.into_iter().find_map(context);
@@ -242,7 +244,7 @@ impl Look<'_, '_> {
     }
 }
 
-/// Keeps what the chosen element did in a tick.
+/// Records the readout of the chosen element after a tick.
 pub(super) fn record(mut bench: ResMut<Bench>, readouts: Query<&SpringReadout>, time: Res<Time>) {
     let selected = bench.selected;
     if let Some(readout) = selected.and_then(|entity| readouts.get(entity).ok()) {

@@ -1,4 +1,4 @@
-//! Bodies pulled with the mouse: a key and the pointer pick one, and a [`MouseSpring`] pulls it.
+//! Pulls bodies with the mouse. A key and the pointer pick a body, and a [`MouseSpring`] pulls it.
 
 use super::CoiloverWorkbench;
 use super::pointer::Pointer;
@@ -6,31 +6,31 @@ use crate::MouseSpring;
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::{QueryFilter, ReadRapierContext, RigidBody};
 
-/// Pixels between the pointer and the origin of a body without colliders that is still taken.
+/// Greatest distance from the pointer to the origin of a body, pixels, at which a body without colliders is picked.
 const NEAR: f32 = 20.0;
 
-/// What the pointer has hold of.
+/// State of the pull: the body that is held, if any.
 #[derive(Resource, Default, Debug)]
 pub(super) struct Hand {
     grip: Option<Grip>,
-    /// The [`MouseSpring`] that pulls it.
+    /// Entity of the [`MouseSpring`] that pulls the body.
     spring: Option<Entity>,
 }
 
-/// Where a body is held.
+/// Point at which a body is held.
 #[derive(Clone, Copy, Debug)]
 struct Grip {
     body: Entity,
-    /// In the body's frame.
+    /// Held point, in the body's frame, m.
     point: Vec3,
-    /// From the eye, m.
+    /// Distance of the held point from the origin of the pointer's ray when it was picked, m.
     distance: f32,
-    /// Where the pointer is at that distance.
+    /// Point of the world on the pointer's ray at that distance, m.
     target: Vec3,
 }
 
 impl Hand {
-    /// From the point that is held to where it is pulled.
+    /// Returns the held point and its target, in the world.
     pub fn line(&self, globals: &Query<&GlobalTransform>) -> Option<[Vec3; 2]> {
         let grip = self.grip?;
         let body = globals.get(grip.body).ok()?;
@@ -38,12 +38,12 @@ impl Hand {
     }
 }
 
-/// Whether it has hold of something, or has not let go of it yet.
+/// Run condition: whether a body is held, or its spring is not despawned yet.
 pub(super) fn holds(hand: Res<Hand>) -> bool {
     hand.grip.is_some() || hand.spring.is_some()
 }
 
-/// Takes the body below the pointer, follows it, and lets go.
+/// Picks the body under the pointer, follows the pointer, and lets go.
 pub(super) fn grab(
     mut hand: ResMut<Hand>,
     pointer: Pointer,
@@ -84,7 +84,8 @@ pub(super) fn grab(
     }
 }
 
-/// The first dynamic body that a ray meets, and how far along. What cannot be pulled is looked through.
+/// Returns the first dynamic body that a ray hits, and the distance along the ray, m. Other bodies and sensors are
+/// ignored.
 fn touched(
     ray: Ray3d,
     contexts: &ReadRapierContext<()>,
@@ -116,7 +117,8 @@ fn touched(
         .min_by(|a, b| a.1.total_cmp(&b.1))
 }
 
-/// The dynamic body whose origin is nearest to the pointer, and how far away: it may have no collider.
+/// Returns the dynamic body whose origin is nearest to the pointer on the screen, and its distance along the ray, m.
+/// This finds bodies without colliders.
 fn near(
     at: Vec2,
     ray: Ray3d,
@@ -136,8 +138,8 @@ fn near(
     nearest.map(|(entity, _, distance)| (entity, distance))
 }
 
-/// Keeps the spring between pointer and body, as long as both are there. In the tick, so that the engine hears of what is
-/// spawned and despawned.
+/// Keeps a spring between pointer and body as long as a body is held. Runs in the tick, so that the engine notices
+/// when the spring is spawned and despawned.
 pub(super) fn pull(
     mut hand: ResMut<Hand>,
     bodies: Query<(), With<RigidBody>>,

@@ -1,49 +1,49 @@
-//! Anchors of the chosen element, dragged in the scene.
+//! Handles in the scene that drag the anchors of the chosen element.
 
 use super::bench::Bench;
 use super::pointer::{Pointer, STILL};
 use crate::element::WorldAnchors;
 use bevy::prelude::*;
 
-/// Pixels between the pointer and an anchor whose handle is taken.
+/// Greatest distance from the pointer to an anchor, pixels, at which its handle is picked.
 const NEAR: f32 = 10.0;
 
-/// Which handle the pointer is over, and which it drags.
+/// The handle under the pointer (0 for end A, 1 for end B), and the drag in progress.
 #[derive(Resource, Default, Debug)]
 pub(super) struct Handles {
     over: Option<usize>,
     drag: Option<Drag>,
 }
 
-/// A handle that the pointer has hold of.
+/// A drag of a handle.
 #[derive(Clone, Copy, Debug)]
 struct Drag {
     entity: Entity,
     end: usize,
-    /// Where the pointer was when the anchor was last moved.
+    /// Position of the pointer in the window when the anchor was last moved, logical pixels.
     from: Vec2,
-    /// It went further than a click may.
+    /// Whether the pointer has moved further than a click may.
     begun: bool,
 }
 
 impl Handles {
-    /// Whether the handle of an end is shown as one that can be taken.
+    /// Whether the handle of an end is highlighted.
     pub fn is_lit(&self, end: usize) -> bool {
         self.drag.map_or(self.over, |drag| Some(drag.end)) == Some(end)
     }
 }
 
-/// Takes the handle below the pointer, and moves its anchor as the pointer moves.
+/// Picks the handle under the pointer, and moves its anchor with the pointer.
 ///
-/// An anchor moves by as much as the pointer, and with its body: the pointer that stands still while the body swings moves
-/// nothing.
+/// The anchor moves by as much as the pointer, relative to its body. If the pointer stands still while the body
+/// swings, nothing is edited.
 pub(super) fn drag(
     pointer: Pointer,
     mut handles: ResMut<Handles>,
     mut bench: ResMut<Bench>,
     settings: Res<super::CoiloverWorkbench>,
     globals: Query<&GlobalTransform>,
-    // Points of the world that wait for a step would be written over what is dragged.
+    // `WorldAnchors` that wait for a step would overwrite the dragged anchors.
     waiting: Query<(), With<WorldAnchors>>,
 ) {
     let shown = bench
@@ -84,7 +84,7 @@ pub(super) fn drag(
     }
     if !drag.begun && at.distance(drag.from) > STILL {
         drag.begun = true;
-        // What was typed before is another edit.
+        // A number that was typed before is a separate edit.
         bench.history.close();
     }
     if drag.begun && at != drag.from {
@@ -100,7 +100,8 @@ pub(super) fn drag(
     }
 }
 
-/// Moves an anchor by as much as the pointer has moved in the plane through it that faces the camera; whether it could.
+/// Moves an anchor by as much as the pointer has moved in the plane through the anchor that faces the camera. Returns
+/// whether it could.
 fn shift(
     bench: &mut Bench,
     pointer: &Pointer,
@@ -123,7 +124,7 @@ fn shift(
         return false;
     };
     let local = end.affine().inverse().transform_point3(here + (to - from));
-    // An end that is scaled to nothing has no points.
+    // An end with a scale of zero has no local points.
     if !local.is_finite() {
         return false;
     }

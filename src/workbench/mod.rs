@@ -1,9 +1,11 @@
 //! The workbench: a panel over a running game that shows, plots and edits its springs.
 //!
-//! - [`model`] is plain data: an element's numbers, what was edited, what is recorded, and what follows from it.
-//! - [`bench`] holds it between the frames; [`view`] draws it with egui and knows no world.
-//! - [`gather`] reads the world, [`apply`] changes it, [`commands`] does what the view asks for, with [`clipboard`].
-//! - In the scene, [`scene`] draws and picks, [`handles`] moves anchors, [`grab`] pulls bodies; [`pointer`] is the mouse there.
+//! - [`model`] is plain data: the numbers of an element, edits, the record, and figures derived from them.
+//! - [`bench`] holds this data between frames. [`view`] draws it with egui and does not access the world.
+//! - [`gather`] reads the world and [`apply`] changes it. [`commands`] carries out requests of the view, with
+//!   [`clipboard`].
+//! - In the scene, [`scene`] draws and picks, [`handles`] moves anchors, and [`grab`] pulls bodies. [`pointer`] is
+//!   the mouse.
 
 mod apply;
 mod bench;
@@ -31,8 +33,8 @@ use std::path::PathBuf;
 
 /// Adds the workbench: F9 opens and closes it. See [`CoiloverWorkbench`] for its settings.
 ///
-/// It needs [`CoiloverPlugin`](crate::CoiloverPlugin), a window and a camera. Where the app has an `EguiPlugin` of its own,
-/// add that first. While the workbench is closed, none of its systems runs.
+/// It needs [`CoiloverPlugin`](crate::CoiloverPlugin), a window and a camera. If the app adds an `EguiPlugin` itself,
+/// add that first. While the workbench is closed, only the system that watches the key runs.
 ///
 /// ```no_run
 /// # use bevy::prelude::*;
@@ -46,15 +48,15 @@ pub struct CoiloverWorkbenchPlugin;
 /// Settings and state of the workbench.
 #[derive(Resource, Clone, Debug, PartialEq)]
 pub struct CoiloverWorkbench {
-    /// Whether it is shown.
+    /// Whether the workbench is shown.
     pub open: bool,
-    /// The key that opens and closes it; `None` for no key.
+    /// Key that opens and closes the workbench; `None` for no key.
     pub key: Option<KeyCode>,
-    /// The key with which the mouse pulls bodies in the scene; `None` for no key, and no pulling.
+    /// Key that is held while the mouse pulls bodies in the scene; `None` for no pulling.
     pub grab: Option<KeyCode>,
-    /// The element that is shown.
+    /// Element that is shown.
     pub selected: Option<Entity>,
-    /// Where presets, tables and pictures go; made when the first is saved.
+    /// Folder for presets, tables and pictures. It is created when the first file is saved.
     pub folder: PathBuf,
 }
 
@@ -74,7 +76,7 @@ impl Plugin for CoiloverWorkbenchPlugin {
     fn build(&self, app: &mut App) {
         if !app.is_plugin_added::<EguiPlugin>() {
             app.add_plugins(EguiPlugin::default());
-            // What is done to a panel is not done to the game below.
+            // Mouse and keys used in a panel must not reach the game behind it.
             if let Some(mut settings) = app.world_mut().get_resource_mut::<EguiGlobalSettings>() {
                 settings.enable_absorb_bevy_input_system = true;
             }
@@ -93,7 +95,7 @@ impl Plugin for CoiloverWorkbenchPlugin {
                 Update,
                 (
                     (scene::pick, handles::drag).chain().run_if(is_open),
-                    // Once more when it was closed, to let go.
+                    // Also runs once after the workbench was closed, to let go.
                     grab::grab.run_if(is_open.or_else(grab::holds)),
                 ),
             )
@@ -120,8 +122,8 @@ impl Plugin for CoiloverWorkbenchPlugin {
         app.add_systems(
             schedule,
             (
-                // Edits wait for a tick, so that the engine hears of what is removed; also of those made just before
-                // the workbench was closed.
+                // Edits wait for a tick, so that the engine notices removed components. Edits made just before the
+                // workbench was closed are applied too.
                 apply::apply
                     .run_if(apply::has_edits)
                     .before(CoiloverSystems::Prepare)

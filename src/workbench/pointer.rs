@@ -1,4 +1,4 @@
-//! The mouse over the scene: where it points, and whether it is the panel's.
+//! The mouse in the scene: its position, and whether the panel uses it.
 
 use bevy::ecs::system::SystemParam;
 use bevy::prelude::*;
@@ -6,10 +6,10 @@ use bevy::window::PrimaryWindow;
 use bevy_egui::PrimaryEguiContext;
 use bevy_egui::input::EguiWantsInput;
 
-/// Pixels by which a click may move.
+/// Greatest movement of the pointer during a click, pixels.
 pub(super) const STILL: f32 = 4.0;
 
-/// The pointer, and the camera that it looks through.
+/// The pointer, and the camera of the workbench.
 #[derive(SystemParam)]
 pub(super) struct Pointer<'w, 's> {
     buttons: Res<'w, ButtonInput<MouseButton>>,
@@ -20,51 +20,51 @@ pub(super) struct Pointer<'w, 's> {
 }
 
 impl Pointer<'_, '_> {
-    /// Where it is in the window, logical pixels.
+    /// Returns the position in the window, logical pixels.
     pub fn at(&self) -> Option<Vec2> {
         self.windows.single().ok()?.cursor_position()
     }
 
-    /// The panel has it: what is done now is not done to the scene.
+    /// Whether the panel uses the pointer, so that clicks and drags do not affect the scene.
     pub fn is_taken(&self) -> bool {
         let egui = self.egui.as_ref();
         egui.is_some_and(|egui| egui.wants_any_pointer_input())
     }
 
-    /// Where it was put down in the scene in this frame.
+    /// Returns the position if the left button was pressed over the scene in this frame.
     pub fn put_down(&self) -> Option<Vec2> {
         let down = self.buttons.just_pressed(MouseButton::Left);
         self.at().filter(|_| down && !self.is_taken())
     }
 
-    /// It is held down.
+    /// Whether the left button is down.
     pub fn is_down(&self) -> bool {
         self.buttons.pressed(MouseButton::Left)
     }
 
-    /// It was let go in this frame.
+    /// Whether the left button was released in this frame.
     pub fn is_let_go(&self) -> bool {
         self.buttons.just_released(MouseButton::Left)
     }
 
-    /// A key is held down.
+    /// Whether a key is down; `false` for no key.
     pub fn is_with(&self, key: Option<KeyCode>) -> bool {
         key.is_some_and(|key| self.keys.pressed(key))
     }
 
-    /// Where a point of the world is in the window.
+    /// Returns the position of a point of the world in the window, logical pixels.
     pub fn project(&self, point: Vec3) -> Option<Vec2> {
         let (camera, eye) = self.cameras.iter().next()?;
         camera.world_to_viewport(eye, point).ok()
     }
 
-    /// What lies below a place in the window.
+    /// Returns the ray from the camera through a position in the window.
     pub fn ray(&self, at: Vec2) -> Option<Ray3d> {
         let (camera, eye) = self.cameras.iter().next()?;
         camera.viewport_to_world(eye, at).ok()
     }
 
-    /// Where a place in the window is in the plane through a point that faces the camera.
+    /// Projects a position in the window onto the plane through a point of the world that faces the camera.
     pub fn in_plane(&self, at: Vec2, through: Vec3) -> Option<Vec3> {
         let (_, eye) = self.cameras.iter().next()?;
         let plane = InfinitePlane3d::new(eye.forward());

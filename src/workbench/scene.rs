@@ -1,4 +1,4 @@
-//! The panel's place in the window, and what is drawn and clicked in the scene.
+//! Places the panel in the window, and draws and picks elements in the scene.
 
 use super::bench::Bench;
 use super::grab::Hand;
@@ -14,22 +14,22 @@ use bevy::prelude::*;
 use bevy_egui::egui::{Align2, Color32, FontId, LayerId, Ui, UiBuilder, pos2};
 use bevy_egui::{EguiContexts, PrimaryEguiContext};
 
-/// Pixels between the pointer and an element that is still clicked.
+/// Greatest distance from the pointer to an element, pixels, at which a click picks it.
 const NEAR: f32 = 12.0;
 
 const COLOR: Color = Color::srgb(1.0, 0.9, 0.2);
 
-/// Of a handle below the pointer, and of what pulls a body.
+/// Colour of a highlighted handle, and of the line that pulls a body.
 const LIT: Color = Color::WHITE;
 
-/// Radius of a handle as a share of its distance from the eye: about seven pixels.
+/// Radius of a handle as a fraction of its distance from the camera: about 7 pixels in a window 720 pixels high.
 const BALL: f32 = 0.008;
 
-/// What marks the chosen element.
+/// Gizmos that mark the chosen element.
 #[derive(GizmoConfigGroup, Reflect, Clone, Debug, Default)]
 pub(super) struct Mark;
 
-/// Adds the mark, where there are gizmos.
+/// Adds the gizmos that mark the chosen element, if the app has gizmos.
 pub(super) fn add_gizmos(app: &mut App) {
     if !app.world().contains_resource::<GizmoConfigStore>() {
         return;
@@ -40,12 +40,12 @@ pub(super) fn add_gizmos(app: &mut App) {
     );
     let mut store = app.world_mut().resource_mut::<GizmoConfigStore>();
     let (config, _) = store.config_mut::<Mark>();
-    // Before what is solid.
+    // Drawn in front of solid objects.
     config.depth_bias = -1.0;
     config.line.width = 3.0;
 }
 
-/// A line from anchor to anchor, a ball at each, and a line from a body that is pulled to the pointer.
+/// Draws a line between the anchors, a ball at each anchor, and a line from a pulled body to the pointer.
 fn mark(
     bench: Res<Bench>,
     handles: Res<Handles>,
@@ -79,7 +79,7 @@ fn mark(
     }
 }
 
-/// Draws the panel, and the names of the ends beside their anchors.
+/// Draws the panel, and the names of the ends next to their anchors.
 pub(super) fn show(
     mut contexts: EguiContexts,
     mut bench: ResMut<Bench>,
@@ -104,7 +104,7 @@ pub(super) fn show(
                 let text = format!("{letter}: {}", end.name);
                 let at = pos2(at.x + 14.0, at.y);
                 let font = FontId::proportional(13.0);
-                // A shadow, to be read before any background.
+                // A shadow, so that the text is readable on any background.
                 let shadow = at + bevy_egui::egui::vec2(1.0, 1.0);
                 let painter = ui.painter();
                 painter.text(
@@ -134,7 +134,7 @@ pub(super) fn pick(
     mut commands: Commands,
 ) {
     if let Some(at) = pointer.put_down() {
-        // With the key it is a body that is meant.
+        // While the key is held, the click is meant for a body.
         *down = Some(at).filter(|_| !pointer.is_with(settings.grab));
     }
     if !pointer.is_let_go() {
@@ -167,11 +167,11 @@ pub(super) fn pick(
     }
 }
 
-/// From a point to a piece of a line.
+/// Returns the distance from a point to the line segment from `a` to `b`.
 fn to_segment(point: Vec2, a: Vec2, b: Vec2) -> f32 {
     let along = b - a;
     let share = (point - a).dot(along) / along.length_squared();
-    // An element seen from its end is a point.
+    // An element seen along its line is a single point on the screen.
     let share = if share.is_finite() {
         share.clamp(0.0, 1.0)
     } else {

@@ -1,4 +1,4 @@
-//! The workbench as a person uses it: a game without a renderer, and a window's own events.
+//! Tests of the workbench through its user interface: a game without a renderer gets window events.
 
 mod in_the_scene;
 mod person;
@@ -28,10 +28,10 @@ fn an_element_is_chosen_in_the_list_and_its_numbers_are_shown() {
     let mut person = Person::at_the_bench();
     person.click("Lamp spring");
     assert!(person.sees("80 N/m") && person.sees("1.5 N s/m"));
-    // The verdict, the ends and what follows from the numbers.
+    // The verdict, the ends and the derived figures.
     assert!(person.sees("Alone on its ends"));
     assert!(person.sees("A: Hook (fixed)") && person.sees("B: Lamp (dynamic)"));
-    // √(80/2)/2π
+    // √(80/2)/2π.
     assert!(person.sees("1.00658 Hz"), "{:?}", person.texts());
 }
 
@@ -42,7 +42,7 @@ fn a_number_is_dragged_and_the_drag_undone() {
     person.drag("80 N/m", 100.0);
     person.run(5);
     let stiffness = person.lamp().stiffness;
-    // A hundredth for each pixel, compounded; the first few pixels make it a drag.
+    // The number grows by 1 % per pixel, compounded. The first few pixels only start the drag.
     assert!(stiffness > 150.0 && stiffness < 300.0, "{stiffness} N/m");
     assert!(!person.sees("80 N/m"));
     person.click("Undo");
@@ -91,10 +91,10 @@ fn the_plots_have_what_happened() {
     let [low, high] = curve.iter().fold([9.0_f64, 0.0], |[low, high], point| {
         [low.min(point[1]), high.max(point[1])]
     });
-    // It falls by twice its sag.
+    // The lamp falls by twice its sag.
     assert!(high - low > 0.3, "{low} to {high} m");
     assert!(person.sees("length, m") && person.sees("energy, J"));
-    // The law's curve is the law: Hooke's.
+    // The curve of the law is Hooke's law.
     let bench = person.app.world().resource::<Bench>();
     let subject = bench.subject.as_ref().expect("chosen");
     let curve = subject.facts.curve.as_ref().expect("a law");
@@ -140,7 +140,7 @@ fn the_list_is_searched() {
 #[test]
 fn a_coil_is_clicked_in_the_scene() {
     let mut person = Person::at_the_bench();
-    // Half-way between hook and lamp, which stand in the middle of the window.
+    // Half-way between hook and lamp, which are in the middle of the window.
     let hook = person::project(Vec3::new(0.0, 1.5, 0.0), person::EYE);
     person.click_at(hook);
     assert_eq!(
@@ -206,7 +206,7 @@ fn a_preset_is_saved_and_loaded() {
         .get::<SpringDamper>(person.bell)
         .expect("an element");
     assert_eq!((bell.stiffness, bell.damping), (80.0, 1.5));
-    // The same as RON, by its name.
+    // A name that ends with `.ron` saves the preset as RON.
     let behind = person.place("soft").expect("the name") + 50.0 * Vec2::X;
     person.click_at(behind);
     person.type_text(".ron");

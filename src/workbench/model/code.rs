@@ -1,11 +1,11 @@
-//! An element as Rust that compiles.
+//! Writes an element as Rust code that compiles.
 
 use super::snapshot::{Part, Snapshot};
 use crate::element::*;
 use bevy::prelude::Vec3;
 use std::fmt::Write;
 
-/// A function that spawns the element between two bodies.
+/// Returns the source of a function that spawns the element between two bodies.
 pub(crate) fn rust(snapshot: &Snapshot, function: &str, title: &str) -> String {
     let mut parts = vec![part(&snapshot.part)];
     if let Some(Anchors { a, b }) = snapshot.anchors {
@@ -29,21 +29,21 @@ pub(crate) fn rust(snapshot: &Snapshot, function: &str, title: &str) -> String {
         parts.push(format!("MaxForce({})", number(force)));
     }
     parts.extend(snapshot.breakable.map(breakable));
-    // A title of several lines would end the comment.
+    // A line break in the title would end the comment.
     let title = title.split_whitespace().collect::<Vec<_>>().join(" ");
     let mut out = format!(
         "/// {title}.\npub fn {function}(commands: &mut Commands, body_a: Entity, body_b: Entity) -> Entity {{\n"
     );
     out += "    commands\n        .spawn((\n";
     for part in parts {
-        // Writing into a string does not fail.
+        // Writing to a string cannot fail.
         let _ = writeln!(out, "            {part},");
     }
     out += "        ))\n        .id()\n}\n";
     out
 }
 
-/// A title as the name of a function.
+/// Turns a title into a function name.
 pub(crate) fn function_name(title: &str) -> String {
     let mut name = String::new();
     for letter in title.chars() {
@@ -110,7 +110,7 @@ fn table(table: &ForceTable) -> String {
     let point = |p: &bevy::prelude::Vec2| format!("({}, {})", number(p.x), number(p.y));
     let points: Vec<_> = table.points.iter().map(point).collect();
     if points.is_empty() {
-        // An empty list says not what it is a list of.
+        // An empty list alone does not tell the compiler the type of its items.
         return "Vec::<(f32, f32)>::new()".into();
     }
     format!("[{}]", points.join(", "))

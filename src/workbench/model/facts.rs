@@ -1,4 +1,4 @@
-//! What is known of the chosen element in this frame.
+//! What is known about the chosen element in this frame, apart from its own numbers.
 
 use super::figures::Load;
 use super::snapshot::Snapshot;
@@ -7,13 +7,13 @@ use crate::input::curve::Curve;
 use crate::readout::SpringReadout;
 use bevy::prelude::*;
 
-/// What an end is.
+/// Kind of entity that an end is.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum EndKind {
-    /// It does not exist.
+    /// The entity does not exist or has no `GlobalTransform`.
     #[default]
     Missing,
-    /// An entity that is no body, nor below one.
+    /// An entity that is not a body and has no ancestor that is one.
     Point,
     Fixed,
     Kinematic,
@@ -26,40 +26,40 @@ pub(crate) struct End {
     pub name: String,
     pub kind: EndKind,
     pub asleep: bool,
-    /// Its anchor, in the world.
+    /// Position of the anchor in the world, m.
     pub at: Option<Vec3>,
 }
 
-/// How finely the crate is told to step.
+/// Settings of the step size and accuracy.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Stepping {
-    /// Of an engine step, s.
+    /// Length of an engine step, s.
     pub dt: f32,
     pub microsteps: u32,
     pub tolerance: Option<f32>,
 }
 
-/// All about the chosen element that is not its own numbers.
+/// Everything about the chosen element except its own numbers.
 #[derive(Clone, Debug)]
 pub(crate) struct Facts {
     pub readout: SpringReadout,
-    /// By Bevy's `Disabled`.
+    /// Whether the element has Bevy's `Disabled` component.
     pub is_disabled: bool,
     pub fault: Option<String>,
     pub ends: [End; 2],
-    /// In the world of the engine where its bodies are, m/s².
+    /// Magnitude of gravity in the Rapier context of its bodies, m/s².
     pub gravity: f32,
-    /// Cosine between gravity and the element, from its still end to its load: 1 of what hangs on it, -1 of what stands on
-    /// it. None where nothing says which end is the load.
+    /// Cosine between gravity and the direction from the end that is not dynamic to the dynamic end, the load. It is
+    /// 1 for a hanging load and -1 for a load that stands on the element. `None` if not exactly one end is dynamic.
     pub slope: Option<f32>,
     pub stepping: Stepping,
-    /// A function of the game's own takes the place of spring or damper.
+    /// Whether the game's own function replaces the law of the spring and of the damper.
     pub custom: [bool; 2],
     pub curve: Option<Curve>,
 }
 
 impl Facts {
-    /// What the element carries.
+    /// Returns the effective mass and the gravity.
     pub fn load(&self) -> Load {
         Load {
             mass: self.readout.effective_mass,
@@ -67,15 +67,16 @@ impl Facts {
         }
     }
 
-    /// The load where the stiffness of the element says how it gives way.
+    /// Returns the load if the stiffness alone determines how the element yields: the spring is linear and the mass
+    /// is valid.
     pub fn load_of(&self, snapshot: &Snapshot) -> Option<Load> {
         let load = self.load();
         let linear = snapshot.spring_is_linear() && !self.custom[0];
         (linear && load.is_sound()).then_some(load)
     }
 
-    /// Gives an element the stiffness that sags so far, m, and the rest length with which its load stays where it rests:
-    /// the same as a [`SpringTuning::sag`](crate::SpringTuning::sag) does for one that is new.
+    /// Sets the stiffness that gives a sag, m, and the rest length with which the load stays where it rests.
+    /// [`SpringTuning::sag`](crate::SpringTuning::sag) does this for a new element.
     pub fn set_sag(&self, element: &mut Snapshot, sag: f32) {
         let Some(load) = self.load_of(element) else {
             return;
@@ -87,7 +88,7 @@ impl Facts {
         if !(stiffness.is_finite() && stiffness > 0.0) {
             return;
         }
-        // What a preload carries does not stretch the spring.
+        // The part of the weight that a preload carries does not stretch the spring.
         let weight = self.slope.map(|slope| load.mass * load.gravity * slope);
         let carries = |tension: &f32| match element.action {
             Some(SpringAction::Pull) => *tension > 0.0,
@@ -114,12 +115,12 @@ impl Facts {
     }
 }
 
-/// The chosen element.
+/// The chosen element, with its numbers and facts.
 #[derive(Clone, Debug)]
 pub(crate) struct Subject {
     pub entity: Entity,
     pub title: String,
-    /// As it is, or will be before the next tick.
+    /// Numbers of the element as they will be at the next tick, with all pending edits.
     pub now: Snapshot,
     pub facts: Facts,
 }
@@ -131,7 +132,8 @@ mod tests {
     use crate::workbench::model::snapshot::Part;
     use crate::workbench::model::verdict::tests::scene;
 
-    /// Rest length and stiffness for a sag of 0.2 m, of an element with 100 N/m and 1 m under 1 kg at 10 m/s².
+    /// Returns rest length and stiffness after a sag of 0.2 m is set for an element of 100 N/m and 1 m, under 1 kg at
+    /// 10 m/s².
     fn tuned(slope: Option<f32>, change: impl Fn(&mut Snapshot)) -> (f32, f32) {
         let (now, mut facts) = scene();
         let [a, b] = now.part.ends();
@@ -152,20 +154,20 @@ mod tests {
             assert!((rest - expected).abs() < 1e-6, "{rest} m for {expected} m");
             assert!((stiffness - 50.0).abs() < 1e-4, "{stiffness} N/m");
         };
-        // It hangs 0.1 m below the rest length, and shall be 0.2 m below another.
+        // The load hangs 0.1 m below the rest length, and shall hang 0.2 m below the new one.
         near(tuned(Some(1.0), |_| ()), 0.9);
         near(tuned(Some(-1.0), |_| ()), 1.1);
         near(tuned(Some(0.0), |_| ()), 1.0);
         near(tuned(None, |_| ()), 1.0);
-        // A preload carries all of it, or half.
+        // A preload carries all of the weight, or half of it.
         near(tuned(Some(1.0), |it| it.preload = Some(Preload(10.0))), 1.0);
         near(tuned(Some(1.0), |it| it.preload = Some(Preload(5.0))), 0.95);
-        // A rope below its load does not carry it.
+        // A rope cannot carry a load above it.
         near(
             tuned(Some(-1.0), |it| it.action = Some(SpringAction::Pull)),
             1.0,
         );
-        // No length is below zero, but along an axis.
+        // A length cannot be negative, except along an axis.
         let short = |it: &mut Snapshot| {
             if let Some(rest) = it.part.rest_mut() {
                 *rest = Some(0.05);

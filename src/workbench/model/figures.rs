@@ -1,56 +1,56 @@
-//! Stiffness and damping by what one sees of them, both ways.
+//! Converts stiffness and damping to visible figures (frequency, damping ratio, sag) and back.
 
 use crate::SpringTuning;
 use std::f32::consts::TAU;
 
-/// What an element carries, and under which gravity.
+/// Load of an element.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Load {
-    /// kg, or kg m² of a torsion element.
+    /// Effective mass, kg; for a torsion element the moment of inertia, kg m².
     pub mass: f32,
-    /// m/s².
+    /// Gravity, m/s².
     pub gravity: f32,
 }
 
 impl Load {
-    /// Whether anything follows from it.
+    /// Whether the mass is finite and above zero, so that figures can be computed.
     pub fn is_sound(&self) -> bool {
         self.mass.is_finite() && self.mass > 0.0
     }
 
-    /// Undamped natural frequency, Hz.
+    /// Returns the undamped natural frequency, Hz.
     pub fn frequency(&self, stiffness: f32) -> f32 {
         (stiffness / self.mass).sqrt() / TAU
     }
 
-    /// How far the load sags, m.
+    /// Returns the sag under gravity, m.
     pub fn sag(&self, stiffness: f32) -> f32 {
         self.mass * self.gravity / stiffness
     }
 
-    /// Damping without overshoot, N s/m.
+    /// Returns the critical damping, N s/m.
     pub fn critical(&self, stiffness: f32) -> f32 {
         2.0 * (stiffness * self.mass).sqrt()
     }
 
-    /// c/(2 √(k m)).
+    /// Returns the damping ratio c/(2 √(k m)).
     pub fn ratio(&self, stiffness: f32, damping: f32) -> f32 {
         damping / self.critical(stiffness)
     }
 
-    /// The stiffness that has a frequency, N/m.
+    /// Returns the stiffness for a natural frequency (Hz), N/m.
     pub fn stiffness_for_frequency(&self, frequency: f32) -> f32 {
         let tuning = SpringTuning::frequency(frequency, 0.0);
         tuning.coefficients(self.mass, self.gravity).0
     }
 
-    /// The stiffness that sags so far, N/m.
+    /// Returns the stiffness for a sag (m), N/m.
     pub fn stiffness_for_sag(&self, sag: f32) -> f32 {
         let tuning = SpringTuning::sag(sag, 0.0);
         tuning.coefficients(self.mass, self.gravity).0
     }
 
-    /// The damping that has a damping ratio, N s/m.
+    /// Returns the damping for a damping ratio, N s/m.
     pub fn damping_for_ratio(&self, stiffness: f32, ratio: f32) -> f32 {
         let tuning = SpringTuning::frequency(self.frequency(stiffness), ratio);
         tuning.coefficients(self.mass, self.gravity).1

@@ -1,12 +1,12 @@
-//! What was edited, to take it back.
+//! The edits, for undo and redo.
 
 use super::snapshot::Snapshot;
 use bevy::prelude::Entity;
 
-/// Most edits that are kept.
+/// Greatest number of edits that are kept.
 const MOST: usize = 200;
 
-/// One change of one element.
+/// One edit of one element.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Edit {
     pub entity: Entity,
@@ -15,17 +15,17 @@ pub(crate) struct Edit {
     pub after: Snapshot,
 }
 
-/// Edits done and taken back.
+/// Edits that were done, and edits that were undone.
 #[derive(Debug, Default)]
 pub(crate) struct History {
     done: Vec<Edit>,
     undone: Vec<Edit>,
-    /// The last edit still goes on: a number that is being dragged.
+    /// Whether the last edit is still in progress, as while a number is dragged.
     open: bool,
 }
 
 impl History {
-    /// Notes an edit. While a drag goes on, its many small changes are one edit.
+    /// Adds an edit. While a drag is in progress, its changes are merged into one edit.
     pub fn note(&mut self, edit: Edit) {
         self.undone.clear();
         if self.open
@@ -43,12 +43,12 @@ impl History {
         self.open = true;
     }
 
-    /// The next change is another edit.
+    /// Ends the edit in progress: the next change is a new edit.
     pub fn close(&mut self) {
         self.open = false;
     }
 
-    /// The edit to be taken back.
+    /// Moves the last edit to the undone ones, and returns it.
     pub fn undo(&mut self) -> Option<Edit> {
         self.open = false;
         let edit = self.done.pop()?;
@@ -56,7 +56,7 @@ impl History {
         Some(edit)
     }
 
-    /// The edit to be done again.
+    /// Moves the last undone edit back, and returns it.
     pub fn redo(&mut self) -> Option<Edit> {
         self.open = false;
         let edit = self.undone.pop()?;
@@ -64,12 +64,12 @@ impl History {
         Some(edit)
     }
 
-    /// What the next undo and the next redo are about.
+    /// Returns the names of the edits that the next undo and the next redo affect.
     pub fn next(&self) -> [Option<&'static str>; 2] {
         [&self.done, &self.undone].map(|edits| edits.last().map(|edit| edit.what))
     }
 
-    /// The element as it was before its first edit that is kept.
+    /// Returns the numbers of an element before its first edit that is kept.
     pub fn original(&self, entity: Entity) -> Option<&Snapshot> {
         let mine = |edit: &&Edit| edit.entity == entity;
         self.done.iter().find(mine).map(|edit| &edit.before)

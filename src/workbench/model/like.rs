@@ -1,9 +1,9 @@
-//! Whether what is edited is another one than before.
+//! Comparison that tells whether numbers were edited.
 
 use std::fmt::Debug;
 
-/// Whether two are alike. A NaN is like a NaN here: `==` has it differ from itself, so that what has one would look edited in
-/// every frame.
+/// Whether two values are equal, where NaN counts as equal to NaN. With `==`, a value that contains NaN would look
+/// edited in every frame.
 pub(crate) fn is_like<T: PartialEq + Debug>(a: &T, b: &T) -> bool {
     a == b || format!("{a:?}") == format!("{b:?}")
 }
@@ -20,7 +20,7 @@ mod tests {
         assert!(is_like(&stops(nan, 1.0), &stops(nan, 1.0)));
         assert!(!is_like(&stops(nan, 1.0), &stops(nan, 2.0)));
         assert!(!is_like(&stops(nan, 1.0), &stops(0.0, 1.0)));
-        // Neighbours among numbers are two.
+        // Adjacent floating-point numbers are different.
         let next = 0.1_f32.next_up();
         assert!(!is_like(&stops(nan, 0.1), &stops(nan, next)));
     }

@@ -1,4 +1,4 @@
-//! What the workbench knows, without a window: plain data and functions of it.
+//! Model of the workbench without a window: plain data and functions on it.
 
 pub(crate) mod code;
 pub(crate) mod facts;

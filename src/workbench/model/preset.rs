@@ -1,7 +1,7 @@
-//! An element's numbers as JSON or RON, and back: what is copied, pasted, saved and loaded.
+//! Converts an element's numbers to JSON or RON and back, for copy, paste, save and load.
 //!
-//! It is a map of components by their type paths, without the ends: a preset fits any two bodies. JSON is as Bevy's remote
-//! protocol has it, RON as Bevy's scene files.
+//! A preset is a map of components by their type paths. It leaves out the ends, so that it fits any two bodies. The
+//! JSON is that of Bevy's remote protocol, the RON that of Bevy's scene files.
 
 use super::preset_parts::{KINDS, Numbers, Written, component_of};
 use super::snapshot::Snapshot;
@@ -13,10 +13,10 @@ use serde::ser::SerializeMap;
 use serde::{Deserializer, Serialize, Serializer};
 use std::fmt;
 
-/// Where a limit stands for none, with its sign; JSON has no infinity.
+/// Stands for "no limit" in JSON, which has no infinity. The sign is kept.
 const NO_LIMIT: f32 = f32::MAX;
 
-/// What can stand in a preset beside the element itself, and where it goes.
+/// Calls a macro with each companion that a preset can hold: the field of [`Snapshot`] and its type.
 macro_rules! companions {
     ($action:ident) => {
         $action!(anchors: Anchors);
@@ -31,7 +31,7 @@ macro_rules! companions {
     };
 }
 
-/// All types that are needed to read and write a preset.
+/// Returns a registry of all types that are needed to read and write a preset.
 fn registry() -> TypeRegistry {
     let mut registry = TypeRegistry::new();
     macro_rules! register {
@@ -43,7 +43,7 @@ fn registry() -> TypeRegistry {
     registry
 }
 
-/// The element as JSON.
+/// Writes an element as JSON.
 pub(crate) fn json(snapshot: &Snapshot) -> Result<String, String> {
     let snapshot = limits(snapshot.clone(), f32::INFINITY, NO_LIMIT);
     let preset = Preset {
@@ -53,18 +53,18 @@ pub(crate) fn json(snapshot: &Snapshot) -> Result<String, String> {
     serde_json::to_string_pretty(&preset).map_err(|wrong| wrong.to_string())
 }
 
-/// The element as RON.
+/// Writes an element as RON.
 pub(crate) fn ron(snapshot: &Snapshot) -> Result<String, String> {
     let preset = Preset {
         snapshot,
         registry: &registry(),
     };
-    // The same on every system.
+    // Equal on every operating system.
     let config = PrettyConfig::new().new_line("\n");
     ron::ser::to_string_pretty(&preset, config).map_err(|wrong| wrong.to_string())
 }
 
-/// The element for a file of this name: RON where it ends so, else JSON.
+/// Writes an element for a file of this name: RON if the name ends with `.ron`, else JSON.
 pub(crate) fn text_for(name: &str, snapshot: &Snapshot) -> Result<String, String> {
     if name.ends_with(".ron") {
         ron(snapshot)
@@ -73,7 +73,8 @@ pub(crate) fn text_for(name: &str, snapshot: &Snapshot) -> Result<String, String
     }
 }
 
-/// Puts a preset, JSON or RON, into an element; its ends stay. What the preset has not is removed.
+/// Applies a preset in JSON or RON to an element and returns the result. The ends and, if the preset has none, the
+/// anchors stay. Other companions that the preset does not have are removed.
 pub(crate) fn apply(text: &str, snapshot: &Snapshot) -> Result<Snapshot, String> {
     let preset = Preset {
         snapshot,
@@ -93,7 +94,7 @@ pub(crate) fn apply(text: &str, snapshot: &Snapshot) -> Result<Snapshot, String>
     }
 }
 
-/// With one number for no limit in the place of another, above and below.
+/// Replaces the number that stands for "no limit", in upper and lower limits.
 fn limits(mut snapshot: Snapshot, from: f32, to: f32) -> Snapshot {
     let change = |value: &mut f32| {
         if value.abs() == from {
@@ -114,7 +115,7 @@ fn limits(mut snapshot: Snapshot, from: f32, to: f32) -> Snapshot {
     snapshot
 }
 
-/// What is written, or what is read into.
+/// The element to be written, or the element that a preset is read into.
 struct Preset<'a> {
     snapshot: &'a Snapshot,
     registry: &'a TypeRegistry,
@@ -186,7 +187,7 @@ impl<'de> Visitor<'de> for Preset<'_> {
         if !found {
             return Err(A::Error::custom("this preset has no spring or damper"));
         }
-        // An anchor belongs to the bodies more than to the spring: a preset that has none leaves it.
+        // Anchors belong to the bodies more than to the spring. A preset without anchors leaves them as they are.
         out.anchors = out.anchors.or(self.snapshot.anchors);
         Ok(limits(out, NO_LIMIT, f32::INFINITY))
     }

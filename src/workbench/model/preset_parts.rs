@@ -1,4 +1,4 @@
-//! The parts of a preset: the element's own numbers, and a component.
+//! Reads and writes the parts of a preset: the element's own numbers, and one companion.
 
 use super::snapshot::Part;
 use bevy::prelude::*;
@@ -8,7 +8,7 @@ use serde::de::{Error, MapAccess};
 use serde::ser::SerializeStruct;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-/// What can be an element.
+/// Names of the components that make an entity an element.
 pub(super) const KINDS: [&str; 6] = [
     "Spring",
     "Damper",
@@ -18,7 +18,7 @@ pub(super) const KINDS: [&str; 6] = [
     "TorsionSpringDamper",
 ];
 
-/// An element's own numbers, to be written as its component is, without the ends.
+/// Writes an element's own numbers like its component, but without the ends.
 pub(super) struct Written<'a>(pub &'a Part);
 
 impl Serialize for Written<'_> {
@@ -51,7 +51,7 @@ impl Serialize for Written<'_> {
     }
 }
 
-/// The name of the rest length's field.
+/// Returns the field name of the rest length or rest angle.
 fn rest_name(part: &Part) -> &'static str {
     if part.is_torsion() {
         "rest_angle"
@@ -60,7 +60,8 @@ fn rest_name(part: &Part) -> &'static str {
     }
 }
 
-/// An element's own numbers as they are read; what is missing stays as it is. Ends, as a scene file has them, are passed over.
+/// An element's own numbers in a preset. A missing number leaves the element's number as it is. Ends, which a scene
+/// file has, are skipped.
 #[derive(Deserialize, Default)]
 #[serde(default)]
 pub(super) struct Numbers {
@@ -76,7 +77,7 @@ pub(super) struct Numbers {
     damping: Option<f32>,
 }
 
-/// What is there is read as it is: RON has a `Some` only around what is optional in the component too.
+/// Reads a present field as it is. In RON, `Some` then stands only around fields that are optional in the component.
 fn there<'de, T: Deserialize<'de>, D: Deserializer<'de>>(from: D) -> Result<Option<T>, D::Error> {
     T::deserialize(from).map(Some)
 }
@@ -113,7 +114,7 @@ impl Numbers {
     }
 }
 
-/// Reads a component that stands beside an element.
+/// Reads a companion of an element.
 pub(super) fn component_of<'de, T, A>(map: &mut A, registry: &TypeRegistry) -> Result<T, A::Error>
 where
     T: TypePath + FromReflect + GetTypeRegistration,

@@ -1,24 +1,24 @@
-//! The last seconds of the chosen element.
+//! Recording of the last seconds of the chosen element.
 
 use crate::readout::SpringReadout;
 use std::collections::VecDeque;
 use std::fmt::Write;
 
-/// Seconds that are kept.
+/// Length of the record, s.
 pub(crate) const SECONDS: f64 = 20.0;
 
-/// Most samples that are kept, however short the steps are.
+/// Greatest number of samples, for very short steps.
 const MOST: usize = 100_000;
 
-/// What is kept of a tick.
+/// State of the element after one tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Sample {
-    /// s
+    /// Time of the game, s.
     pub time: f64,
     pub readout: SpringReadout,
 }
 
-/// A quantity over time.
+/// A quantity that can be plotted over time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Quantity {
     Length,
@@ -62,7 +62,7 @@ pub(crate) struct Record {
 
 impl Record {
     pub fn add(&mut self, sample: Sample) {
-        // Time that goes back is another run of the scene.
+        // If the time goes back, the scene has started again.
         if self
             .samples
             .back()
@@ -85,12 +85,12 @@ impl Record {
         self.samples.clear();
     }
 
-    /// First and last time, s.
+    /// Returns the first and last time of the record, s.
     pub fn span(&self) -> Option<[f64; 2]> {
         Some([self.samples.front()?.time, self.samples.back()?.time])
     }
 
-    /// The last sample not after a time.
+    /// Returns the last sample at or before a time, or else the first sample.
     pub fn at(&self, time: f64) -> Option<&Sample> {
         let after = self.samples.partition_point(|sample| sample.time <= time);
         self.samples.get(after.saturating_sub(1))
@@ -100,8 +100,8 @@ impl Record {
         self.samples.iter()
     }
 
-    /// Samples for a plot: of many, least and greatest of a quantity in as many pieces as are asked for, so that no peak
-    /// is lost.
+    /// Returns points for a plot. If there are many samples, they are divided into at most `pieces` pieces, and the
+    /// least and greatest value of each piece are returned, so that no peak is lost.
     pub fn curve(&self, quantity: Quantity, pieces: usize) -> Vec<[f64; 2]> {
         let point = |sample: &Sample| [sample.time, quantity.of(sample)];
         let each = self.samples.len().div_ceil(pieces.max(1)).max(1);
@@ -110,7 +110,7 @@ impl Record {
         }
         let mut out = Vec::with_capacity(2 * pieces);
         let mut piece = Vec::with_capacity(each);
-        // Pieces that stay with their samples, so that old peaks do not flicker while new ones come in.
+        // Pieces are counted from the oldest sample. While samples are only added, old peaks do not flicker.
         for sample in &self.samples {
             piece.push(point(sample));
             if piece.len() == each {
@@ -121,7 +121,7 @@ impl Record {
         out
     }
 
-    /// All of it as a table of comma-separated values; that of a torsion element has angles and moments.
+    /// Returns the record as comma-separated values. For a torsion element, the columns are angles and moments.
     pub fn csv(&self, is_torsion: bool) -> String {
         let [motion, mass] = if is_torsion {
             [
@@ -138,7 +138,7 @@ impl Record {
             "time_s,{motion},stored_energy_J,dissipated_energy_J,work_J,omega_dt,{mass},microsteps\n"
         );
         for Sample { time, readout } in &self.samples {
-            // Writing into a string does not fail.
+            // Writing to a string cannot fail.
             let _ = writeln!(
                 out,
                 "{time},{},{},{},{},{},{},{},{},{},{}",
@@ -158,7 +158,7 @@ impl Record {
     }
 }
 
-/// Moves least and greatest of a piece out of it, in the order of time.
+/// Appends the least and greatest point of a piece to `out`, in order of time, and clears the piece.
 fn extremes(piece: &mut Vec<[f64; 2]>, out: &mut Vec<[f64; 2]>) {
     let by_value = |a: &&[f64; 2], b: &&[f64; 2]| a[1].total_cmp(&b[1]);
     let least = piece.iter().min_by(by_value).copied();

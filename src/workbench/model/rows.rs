@@ -1,9 +1,9 @@
-//! The list of all elements: searched, sorted, and cheap to keep for thousands.
+//! The list of all elements, with search and order. It stays cheap with thousands of elements.
 
 use crate::readout::SpringReadout;
 use bevy::prelude::Entity;
 
-/// By what the list is sorted.
+/// Order of the list.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Order {
     #[default]
@@ -13,16 +13,18 @@ pub(crate) enum Order {
     Energy,
 }
 
-/// One element.
+/// One element in the list.
 #[derive(Clone, Debug)]
 pub(crate) struct Row {
     pub entity: Entity,
     pub label: String,
-    /// Small letters, for the search.
+    /// Label in lower case, for the search.
     lower: String,
-    /// N, m rad, J.
+    /// Force of spring and damper, N; for a torsion element the moment, N m.
     pub force: f32,
+    /// Phase per engine step, rad.
     pub omega_dt: f32,
+    /// Stored energy, J.
     pub energy: f32,
 }
 
@@ -54,20 +56,20 @@ impl Row {
     }
 }
 
-/// All elements, and which of them are shown.
+/// All elements, and the selection that is shown.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Rows {
     all: Vec<Row>,
-    /// Numbers in `all`, as shown.
+    /// Indices into `all` of the rows that are shown, in their order.
     shown: Vec<u32>,
     pub search: String,
     pub order: Order,
-    /// Where the next reading goes on.
+    /// Index in `all` at which the next refresh continues.
     next: usize,
 }
 
 impl Rows {
-    /// Takes another set of elements.
+    /// Replaces the set of elements.
     pub fn replace(&mut self, mut all: Vec<Row>) {
         all.sort_by(|a, b| a.lower.cmp(&b.lower).then(a.entity.cmp(&b.entity)));
         self.all = all;
@@ -75,12 +77,12 @@ impl Rows {
         self.arrange();
     }
 
-    /// Looks for what is sought and sorts it.
+    /// Applies search and order.
     pub fn arrange(&mut self) {
         let sought = self.search.trim().to_lowercase();
         let all = &self.all;
         let fits = |row: &Row| sought.is_empty() || row.lower.contains(&sought);
-        // What was shown already comes first, in its order: sorting what is nearly sorted is cheap.
+        // Rows that were shown before come first, in their old order: sorting a nearly sorted list is cheap.
         let mut is_shown = vec![false; all.len()];
         self.shown.retain(|i| {
             let there = all.get(*i as usize).is_some_and(fits);
@@ -101,7 +103,7 @@ impl Rows {
         }
     }
 
-    /// Rows whose numbers are due: all of them within so many calls.
+    /// Returns the rows to refresh in this call. Every row has its turn within `calls` calls.
     pub fn due(&mut self, calls: usize) -> &mut [Row] {
         let count = self.all.len().div_ceil(calls.max(1));
         let from = if self.next < self.all.len() {
@@ -122,7 +124,7 @@ impl Rows {
         self.all.len()
     }
 
-    /// Of those that are shown.
+    /// Returns a row by its position among the shown rows.
     pub fn get(&self, shown: usize) -> Option<&Row> {
         self.all.get(*self.shown.get(shown)? as usize)
     }

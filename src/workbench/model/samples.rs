@@ -1,4 +1,4 @@
-//! Elements with everything that can stand beside one, for tests.
+//! Sample elements for tests, with every companion on some of them.
 
 use super::preset;
 use super::snapshot::{Part, Snapshot};
@@ -9,7 +9,7 @@ fn ends() -> [Entity; 2] {
     [1, 2].map(|i| Entity::from_raw_u32(i).expect("a number of an entity"))
 }
 
-/// Each with the name of the function that spawns it.
+/// Returns the samples, each with the name of the function that spawns it.
 pub(crate) fn samples() -> Vec<(&'static str, Snapshot)> {
     let [a, b] = ends();
     let plain = Snapshot::new(Part::SpringDamper(
@@ -117,7 +117,7 @@ fn a_stop_at_the_longer_end_alone_is_read_as_it_was_written() {
     }
 }
 
-/// As a person reads it, and as a scene file has it.
+/// Presets in RON are readable and look like a scene file.
 #[test]
 fn ron_is_as_in_a_scene_file() {
     let [a, b] = ends();
@@ -143,7 +143,7 @@ fn ron_is_as_in_a_scene_file() {
     ),
 }"#;
     assert_eq!(preset::ron(&rope).as_deref(), Ok(text));
-    // A scene file has the ends too, and may leave out what stays.
+    // A scene file has the ends too, and may leave out numbers that stay.
     let scene = r#"{"bevy_coilover::Spring": (body_a: 4294967295, stiffness: 9, body_b: 1)}"#;
     let read = preset::apply(scene, &rope).expect("a preset");
     assert_eq!(read.part.stiffness(), Some(9.0));
@@ -162,7 +162,7 @@ fn bad_presets_are_told() {
     assert!(wrong("").contains("neither JSON nor RON"));
     assert!(wrong("(((").contains("neither JSON nor RON"));
     assert!(wrong("5").contains("object"));
-    // As deep as a text can be, and no overflow of the stack.
+    // Very deep nesting must not overflow the stack.
     assert!(wrong(&"[".repeat(100_000)).contains("neither"));
     let of_ron = |rest: &str| format!(r#"{{"bevy_coilover::Spring": (stiffness: 1.0), {rest}}}"#);
     assert!(wrong(&of_ron(r#""bevy_coilover::Preload": ("much")"#)).contains("Preload"));
@@ -193,8 +193,8 @@ mod generated {
     include!("../../../tests/workbench/generated.rs");
 }
 
-/// What was generated is what is compiled above, and spawns what it was generated from. `UPDATE_GENERATED=1` writes it
-/// anew.
+/// The generated code equals the file that is compiled above, and spawns the samples that it was generated from.
+/// `UPDATE_GENERATED=1` writes the file again.
 #[test]
 fn generated_code_compiles_and_spawns_the_same() {
     let mut text = String::from(

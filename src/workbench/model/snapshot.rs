@@ -1,4 +1,4 @@
-//! All numbers of one element, as they can be edited.
+//! All editable numbers of one element.
 
 use super::like::is_like;
 use crate::element::*;
@@ -16,7 +16,7 @@ pub(crate) enum Part {
     TorsionSpringDamper(TorsionSpringDamper),
 }
 
-/// An element and what stands beside it.
+/// An element and its companions.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Snapshot {
     pub part: Part,
@@ -31,7 +31,7 @@ pub(crate) struct Snapshot {
     pub breakable: Option<Breakable>,
 }
 
-/// Does the same with each companion.
+/// Calls a macro for each companion.
 macro_rules! each_companion {
     ($action:ident) => {
         $action!(anchors);
@@ -46,7 +46,7 @@ macro_rules! each_companion {
     };
 }
 
-/// Does the same with each component that can make an element.
+/// Evaluates an expression for whichever component makes the element.
 macro_rules! each_part {
     ($part:expr, $name:ident => $value:expr) => {
         match $part {
@@ -70,7 +70,7 @@ impl Part {
         part.or_else(|| entity.get().copied().map(Self::TorsionDamper))
     }
 
-    /// As the component is called.
+    /// Returns the name of the component.
     pub fn name(&self) -> &'static str {
         match self {
             Self::Spring(_) => "Spring",
@@ -90,7 +90,7 @@ impl Part {
         self.twist().is_some()
     }
 
-    /// Axis of a torsion element, in body A's frame.
+    /// Returns the axis of a torsion element, in body A's frame.
     pub fn twist(&self) -> Option<Vec3> {
         match self {
             Self::TorsionSpring(part) => Some(part.axis),
@@ -109,7 +109,7 @@ impl Part {
         }
     }
 
-    /// N/m, of what has a spring.
+    /// Returns the stiffness (N/m or N m/rad) if there is a spring.
     pub fn stiffness_mut(&mut self) -> Option<&mut f32> {
         match self {
             Self::Spring(part) => Some(&mut part.stiffness),
@@ -120,7 +120,7 @@ impl Part {
         }
     }
 
-    /// N s/m, of what has a damper.
+    /// Returns the damping (N s/m or N m s/rad) if there is a damper.
     pub fn damping_mut(&mut self) -> Option<&mut f32> {
         match self {
             Self::Damper(part) => Some(&mut part.damping),
@@ -131,7 +131,7 @@ impl Part {
         }
     }
 
-    /// Length or angle without force, of what has a spring.
+    /// Returns the rest length (m) or rest angle (rad) if there is a spring.
     pub fn rest_mut(&mut self) -> Option<&mut Option<f32>> {
         match self {
             Self::Spring(part) => Some(&mut part.rest_length),
@@ -154,7 +154,7 @@ impl Part {
         self.rest_mut().copied().flatten()
     }
 
-    /// Takes over which numbers differ between two others.
+    /// Copies from `to` the numbers in which `from` and `to` differ.
     fn carry(&mut self, from: &Self, to: &Self) {
         if !is_like(&from.stiffness(), &to.stiffness())
             && let (Some(mine), Some(value)) = (self.stiffness_mut(), to.stiffness())
@@ -180,7 +180,7 @@ impl Part {
 }
 
 impl Snapshot {
-    /// Of an element without companions.
+    /// Returns a snapshot without companions.
     pub fn new(part: Part) -> Self {
         Self {
             part,
@@ -196,7 +196,7 @@ impl Snapshot {
         }
     }
 
-    /// As an entity has it; none where it is no element.
+    /// Reads an entity; `None` if it is not an element.
     pub fn read(entity: EntityRef) -> Option<Self> {
         let mut snapshot = Self::new(Part::read(entity)?);
         macro_rules! read {
@@ -208,7 +208,7 @@ impl Snapshot {
         Some(snapshot)
     }
 
-    /// Changes an entity where it is different.
+    /// Writes to an entity the components that differ from it.
     pub fn write(&self, entity: &mut EntityWorldMut) {
         fn part<T: Component<Mutability = bevy::ecs::component::Mutable> + PartialEq + Debug>(
             value: T,
@@ -244,8 +244,8 @@ impl Snapshot {
         each_companion!(write);
     }
 
-    /// Takes over what differs between two others, and leaves the rest as it is: what the game has changed meanwhile
-    /// is not lost.
+    /// Copies from `to` the numbers and companions in which `from` and `to` differ. The rest stays as it is, so
+    /// changes that the game has made meanwhile are not lost.
     pub fn carry(&mut self, from: &Self, to: &Self) {
         self.part.carry(&from.part, &to.part);
         macro_rules! carry {
@@ -258,17 +258,17 @@ impl Snapshot {
         each_companion!(carry);
     }
 
-    /// Whether its length is an angle or a distance along an axis, which can be below zero.
+    /// Whether the length can be negative: it is an angle, or a distance along an axis.
     pub fn has_sign(&self) -> bool {
         self.part.is_torsion() || self.axis.is_some()
     }
 
-    /// Whether the force of its spring is the stiffness times the stretch, up to clamps and stops.
+    /// Whether the spring force is stiffness · stretch, apart from force limits and stops.
     pub fn spring_is_linear(&self) -> bool {
         matches!(self.spring_law, None | Some(SpringLaw::Linear))
     }
 
-    /// Whether the force of its damper is the damping times the rate.
+    /// Whether the damper force is damping · rate.
     pub fn damper_is_linear(&self) -> bool {
         matches!(self.damping_law, None | Some(DampingLaw::Linear))
     }

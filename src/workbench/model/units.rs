@@ -2,20 +2,21 @@
 
 use super::snapshot::Part;
 
-/// Each as it stands behind a number, with the space between them.
+/// Units as they appear after a number, each with a leading space.
 #[derive(Debug)]
 pub(crate) struct Units {
     pub length: &'static str,
     pub rate: &'static str,
     pub force: &'static str,
     pub stiffness: &'static str,
-    /// Of a force over the square of the stretch, and over its cube.
+    /// Unit of a force per square of the stretch.
     pub stiffness_squared: &'static str,
+    /// Unit of a force per cube of the stretch.
     pub stiffness_cubed: &'static str,
     pub damping: &'static str,
-    /// Of a force over the square of the rate.
+    /// Unit of a force per square of the rate.
     pub damping_squared: &'static str,
-    /// Of how a stop grows stiffer.
+    /// Unit of the progression of a stop's stiffness.
     pub progression: &'static str,
     pub mass: &'static str,
 }
@@ -47,7 +48,7 @@ static TORSION: Units = Units {
 };
 
 impl Part {
-    /// Those of its numbers and of its companions'.
+    /// Returns the units of the element's numbers and of its companions' numbers.
     pub fn units(&self) -> &'static Units {
         if self.is_torsion() { &TORSION } else { &LINEAR }
     }

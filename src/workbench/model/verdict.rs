@@ -1,18 +1,18 @@
-//! What the numbers mean, in words.
+//! Explains the numbers of an element in sentences.
 
 use super::facts::{EndKind, Facts, Stepping};
 use super::snapshot::Snapshot;
 use crate::readout::SpringMethod;
 use crate::recommend::{error_per_second, recommend};
 
-/// ω·dt up to which motion is followed closely, and beyond which it is not resolved.
+/// Phase ω·dt per kick up to which the motion is followed closely, and beyond which it is not resolved, rad.
 const CLOSE: f32 = 1.0;
 const UNRESOLVED: f32 = 2.5;
 
-/// Errors that are asked of `recommend`, m per s.
+/// Tolerances for which `recommend` is asked, m per s.
 const TOLERANCES: [f32; 2] = [1e-3, 1e-5];
 
-/// How good or bad something is.
+/// Severity of a sentence.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Tone {
     Good,
@@ -21,7 +21,7 @@ pub(crate) enum Tone {
     Bad,
 }
 
-/// One sentence.
+/// A sentence with its severity.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Sentence {
     pub tone: Tone,
@@ -33,7 +33,7 @@ fn say(tone: Tone, text: impl Into<String>) -> Sentence {
     Sentence { tone, text }
 }
 
-/// All there is to say about an element.
+/// Returns all sentences about an element.
 pub(crate) fn verdict(now: &Snapshot, facts: &Facts) -> Vec<Sentence> {
     if facts.is_disabled {
         let text = "It is disabled, and does not act until the component Disabled is removed.";
@@ -99,7 +99,7 @@ fn method(facts: &Facts) -> Option<Sentence> {
     })
 }
 
-/// Whether its vibration is followed.
+/// Says whether the vibration is resolved.
 fn resolved(facts: &Facts) -> Option<Sentence> {
     let readout = &facts.readout;
     if readout.method == SpringMethod::None || readout.omega_dt.is_nan() || readout.omega_dt <= 0.0
@@ -107,7 +107,7 @@ fn resolved(facts: &Facts) -> Option<Sentence> {
         return None;
     }
     let omega_dt = readout.omega_dt;
-    // Each kick has its share of the step.
+    // The phase is divided evenly among the kicks of a step.
     let each = omega_dt / readout.microsteps.max(1) as f32;
     Some(if each <= CLOSE {
         say(
@@ -132,7 +132,7 @@ fn resolved(facts: &Facts) -> Option<Sentence> {
     })
 }
 
-/// What holds the ends.
+/// Says what the ends are.
 fn held(facts: &Facts) -> Option<Sentence> {
     let cannot_move = |kind| matches!(kind, EndKind::Fixed | EndKind::Kinematic | EndKind::Point);
     let word = |kind| match kind {
@@ -156,7 +156,7 @@ fn held(facts: &Facts) -> Option<Sentence> {
     ))
 }
 
-/// How its swing fades.
+/// Says how fast an oscillation decays.
 fn damped(now: &Snapshot, facts: &Facts) -> Option<Sentence> {
     let load = facts.load_of(now)?;
     let stiffness = now.part.stiffness().filter(|k| *k > 0.0)?;
@@ -183,7 +183,7 @@ fn damped(now: &Snapshot, facts: &Facts) -> Option<Sentence> {
     ))
 }
 
-/// What the steps cost in error, and what `recommend` says.
+/// Says how large the error of the steps is, and what `recommend` advises.
 fn advice(now: &Snapshot, facts: &Facts) -> Vec<Sentence> {
     let mut out = vec![];
     let Some(load) = facts.load_of(now) else {
@@ -230,7 +230,7 @@ fn advice(now: &Snapshot, facts: &Facts) -> Vec<Sentence> {
     out
 }
 
-/// A short length in a unit that suits it.
+/// Formats a short length in a suitable unit.
 fn metres(length: f32) -> String {
     let size = length.abs();
     if size >= 1.0 {

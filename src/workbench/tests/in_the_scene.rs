@@ -1,4 +1,4 @@
-//! What a person does in the scene: anchors are dragged, bodies pulled.
+//! Tests of the user's actions in the scene: dragging anchors and pulling bodies.
 
 use super::person::{EYE, Person, project};
 use crate::prelude::*;
@@ -7,7 +7,7 @@ use bevy::input::ButtonState;
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
 
-/// The end B of an element: the body that hangs.
+/// Returns end B of an element: the hanging body.
 fn body(person: &Person, element: Entity) -> Entity {
     let world = person.app.world();
     let pair = world.get::<SpringDamper>(element);
@@ -47,7 +47,7 @@ fn an_anchor_is_dragged_and_the_drag_undone() {
         (moved.a - by).length() < 2e-3 && moved.b == Vec3::ZERO,
         "{moved:?}"
     );
-    // It is one edit, and back to there being none.
+    // The drag is one edit. Undo removes the component again.
     person.click("Undo");
     person.run(2);
     assert_eq!(anchors(&person, person.lamp), None);
@@ -78,7 +78,7 @@ fn two_drags_are_two_edits() {
 fn an_anchor_on_a_body_that_is_turned_is_dragged_while_paused() {
     let mut person = Person::at_the_bench();
     let lamp = body(&person, person.lamp);
-    // A quarter turn: what is up in the world is along X of the body.
+    // A quarter turn: X of the world is Y of the body.
     let turn = Quat::from_rotation_z(-std::f32::consts::FRAC_PI_2);
     let world = person.app.world_mut();
     let mut entity = world.entity_mut(lamp);
@@ -89,7 +89,7 @@ fn an_anchor_on_a_body_that_is_turned_is_dragged_while_paused() {
     person.run(3);
     let from = place(&person, lamp);
     drag(&mut person, from, from + 0.25 * Vec3::X, 0);
-    // As every edit, it waits for a tick; the panel and the ball have it.
+    // Like every edit, this one waits for a tick. The panel and the ball already show it.
     assert_eq!(anchors(&person, person.lamp), None);
     person.click("Step");
     person.run(3);
@@ -106,10 +106,10 @@ fn an_anchor_on_a_body_that_swings_is_dragged() {
     let from = place(&person, lamp);
     drag(&mut person, from, from + 0.15 * Vec3::X, 0);
     let moved = anchors(&person, person.lamp).expect("inserted");
-    // As far as the pointer went, wherever the lamp was meanwhile.
+    // The anchor has moved as far as the pointer, wherever the lamp was meanwhile.
     assert!((moved.b - 0.15 * Vec3::X).length() < 0.02, "{moved:?}");
     let before = moved;
-    // A pointer that stands still moves nothing.
+    // While the pointer stands still, the anchor does not move.
     let at = place(&person, lamp) + moved.b;
     drag(&mut person, at, at + 0.15 * Vec3::X, 40);
     let moved = anchors(&person, person.lamp).expect("there");
@@ -133,7 +133,7 @@ fn the_anchor_of_an_end_that_is_no_body_is_dragged() {
     assert!(person.sees("A: Nail (no body)"));
     let at = Vec3::new(-0.5, 2.2, 0.0);
     drag(&mut person, at, at + 0.2 * Vec3::Y, 0);
-    // In the frame of the end, which is scaled.
+    // In the frame of the end, which is scaled by 2.
     let moved = anchors(&person, cord).expect("inserted");
     assert!((moved.a - 0.1 * Vec3::Y).length() < 3e-3, "{moved:?}");
 }
@@ -170,7 +170,7 @@ fn a_body_is_pulled_with_the_mouse() {
     let mut person = Person::at_the_bench();
     assert!(person.sees("left Shift + drag pulls a body"));
     let (lamp, bell) = (body(&person, person.lamp), body(&person, person.bell));
-    // It has a collider, the bell has none.
+    // The lamp gets a collider; the bell has none.
     let collider = (Collider::ball(0.2), ColliderMassProperties::Mass(0.1));
     person.app.world_mut().entity_mut(lamp).insert(collider);
     person.run(300);
@@ -206,7 +206,8 @@ fn what_is_pulled_comes_to_the_pointer() {
     person.run(180);
     assert_eq!(springs_of_a_hand(&mut person), 1);
     let there = place(&person, lamp);
-    // The lamp's own spring, soft beside the hand's, still pulls, and its weight: centimetres.
+    // The lamp's own spring, which is softer than the spring of the hand, and its weight still pull: centimetres
+    // remain.
     assert!((there - to).length() < 0.2, "{there} for {to}");
     // Closing the workbench lets go.
     person.key(KeyCode::F9);
@@ -223,14 +224,14 @@ fn nothing_is_pulled_below_the_panel_or_without_the_key() {
     person.run(3);
     assert_eq!(springs_of_a_hand(&mut person), 0);
     person.let_go();
-    // A body below the list of elements.
+    // Pressed on the list of elements, which covers the scene.
     let below = person.place("Lamp spring").expect("in the list");
     person.hold(KeyCode::ShiftLeft, ButtonState::Pressed);
     person.press_at(below);
     person.run(3);
     assert_eq!(springs_of_a_hand(&mut person), 0);
     person.let_go();
-    // With another key, or none.
+    // Without a key in the settings.
     let mut settings = person.app.world_mut().resource_mut::<CoiloverWorkbench>();
     settings.grab = None;
     person.press_at(project(place(&person, lamp), EYE));

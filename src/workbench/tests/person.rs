@@ -1,4 +1,4 @@
-//! Somebody who sees texts in a window and has mouse and keys.
+//! A simulated user, who sees texts in a window and has mouse and keyboard.
 
 use crate::prelude::*;
 use crate::workbench::{CoiloverWorkbench, CoiloverWorkbenchPlugin};
@@ -17,7 +17,7 @@ use bevy_rapier3d::prelude::*;
 const SIZE: UVec2 = UVec2::new(1280, 1200);
 pub const EYE: Vec3 = Vec3::new(0.0, 1.0, 8.0);
 
-/// Texts that are on the screen, and where.
+/// Texts on the screen and their places.
 #[derive(Resource, Default)]
 struct Seen(Vec<(String, egui::Rect)>);
 
@@ -29,7 +29,7 @@ pub struct Person {
     pointer: Vec2,
 }
 
-/// Reads what egui draws.
+/// Reads the texts that egui draws.
 fn read(outputs: Query<&EguiFullOutput>, mut seen: ResMut<Seen>) {
     fn find(shape: &Shape, clip: egui::Rect, out: &mut Vec<(String, egui::Rect)>) {
         match shape {
@@ -37,7 +37,7 @@ fn read(outputs: Query<&EguiFullOutput>, mut seen: ResMut<Seen>) {
                 let rect = text.visual_bounding_rect().intersect(clip);
                 let text = text.galley.text();
                 match out.last_mut() {
-                    // A unit belongs to its number.
+                    // A text that starts with a space is the unit of the number before it.
                     Some((number, place)) if text.starts_with(' ') => {
                         number.push_str(text);
                         *place = place.union(rect);
@@ -58,7 +58,7 @@ fn read(outputs: Query<&EguiFullOutput>, mut seen: ResMut<Seen>) {
     }
 }
 
-/// Where a point is in the window.
+/// Returns the position of a point of the world in the window, logical pixels.
 pub fn project(at: Vec3, eye: Vec3) -> Vec2 {
     let projection = PerspectiveProjection {
         aspect_ratio: SIZE.x as f32 / SIZE.y as f32,
@@ -70,7 +70,7 @@ pub fn project(at: Vec3, eye: Vec3) -> Vec2 {
 }
 
 impl Person {
-    /// In a game with two lamps on springs, the workbench closed.
+    /// Starts a game with a lamp and a bell on springs. The workbench is closed.
     pub fn new() -> Self {
         let mut app = App::new();
         app.add_plugins((
@@ -138,7 +138,7 @@ impl Person {
         person
     }
 
-    /// A weight of 2 kg on a spring of 1 m, so far to the side.
+    /// Spawns a body of 2 kg on a spring, 1 m below a hook at the given `x` (m). Returns the spring.
     pub fn hang(&mut self, name: &'static str, x: f32, stiffness: f32) -> Entity {
         let world = self.app.world_mut();
         let hook = (
@@ -162,7 +162,7 @@ impl Person {
         world.spawn((name, spring)).id()
     }
 
-    /// With the workbench open.
+    /// Starts the game with the workbench open.
     pub fn at_the_bench() -> Self {
         let mut person = Self::new();
         person
@@ -244,7 +244,7 @@ impl Person {
         self.run(1);
     }
 
-    /// Moves in ten steps from one place to another with the button held, and holds it for so many frames more.
+    /// Drags from one position to another in ten steps, and holds the button for `wait` more frames.
     pub fn drag_between(&mut self, from: Vec2, to: Vec2, wait: u32) {
         self.press_at(from);
         self.move_to(to);
@@ -252,13 +252,13 @@ impl Person {
         self.let_go();
     }
 
-    /// Puts the button down.
+    /// Presses the mouse button at a position.
     pub fn press_at(&mut self, at: Vec2) {
         self.point_at(at);
         self.button(ButtonState::Pressed);
     }
 
-    /// Moves in ten steps.
+    /// Moves the pointer to a position in ten steps.
     pub fn move_to(&mut self, to: Vec2) {
         let from = self.pointer;
         for i in 1..=10 {
@@ -266,13 +266,13 @@ impl Person {
         }
     }
 
-    /// Lets the button go.
+    /// Releases the mouse button.
     pub fn let_go(&mut self) {
         self.button(ButtonState::Released);
         self.run(3);
     }
 
-    /// Holds a key down, or lets it go.
+    /// Presses or releases a key.
     pub fn hold(&mut self, key_code: KeyCode, state: ButtonState) {
         self.app.world_mut().write_message(KeyboardInput {
             key_code,
@@ -296,7 +296,7 @@ impl Person {
         self.click_at(self.find(text));
     }
 
-    /// Clicks what was drawn last of several equal texts: a menu before what lies behind it.
+    /// Clicks the text that was drawn last among several equal texts: a menu covers the texts behind it.
     pub fn click_last(&mut self, text: &str) {
         let seen = &self.app.world().resource::<Seen>().0;
         let last = seen.iter().rfind(|(seen, _)| seen == text);
@@ -304,7 +304,7 @@ impl Person {
         self.click_at(Vec2::new(at.x, at.y));
     }
 
-    /// Drags a text so many pixels to the right.
+    /// Drags a text to the right by a number of pixels.
     pub fn drag(&mut self, text: &str, pixels: f32) {
         let from = self.find(text);
         self.drag_between(from, from + pixels * Vec2::X, 0);

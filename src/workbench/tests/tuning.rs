@@ -1,4 +1,4 @@
-//! Numbers of the element by what one sees of them: typed by a person, and taken back.
+//! Tests of visible figures (frequency, damping ratio, sag) that a user types and undoes.
 
 use super::person::Person;
 use bevy::prelude::*;
@@ -14,7 +14,7 @@ fn a_frequency_is_typed_and_the_stiffness_follows() {
     let expected = 2.0 * (std::f32::consts::TAU * 2.5).powi(2);
     let stiffness = person.lamp().stiffness;
     assert!((stiffness / expected - 1.0).abs() < 1e-4, "{stiffness} N/m");
-    // One edit, not one for each letter.
+    // The input is one edit, not one for each letter.
     person.click("Undo");
     person.run(2);
     assert_eq!(person.lamp().stiffness, 80.0);
@@ -24,7 +24,7 @@ fn a_frequency_is_typed_and_the_stiffness_follows() {
 fn a_damping_ratio_is_typed_and_the_damping_follows() {
     let mut person = Person::at_the_bench();
     person.click("Lamp spring");
-    // 1.5/(2 √(80 · 2))
+    // 1.5/(2 √(80 · 2)).
     person.click("0.0592927");
     person.type_text("1");
     person.key(KeyCode::Enter);
@@ -49,7 +49,7 @@ fn a_sag_is_typed_and_the_load_stays_where_it_rests() {
         frame.expect("a body").translation.y
     };
     let before = height(&mut person);
-    // 2 · 9.81/80
+    // 2 · 9.81/80.
     person.click("0.24525 m");
     person.type_text("0.1");
     person.key(KeyCode::Enter);
@@ -58,7 +58,7 @@ fn a_sag_is_typed_and_the_load_stays_where_it_rests() {
     assert!((lamp.stiffness - 196.2).abs() < 0.01, "{lamp:?}");
     let rest = lamp.rest_length.expect("a rest length");
     assert!((rest - 1.14525).abs() < 1e-4, "{rest} m");
-    // It does not even start to swing.
+    // The lamp does not start to swing.
     person.run(20);
     let frame = person.app.world().get::<Transform>(body);
     let at_once = frame.expect("a body").translation.y;
@@ -68,7 +68,7 @@ fn a_sag_is_typed_and_the_load_stays_where_it_rests() {
     );
     let after = height(&mut person);
     assert!((after - before).abs() < 1e-3, "{after} after {before} m");
-    // Both are one edit.
+    // Stiffness and rest length are changed by one edit.
     person.click("Undo");
     person.run(2);
     let lamp = person.lamp();

@@ -1,4 +1,4 @@
-//! What the panel says of elements that are not as usual: numbers that are none, torsion, other worlds, disabled ones.
+//! Tests of what the panel says about unusual elements: NaN, torsion, other Rapier contexts, disabled elements.
 
 use super::person::Person;
 use crate::prelude::*;
@@ -25,7 +25,7 @@ fn a_nan_of_the_games_is_no_edit_and_can_be_typed_over() {
     spring.stiffness = f32::NAN;
     person.run(5);
     assert!(person.sees("SpringDamper::stiffness is NaN"));
-    // What was taken back can still be done again.
+    // The undone edit can still be redone.
     assert_eq!(edits(&person), [None, Some("a number")]);
     person.click("NaN N/m");
     person.type_text("90");
@@ -35,7 +35,7 @@ fn a_nan_of_the_games_is_no_edit_and_can_be_typed_over() {
     assert_eq!(edits(&person), [Some("a number"), None]);
 }
 
-/// A wheel on a bar that is without moment where it is turned by two radians the other way.
+/// Spawns a wheel on a torsion bar with a rest angle of -2 rad, and chooses the bar.
 fn bar(person: &mut Person) -> Entity {
     let world = person.app.world_mut();
     let at = Transform::from_xyz(-1.0, 1.0, 0.0);
@@ -58,7 +58,7 @@ fn bar(person: &mut Person) -> Entity {
         .with_damping(5.0)
         .with_rest_angle(-2.0);
     let bar = world.spawn((Name::new("Bar"), bar)).id();
-    // The list is made anew four times a second.
+    // The list is updated at most four times a second.
     person.run(30);
     person.click("Bar");
     bar
@@ -203,7 +203,7 @@ fn a_disabled_element_is_told_to_be_disabled_and_keeps_its_name() {
     person.run(30);
     assert!(person.sees("It is disabled"), "{:?}", person.texts());
     assert!(!person.sees("took no part") && !person.sees("Alone on its ends"));
-    // Out of the list, and still the title.
+    // A disabled element is not in the list, but the title still shows its name.
     assert!(person.sees("Lamp spring"));
     person.app.world_mut().entity_mut(lamp).remove::<Disabled>();
     person.run(30);

@@ -1,4 +1,4 @@
-//! What stands beside an element: each can be added, changed and removed.
+//! Shows the companions of an element. Each can be added, changed and removed.
 
 use super::field::{Drag, line, vector};
 use super::laws;
@@ -8,16 +8,16 @@ use crate::workbench::model::snapshot::Snapshot;
 use bevy::prelude::Vec3;
 use bevy_egui::egui::{ComboBox, Grid, Ui};
 
-/// Shows all that fit an element.
+/// Shows all companions that fit an element.
 pub(super) fn show(ui: &mut Ui, draft: &mut Snapshot, facts: &Facts) {
     let torsion = draft.part.is_torsion();
     let units = draft.part.units();
     let (force, length) = (units.force, units.length);
-    // A rest length is what a law starts from, so a sensible one starts at the element's own numbers.
+    // New laws and stops start from the element's own stiffness, damping and rest length.
     let stiffness = draft.part.stiffness();
     let damping = draft.part.damping();
     let has_sign = draft.has_sign();
-    // A damper has none, but a length once it has been stepped.
+    // A damper has no rest length. Its present length is used, once it has been stepped.
     let length_now = Some(facts.readout.length).filter(|length| *length != 0.0);
     let unknown = if has_sign { 0.0 } else { 1.0 };
     let rest = draft.part.rest().or(length_now).unwrap_or(unknown);
@@ -93,7 +93,7 @@ pub(super) fn show(ui: &mut Ui, draft: &mut Snapshot, facts: &Facts) {
     }
 }
 
-/// The stops that an element without any gets: to either side of its rest length, half of that away.
+/// Returns the stops for an element without any: on both sides of the rest length, at half of it away.
 fn stops(rest: f32, has_sign: bool, stiffness: f32) -> SpringTravel {
     let least = if has_sign { f32::NEG_INFINITY } else { 0.0 };
     let rest = if rest.is_finite() {
@@ -105,7 +105,7 @@ fn stops(rest: f32, has_sign: bool, stiffness: f32) -> SpringTravel {
     SpringTravel::new((rest - away).max(least), rest + away, stiffness)
 }
 
-/// A companion that is there or not; whether it is.
+/// Shows a companion with a checkbox. Returns whether it is present.
 fn optional<T: Clone>(ui: &mut Ui, name: &str, part: &mut Option<T>, new: T) -> bool {
     let mut there = part.is_some();
     if ui.checkbox(&mut there, name).changed() {
@@ -114,14 +114,14 @@ fn optional<T: Clone>(ui: &mut Ui, name: &str, part: &mut Option<T>, new: T) -> 
     part.is_some()
 }
 
-/// Indented lines of names and numbers.
+/// Shows indented lines of names and numbers.
 pub(super) fn grid(ui: &mut Ui, name: &str, lines: impl FnOnce(&mut Ui)) {
     ui.indent(name, |ui| {
         Grid::new(name).num_columns(2).show(ui, lines);
     });
 }
 
-/// One of several.
+/// Shows a choice of one value among several. Returns whether it was changed.
 pub(super) fn choice<T: PartialEq + Clone>(
     ui: &mut Ui,
     name: &str,
@@ -160,7 +160,7 @@ fn action(ui: &mut Ui, action: &mut Option<SpringAction>) {
 }
 
 fn axis(ui: &mut Ui, axis: &mut Option<SpringAxis>) {
-    /// Which kind it is.
+    /// Kind of the axis.
     #[derive(Clone, Copy, PartialEq)]
     enum Kind {
         None,
@@ -211,7 +211,7 @@ mod tests {
         assert_eq!(between(2.0, true), (1.0, 3.0));
         assert_eq!(between(-2.0, true), (-3.0, -1.0));
         assert_eq!(between(0.0, true), (-0.05, 0.05));
-        // What is wrong with the rest length is told; the stops are sound.
+        // An invalid rest length is reported elsewhere; the stops are valid.
         for wrong in [f32::NAN, f32::INFINITY, -1.0] {
             assert_eq!(between(wrong, false), (0.0, 0.05));
         }

@@ -1,4 +1,4 @@
-//! The chosen element: what it is, its numbers, and what is to be said of it.
+//! Shows the chosen element: its ends, verdict, numbers, readout and companions.
 
 use super::companions;
 use super::field::{Drag, brief, is_changed, line, number, vector};
@@ -23,7 +23,7 @@ pub(super) fn show(ui: &mut Ui, bench: &mut Bench) {
         ui.label(RichText::new(&subject.title).heading());
         ends(ui, &subject.now, &subject.facts);
         exports(ui, bench, &subject.title, &subject.now);
-        // Possibly as it was reset just now.
+        // `exports` may have reset the element just now.
         let reset = bench.subject.as_ref().map(|subject| subject.now.clone());
         let mut draft = reset.unwrap_or(subject.now.clone());
         ui.separator();
@@ -34,7 +34,8 @@ pub(super) fn show(ui: &mut Ui, bench: &mut Bench) {
         Grid::new("numbers").num_columns(2).show(ui, |ui| {
             numbers(ui, &mut draft, &subject.facts);
         });
-        // Each change has its own name, so that one is not undone with another.
+        // Numbers and companions have different names in the history, so that their changes are not merged into one
+        // edit.
         changed(bench, &draft, "a number");
         ui.separator();
         if let Some(sample) = bench.sample() {
@@ -59,7 +60,7 @@ fn color(ui: &Ui, tone: Tone) -> Color32 {
     }
 }
 
-/// What the element holds.
+/// Shows the ends of the element.
 fn ends(ui: &mut Ui, draft: &Snapshot, facts: &Facts) {
     ui.label(RichText::new(draft.part.name()).weak());
     for (name, end) in ["A", "B"].into_iter().zip(&facts.ends) {
@@ -75,11 +76,11 @@ fn ends(ui: &mut Ui, draft: &Snapshot, facts: &Facts) {
     }
 }
 
-/// Stiffness, damping and rest length, and what follows from them.
+/// Shows stiffness, damping and rest length, and the figures derived from them.
 fn numbers(ui: &mut Ui, draft: &mut Snapshot, facts: &Facts) {
     let torsion = draft.part.is_torsion();
     let units = draft.part.units();
-    // A law with coefficients of its own has no use for the element's.
+    // A law with coefficients of its own does not use the element's.
     let used = match draft.spring_law {
         None | Some(SpringLaw::Linear) => Some(units.stiffness),
         Some(SpringLaw::Cubic) => Some(units.stiffness_cubed),
@@ -130,7 +131,8 @@ fn numbers(ui: &mut Ui, draft: &mut Snapshot, facts: &Facts) {
     }
 }
 
-/// Frequency, damping ratio, sag and critical damping. What is written there changes stiffness and damping.
+/// Shows frequency, damping ratio, sag, effective mass and critical damping. Editing the first three changes
+/// stiffness and damping.
 fn figures(ui: &mut Ui, draft: &mut Snapshot, facts: &Facts) {
     let (Some(load), Some(stiffness)) = (facts.load_of(draft), draft.part.stiffness()) else {
         return;
@@ -186,7 +188,7 @@ fn set(field: Option<&mut f32>, value: f32) {
     }
 }
 
-/// What the last step came to, or the one that is looked at.
+/// Shows the readout of the last step, or of the chosen time in the record.
 fn readout(ui: &mut Ui, readout: &SpringReadout, units: &Units) {
     let lines = [
         ("length", readout.length, units.length),
@@ -209,10 +211,10 @@ fn readout(ui: &mut Ui, readout: &SpringReadout, units: &Units) {
     });
 }
 
-/// Writes an element as text.
+/// A function that writes an element as text.
 type Writer = fn(&Snapshot) -> Result<String, String>;
 
-/// Undo to the start, copies and presets.
+/// Shows the buttons for reset, copy, paste and presets.
 fn exports(ui: &mut Ui, bench: &mut Bench, title: &str, draft: &Snapshot) {
     ui.horizontal(|ui| {
         let edited = bench

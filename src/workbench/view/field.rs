@@ -1,24 +1,25 @@
-//! Numbers with units that can be dragged and typed.
+//! Number fields with units, which can be dragged and typed.
 
 use crate::workbench::model::like::is_like;
 use bevy::prelude::Vec3;
 use bevy_egui::egui::{DragValue, Response, Ui};
 
-/// How a number is dragged.
+/// How a drag changes a number, and its lower bound.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Drag {
-    /// By a share of itself: never below zero.
+    /// By a fraction of the number per pixel. Never below zero.
     Share,
-    /// By so much for a pixel.
+    /// By a fixed amount per pixel.
     Even(f64),
-    /// By so much for a pixel, never below zero.
+    /// By a fixed amount per pixel. Never below zero.
     Positive(f64),
 }
 
-/// As a share of the number, for a pixel.
+/// Change per pixel as a fraction of the number, for [`Drag::Share`].
 const SHARE: f64 = 0.01;
 
-/// A number as short as six digits allow.
+/// Formats a number with six significant digits, or more if it has more before the point, without trailing zeros.
+/// Very large and very small numbers have an exponent.
 pub(crate) fn significant(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
         return format!("{value}");
@@ -35,7 +36,7 @@ pub(crate) fn significant(value: f64) -> String {
     }
 }
 
-/// As [`significant`], with four digits: for what is only read.
+/// Formats a number that is only read, with at most four significant digits and at most four decimals.
 pub(super) fn brief(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
         return format!("{value}");
@@ -47,7 +48,7 @@ pub(super) fn brief(value: f64) -> String {
     format!("{value:.*}", (3 - size).clamp(0, 4) as usize)
 }
 
-/// What a person types: with comma or point, and with or without the unit.
+/// Parses a typed number, with comma or point, and with or without a unit.
 fn parse(text: &str) -> Option<f64> {
     let text = text.trim().replace(',', ".");
     if text.eq_ignore_ascii_case("inf") {
@@ -57,7 +58,7 @@ fn parse(text: &str) -> Option<f64> {
     text[..end.unwrap_or(text.len())].trim().parse().ok()
 }
 
-/// A number that can be dragged and typed.
+/// Shows a number that can be dragged and typed.
 pub(super) fn number(ui: &mut Ui, value: &mut f32, unit: &str, drag: Drag) -> Response {
     let size = f64::from(value.abs());
     let (speed, least) = match drag {
@@ -66,10 +67,10 @@ pub(super) fn number(ui: &mut Ui, value: &mut f32, unit: &str, drag: Drag) -> Re
         Drag::Positive(speed) => (speed, 0.0),
     };
     let least = least as f32;
-    // What stands there already is not changed by being shown.
+    // Showing a number must not change it, so a number outside the range is not clamped.
     let range = least..=f32::INFINITY;
-    // A NaN is another number than itself, and what is typed over a number that is another one in every frame is thrown
-    // away: it is shown as it is, and edited from zero.
+    // NaN differs from itself, and egui discards typed text if the number differs from that of the last frame. So a
+    // NaN is shown as such, but edited from zero.
     let is_nan = value.is_nan();
     let get_set = move |new: Option<f64>| {
         if let Some(new) = new {
@@ -93,23 +94,23 @@ pub(super) fn number(ui: &mut Ui, value: &mut f32, unit: &str, drag: Drag) -> Re
     )
 }
 
-/// The same for a number that others are made from; says whether it is another one now. The response says so too when a
-/// letter is typed that is not taken yet: numbers that were made anew from the same one would differ by their rounding, and
-/// what shows a number that has changed forgets what is being typed.
+/// Shows a number from which other numbers are computed. Returns whether it has changed. The egui response cannot be
+/// used for that: it also reports typed letters that are not accepted yet. Numbers recomputed from an unchanged
+/// number would differ by rounding, and a field whose number has changed forgets the typed text.
 pub(super) fn is_changed(ui: &mut Ui, value: &mut f32, unit: &str, drag: Drag) -> bool {
     let before = *value;
     number(ui, value, unit, drag);
     !is_like(&*value, &before)
 }
 
-/// A line of a grid with a name and a number.
+/// Shows a name and a number as a line of a grid.
 pub(super) fn line(ui: &mut Ui, name: &str, value: &mut f32, unit: &str, drag: Drag) {
     ui.label(name);
     number(ui, value, unit, drag);
     ui.end_row();
 }
 
-/// Three coordinates.
+/// Shows three coordinates.
 pub(super) fn vector(ui: &mut Ui, value: &mut Vec3, speed: f64) {
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 3.0;

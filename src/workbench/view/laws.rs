@@ -1,4 +1,4 @@
-//! Force laws of springs and dampers.
+//! Shows the force laws of springs and dampers.
 
 use super::companions::{choice, grid};
 use super::field::{Drag, line, number};
@@ -7,12 +7,12 @@ use crate::workbench::model::units::Units;
 use bevy::prelude::Vec2;
 use bevy_egui::egui::Ui;
 
-/// Which law it is, whatever its numbers.
+/// Whether two laws are of the same kind, whatever their numbers.
 fn is<T>(a: &Option<T>, b: &Option<T>) -> bool {
     a.as_ref().map(std::mem::discriminant) == b.as_ref().map(std::mem::discriminant)
 }
 
-/// A choice among laws; one that is chosen anew starts with numbers near those of the element.
+/// Shows a choice of laws. A newly chosen law starts with numbers near those of the element.
 fn law<T: Clone + PartialEq>(
     ui: &mut Ui,
     name: &str,
@@ -140,7 +140,7 @@ pub(super) fn damping(
     }
 }
 
-/// Points that can be moved, added and removed, in units of their own along each axis.
+/// Shows the points of a table, which can be moved, added and removed. `[x, y]` are the units of their coordinates.
 fn table(ui: &mut Ui, name: &str, table: &mut ForceTable, [x, y]: [&str; 2]) {
     let mut removed = None;
     grid(ui, name, |ui| {

@@ -1,4 +1,4 @@
-//! All elements; only those in sight are laid out.
+//! Shows the list of all elements. Only the visible rows are laid out.
 
 use super::field::brief;
 use crate::workbench::bench::Bench;
@@ -9,7 +9,7 @@ use bevy_egui::egui::{
     pos2, vec2,
 };
 
-/// Width of a column of numbers.
+/// Width of a column of numbers, logical pixels.
 const NUMBER: f32 = 58.0;
 
 pub(super) fn show(ui: &mut Ui, bench: &mut Bench) {
@@ -55,8 +55,8 @@ pub(super) fn show(ui: &mut Ui, bench: &mut Bench) {
     }
 }
 
-/// One row of the list; whether it was clicked. It is a single widget, with its texts painted: as widgets of their own they
-/// cost half of the panel.
+/// Shows one row of the list, and returns whether it was clicked. The row is a single widget with painted texts. A
+/// widget for each text would take half of the panel's time.
 fn line(ui: &mut Ui, row: &Row, height: f32, is_selected: bool) -> bool {
     let size = vec2(ui.available_width(), height);
     let (place, response) = ui.allocate_exact_size(size, Sense::click());
@@ -79,7 +79,7 @@ fn line(ui: &mut Ui, row: &Row, height: f32, is_selected: bool) -> bool {
     response.clicked()
 }
 
-/// A name, cut short where it is too long, and three numbers at the right.
+/// Paints a name, truncated if it is too long, and three numbers on the right.
 fn columns(ui: &Ui, place: Rect, name: &str, numbers: [String; 3], color: Color32) {
     let font = TextStyle::Body.resolve(ui.style());
     let mut right = place.right();

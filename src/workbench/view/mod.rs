@@ -1,4 +1,4 @@
-//! What is drawn of it, with egui. Nothing here knows the world.
+//! Draws the workbench with egui. Nothing here accesses the world.
 
 mod companions;
 mod element;
@@ -14,10 +14,10 @@ use bevy_egui::egui::{self, Panel, RichText, Ui};
 
 pub(crate) use field::significant;
 
-/// Least and greatest speed of the clock.
+/// Speeds of the clock to choose from, relative to real time.
 const SPEEDS: [f32; 7] = [1.0 / 32.0, 0.0625, 0.125, 0.25, 0.5, 1.0, 2.0];
 
-/// The whole workbench, around the middle of a window.
+/// Draws the whole workbench, around the middle of the window.
 pub(crate) fn show(ui: &mut Ui, bench: &mut Bench) {
     Panel::top("coilover_workbench_bar").show(ui, |ui| bar(ui, bench));
     Panel::bottom("coilover_workbench_plots")
@@ -34,7 +34,7 @@ pub(crate) fn show(ui: &mut Ui, bench: &mut Bench) {
         .resizable(true)
         .show(ui, |ui| element::show(ui, bench));
     shortcuts(ui, bench);
-    // What is not being dragged or typed any more is done.
+    // Without a pressed button or a focused field, the edit in progress has ended.
     let at_work = ui.input(|input| input.pointer.any_down())
         || ui.memory(|memory| memory.focused().is_some());
     if !at_work {
@@ -56,7 +56,7 @@ fn shortcuts(ui: &Ui, bench: &mut Bench) {
     }
 }
 
-/// Clock, undo and messages.
+/// Draws the bar at the top: clock, undo and messages.
 fn bar(ui: &mut Ui, bench: &mut Bench) {
     ui.horizontal(|ui| {
         ui.label(RichText::new("Springs").strong());
@@ -105,7 +105,7 @@ fn bar(ui: &mut Ui, bench: &mut Bench) {
     });
 }
 
-/// What the mouse does in the scene.
+/// Returns a hint about what the mouse does in the scene.
 fn hint(bench: &Bench) -> String {
     let mut hint = String::new();
     if let Some(key) = bench.grab {
@@ -119,7 +119,7 @@ fn hint(bench: &Bench) -> String {
     hint
 }
 
-/// As it stands on a keyboard.
+/// Returns the name of a key as printed on a keyboard.
 fn key_name(key: KeyCode) -> String {
     let name = match key {
         KeyCode::ShiftLeft => "left Shift",

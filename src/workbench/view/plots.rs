@@ -1,4 +1,4 @@
-//! Curves over time, and forces over length and rate with the law behind them.
+//! Plots quantities over time, and forces over length and rate together with the law.
 
 use super::field::brief;
 use crate::workbench::bench::{Ask, Bench, Plots};
@@ -13,13 +13,13 @@ const NOW: Color32 = Color32::from_rgb(240, 230, 90);
 
 const PLAIN: Color32 = Color32::from_gray(190);
 
-/// Most points that are drawn of what was measured.
+/// Greatest number of measured points that are drawn.
 const MEASURED: usize = 600;
 
-/// Points of a law's curve.
+/// Number of intervals of a law's curve.
 const POINTS: u32 = 200;
 
-/// Least width of a law's curve, m or m/s.
+/// Least margin on each side of a law's curve, m or m/s.
 const LEAST: f64 = 1e-3;
 
 pub(super) fn show(ui: &mut Ui, bench: &mut Bench) {
@@ -35,7 +35,7 @@ pub(super) fn show(ui: &mut Ui, bench: &mut Bench) {
     }
 }
 
-/// Which plots, which time, and what is done with them.
+/// Shows the controls: which plots, which time, and exports.
 fn controls(ui: &mut Ui, bench: &mut Bench) {
     ui.selectable_value(&mut bench.plots, Plots::Time, "Over time");
     ui.selectable_value(&mut bench.plots, Plots::Law, "Force laws");
@@ -73,7 +73,7 @@ fn is_torsion(bench: &Bench) -> bool {
     subject.is_some_and(|subject| subject.now.part.is_torsion())
 }
 
-/// Several plots beside each other, each below its title: words in the colours of their curves.
+/// Shows several plots side by side, each below its title. A title is a list of words in the colours of their curves.
 fn row(
     ui: &mut Ui,
     titles: &[Vec<(&str, Color32)>],
@@ -131,7 +131,7 @@ fn over_time(ui: &mut Ui, bench: &Bench) {
         return;
     };
     row(ui, &titles, |ui, i, plot| {
-        // Times are counted from the present, so that their labels do not run.
+        // Times are relative to the present, so that the axis labels do not move.
         let title = names[i].to_owned();
         let plot = plot
             .link_axis("coilover_time", Vec2b::new(true, false))
@@ -158,7 +158,7 @@ fn over_time(ui: &mut Ui, bench: &Bench) {
     });
 }
 
-/// Where points lie, with some room about them.
+/// Returns the range of some values, widened by a margin.
 fn range(values: impl Iterator<Item = f64>) -> Option<[f64; 2]> {
     let range = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| {
         [low.min(value), high.max(value)]
