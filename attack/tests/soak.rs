@@ -1,8 +1,8 @@
 //! Days in a row: is memory flat, does what dampers took explain where energy went, and does all stand where it stood?
 //!
 //! `cargo test --workspace --test soak` plays a minute of each scene; `cargo test --release --workspace --test soak --
-//! --hours 24` plays a day, and `--scene car` one scene alone. Ticks are timed too: the times are told, and judged by who
-//! reads them.
+//! --hours 24` plays a day, `--scene car` one scene alone, and `--pause 60` hits it once a minute. Ticks are timed too, for whoever
+//! reads the times.
 
 use attack::endurance::{Endurance, Interval, car, cloth, net};
 use lexopt::prelude::*;

@@ -224,6 +224,21 @@ fn a_rigid_limit_whose_min_cannot_be_held_holds_its_max() {
 }
 
 #[test]
+fn a_soft_limit_of_no_distance_on_two_axes_pulls_from_both_sides() {
+    let limit = json!({ "linearAxes": [0, 2], "max": 0, "stiffness": 200, "damping": 5 });
+    let (_folder, mut stage, _root) = hanging("soft_zero", json!([limit]));
+    run(&mut stage.app, 0.1);
+    assert_eq!(stage.count::<SpringTravel>(), 0);
+    let mut pairs = stage
+        .app
+        .world_mut()
+        .query::<(&SpringDamper, &SpringAxis)>();
+    let pairs: Vec<_> = pairs.iter(stage.app.world()).collect();
+    assert_eq!(pairs.len(), 2);
+    assert!(pairs.iter().all(|(pair, _)| pair.rest_length == Some(0.0)));
+}
+
+#[test]
 fn what_holds_nothing_is_no_joint() {
     let limit = json!({ "linearAxes": [0, 1, 2], "min": 0.5 });
     let (_folder, mut stage, root) = hanging("min_alone", json!([limit]));

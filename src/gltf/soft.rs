@@ -70,7 +70,12 @@ pub(super) fn add_limit(
     if min.is_none() && max.is_none() {
         return Ok(());
     }
-    let same = min.filter(|min| Some(*min) == max);
+    let same = if axes.len() > 1 && min.is_none() && max == Some(0.0) {
+        // On several axes the limit is that of a distance, which is never negative.
+        Some(0.0)
+    } else {
+        min.filter(|min| Some(*min) == max)
+    };
     // Stops at both ends of a range, without force in between.
     let stops = |none: f32| {
         SpringTravel::new(min.unwrap_or(none), max.unwrap_or(f32::INFINITY), stiffness)
@@ -95,7 +100,7 @@ pub(super) fn add_limit(
         }
         return Ok(());
     }
-    if axes.len() > 1 && same != Some(0.0) && (min.unwrap_or(0.0), max) != (0.0, Some(0.0)) {
+    if axes.len() > 1 && same != Some(0.0) {
         return Err(
             "a soft limit on two axes, or on three angles, is honoured for min = max = 0 alone",
         );
