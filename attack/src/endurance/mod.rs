@@ -47,7 +47,7 @@ pub struct Endurance {
 pub struct Interval {
     /// Energy that the strike gave or took, and what dampers took, J.
     pub turned_over: f64,
-    /// What of it is neither there nor was taken by dampers, J.
+    /// What of it is neither there nor was taken by dampers, beyond the rounding of readouts, J.
     pub unexplained: f64,
     /// How far it stands from where it should when the next strike comes, and how much is allowed.
     pub off: (f64, f64),
@@ -95,9 +95,13 @@ impl Endurance {
             self.app.update();
         }
         let taken = self.heat() - warm;
+        // Readouts are in f32. After a day, their rounding is more than a weak blow turns over.
+        let rounding = f64::from(f32::EPSILON) * warm;
+        let beyond = (self.energy() + taken - struck).abs() - rounding;
         Interval {
             turned_over: (struck - before).abs() + taken,
-            unexplained: self.energy() + taken - struck,
+            // Not by `max`, which would pass over NaN.
+            unexplained: if beyond < 0.0 { 0.0 } else { beyond },
             off: (self.stands)(self),
             speed: self.speed(),
         }
