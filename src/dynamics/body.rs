@@ -1,4 +1,4 @@
-//! A rigid body as the integrator sees it: free flight, impulses, inverse inertia.
+//! A rigid body as the integrator sees it: its state, free flight, impulses and inverse inertia.
 
 use bevy::math::{DMat3, DQuat, DVec3};
 use std::f64::consts::TAU;
@@ -6,62 +6,65 @@ use std::f64::consts::TAU;
 /// How a body can turn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Spin {
-    /// Rotation plays no part: fully locked, or every element holds the body at its centre.
+    /// Rotation has no effect: it is fully locked, or no element turns the body.
     Ignored,
-    /// Free rotation, carried as angular momentum, which free flight keeps exactly.
+    /// Free rotation. It is stored as angular momentum, which is exactly constant in free flight.
     Free {
-        /// kg m²/s, world frame.
+        /// Angular momentum, kg m²/s, world frame.
         momentum: DVec3,
     },
-    /// Some rotation axes locked: carried as angular velocity (rad/s, world frame), as the engine does.
+    /// Rotation about some axes is locked or has no inertia. It is stored as angular velocity (rad/s, world frame), as in
+    /// the engine.
     Locked { velocity: DVec3 },
 }
 
-/// One dynamic body: state, inertia, and what acts on it besides elements. World frame, SI.
+/// A dynamic body: state, inertia, and what acts on it besides elements. SI units; world frame unless a field says
+/// otherwise.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Body {
-    /// Centre of mass.
+    /// Position of the centre of mass.
     pub position: DVec3,
-    /// Of the centre of mass.
+    /// Velocity of the centre of mass.
     pub velocity: DVec3,
-    /// From the body's frame to the world.
+    /// Rotation from the body's frame to the world.
     pub rotation: DQuat,
     pub spin: Spin,
-    /// Per world axis; zero on a locked axis.
+    /// Inverse mass along each world axis; zero on a locked axis.
     pub inverse_mass: DVec3,
-    /// Principal moments of inertia, and the frame they belong to within the body.
+    /// Principal moments of inertia.
     pub inertia: DVec3,
+    /// Rotation from the frame of the principal axes to the body's frame.
     pub principal: DQuat,
-    /// World axes about which the body cannot turn.
+    /// Whether rotation about each world axis is locked.
     pub rotation_locked: [bool; 3],
-    /// How far the engine turns it in a step, rad.
+    /// Greatest rotation by the engine in a step, rad.
     pub farthest_turn: f64,
-    /// Acceleration by everything but elements: gravity and the user's force.
+    /// Acceleration from everything but elements: gravity and the user's force.
     pub acceleration: DVec3,
     /// The user's torque.
     pub torque: DVec3,
-    /// What elements have given it so far in this step: impulse (N s) and angular impulse (N m s).
+    /// Impulse (N s) and angular impulse (N m s) from elements so far in this step.
     pub given: (DVec3, DVec3),
     /// Work of the user's torque so far in this step, J.
     pub torque_work: f64,
-    /// What [`Body::note_turn`] has found.
+    /// Inverse inertia that [`Body::note_turn`] has stored.
     pub turned: Option<Turned>,
 }
 
-/// Inverse inertia in the world frame, and for which rotation: it is asked for many times between one rotation and the
-/// next.
+/// Inverse inertia in the world frame, and the rotation to which it belongs. It is stored because it is used many times
+/// until the rotation changes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Turned {
     rotation: DQuat,
     inverse_inertia: DMat3,
 }
 
-/// exp of a rotation vector.
+/// The rotation of a rotation vector (exponential map).
 pub(crate) fn turn(by: DVec3) -> DQuat {
     DQuat::from_scaled_axis(by)
 }
 
-/// The one of both equal rotations that turns less than half a turn.
+/// Of the two quaternions of a rotation, returns the one that turns by at most half a turn.
 pub(crate) fn shortest(rotation: DQuat) -> DQuat {
     if rotation.w < 0.0 {
         -rotation
@@ -70,21 +73,23 @@ pub(crate) fn shortest(rotation: DQuat) -> DQuat {
     }
 }
 
-/// The rotation vector of a rotation: of all that come to the same, the nearest to the one that is expected.
+/// Rotation vector of a rotation. Of all that differ by whole turns, returns the one nearest to `expected`.
 pub(crate) fn unwound(rotation: DQuat, expected: DVec3) -> DVec3 {
     let by = shortest(rotation).to_scaled_axis();
     let axis = by.try_normalize().unwrap_or_default();
     by + ((expected - by).dot(axis) / TAU).round() * TAU * axis
 }
 
-/// Whether the engine flies or turns a body so far, to such a velocity, at a steady rate and never faster.
+/// Whether a body can move or turn by `by` in `time` seconds and end with `velocity`, at a constant rate of change and
+/// never faster than `fastest`.
 #[inline]
 pub(crate) fn is_within(by: DVec3, velocity: DVec3, fastest: f64, time: f64) -> bool {
     let first = 2.0 / time * by - velocity;
     first.length_squared().max(velocity.length_squared()) <= fastest * fastest
 }
 
-/// Displacement and velocity at the end of a step as near as it gets to these, if it does not get there.
+/// Limits the displacement in a step and the velocity at its end to what a body can reach if it moves by at most
+/// `farthest`. Returns `None` if they need no limit.
 fn held_back(by: DVec3, velocity: DVec3, farthest: f64, time: f64) -> Option<(DVec3, DVec3)> {
     let fastest = farthest / time;
     if is_within(by, velocity, fastest, time) {
@@ -96,9 +101,8 @@ fn held_back(by: DVec3, velocity: DVec3, farthest: f64, time: f64) -> Option<(DV
 }
 
 impl Body {
-    /// Inverse inertia in the world frame at the present rotation; zero where locked.
+    /// Inverse inertia in the world frame at the present rotation, 1/(kg m²); zero about locked axes.
     pub(crate) fn inverse_inertia(&self) -> DMat3 {
-        // A body without inertia about some axis is not turned by elements at all.
         if self.spin == Spin::Ignored {
             return DMat3::ZERO;
         }
@@ -108,7 +112,7 @@ impl Body {
         }
     }
 
-    /// Works out the inverse inertia at the present rotation, for all who will ask.
+    /// Computes the inverse inertia at the present rotation and stores it.
     pub(crate) fn note_turn(&mut self) {
         if self.spin != Spin::Ignored {
             self.turned = Some(Turned {
@@ -119,6 +123,7 @@ impl Body {
     }
 
     fn turn_inertia(&self) -> DMat3 {
+        // Elements do not turn a body that has no inertia about some axis.
         if self.inertia.min_element() <= 0.0 {
             return DMat3::ZERO;
         }
@@ -146,7 +151,7 @@ impl Body {
         }
     }
 
-    /// The spin that has this angular velocity at the present rotation.
+    /// Sets the angular velocity (rad/s, world frame) at the present rotation.
     pub(crate) fn set_angular_velocity(&mut self, velocity: DVec3) {
         self.spin = match self.spin {
             Spin::Ignored => Spin::Ignored,
@@ -160,7 +165,7 @@ impl Body {
         };
     }
 
-    /// Angular acceleration of free flight with such an angular velocity, of a body that can turn about all axes.
+    /// Gyroscopic acceleration of free flight at an angular velocity, rad/s²; zero unless rotation is free.
     pub(crate) fn precession(&self, velocity: DVec3) -> DVec3 {
         if !matches!(self.spin, Spin::Free { .. }) {
             return DVec3::ZERO;
@@ -170,7 +175,7 @@ impl Body {
         frame * ((self.inertia * spin).cross(spin) / self.inertia)
     }
 
-    /// Angular acceleration by the user's torque, and the gyroscopic one of free flight.
+    /// Returns the angular acceleration from the user's torque, and the gyroscopic one of free flight, rad/s².
     pub(crate) fn angular_acceleration(&self, inverse_inertia: DMat3) -> (DVec3, DVec3) {
         let pushed = inverse_inertia * self.torque;
         match self.spin {
@@ -182,7 +187,8 @@ impl Body {
         }
     }
 
-    /// Free flight: straight, and turning with constant angular momentum.
+    /// Free flight for `time` seconds: uniform motion, and rotation with constant angular momentum (with locked axes:
+    /// constant angular velocity).
     pub(crate) fn drift(&mut self, time: f64) {
         self.position += time * self.velocity;
         let power = self.user_power();
@@ -206,16 +212,16 @@ impl Body {
         }
     }
 
-    /// A free rigid body as a symmetric top between two halves of what is left: exact for tops, second
-    /// order and its own mirror image in time for the rest, momentum kept by all, however thin the body.
-    /// (Splitting of the kinetic energy after R. McLachlan, 1993.)
+    /// Rotation of a free rigid body: that of a symmetric top between two halves of the remaining part. It is exact for
+    /// symmetric tops, and otherwise time-symmetric and of second order. It conserves the angular momentum of any body,
+    /// however thin. (Splitting of the kinetic energy after R. McLachlan, 1993.)
     fn tumble(&mut self, time: f64, momentum: DVec3) {
         if momentum == DVec3::ZERO {
             return;
         }
         let inertia = self.inertia;
         let mut frame = self.rotation * self.principal;
-        // The axis that is most unlike the other two is the top's own.
+        // The axis of the top is the one whose other two inverse moments of inertia are most alike.
         let apart = |a: f64, b: f64| (1.0 / a - 1.0 / b).abs();
         let spread = [
             apart(inertia.y, inertia.z),
@@ -246,18 +252,19 @@ impl Body {
         self.rotation = (frame * self.principal.inverse()).normalize();
     }
 
-    /// Whether its inverse mass is the same along all axes.
+    /// Whether the inverse mass is the same along all axes.
     pub(crate) fn moves_alike(&self) -> bool {
         let w = self.inverse_mass;
         w.x == w.y && w.y == w.z
     }
 
-    /// The force for an acceleration.
+    /// The force that gives the body an acceleration, N.
     pub(crate) fn force_for(&self, acceleration: DVec3) -> DVec3 {
         super::delivery::force_for(acceleration, self.inverse_mass)
     }
 
-    /// An impulse (N s) at `arm` from the centre of mass, with the inverse inertia at hand.
+    /// Applies an element's impulse (N s) at `arm` from the centre of mass. `inverse_inertia` is that at the present
+    /// rotation.
     pub(crate) fn apply(&mut self, impulse: DVec3, arm: DVec3, inverse_inertia: DMat3) {
         self.given.0 += impulse;
         self.velocity += self.inverse_mass * impulse;
@@ -269,13 +276,13 @@ impl Body {
         self.apply_angular(angular, inverse_inertia);
     }
 
-    /// An angular impulse (N m s) by an element.
+    /// Applies an element's angular impulse (N m s).
     pub(crate) fn apply_twist(&mut self, impulse: DVec3, inverse_inertia: DMat3) {
         self.given.1 += impulse;
         self.apply_angular(impulse, inverse_inertia);
     }
 
-    /// An angular impulse (N m s).
+    /// Applies an angular impulse (N m s) without counting it as an element's.
     pub(crate) fn apply_angular(&mut self, impulse: DVec3, inverse_inertia: DMat3) {
         match &mut self.spin {
             Spin::Ignored => {}
@@ -284,13 +291,13 @@ impl Body {
         }
     }
 
-    /// Gravity and the user's force and torque over a time.
+    /// Applies gravity and the user's force and torque for `time` seconds.
     pub(crate) fn apply_external(&mut self, time: f64, inverse_inertia: DMat3) {
         self.velocity += time * self.acceleration;
         self.apply_angular(time * self.torque, inverse_inertia);
     }
 
-    /// Takes a share of another's velocities.
+    /// Sets linear and angular velocity to `share` of those of `other`.
     pub(crate) fn slow_to(&mut self, other: &Self, share: f64) {
         self.velocity = share * other.velocity;
         self.spin = match other.spin {
@@ -304,11 +311,11 @@ impl Body {
         };
     }
 
-    /// Works out what elements must have given it since it was `start`.
+    /// Computes the impulses that elements must have given the body since the state `start`, and stores them in `given`.
     pub(crate) fn receive(&mut self, start: &Self, time: f64) {
         let turned = match (self.spin, start.spin) {
             (Spin::Free { momentum: now }, Spin::Free { momentum: then }) => now - then,
-            // Along free axes; along others nothing turns it.
+            // Only about free axes, because nothing turns the body about locked ones.
             (Spin::Locked { velocity: now }, Spin::Locked { velocity: then }) => {
                 super::delivery::torque_for(now - then, start.inverse_inertia())
             }
@@ -320,7 +327,7 @@ impl Body {
         );
     }
 
-    /// Moves and turns no further since it was `start` than the engine will take it; says whether it would have.
+    /// Limits motion and rotation since the state `start` to what the engine allows. Returns whether either was more.
     pub(crate) fn hold_back(&mut self, start: &Self, farthest_move: f64, time: f64) -> bool {
         let moved = held_back(
             self.position - start.position,

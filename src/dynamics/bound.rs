@@ -1,9 +1,9 @@
-//! A network never has more energy than it was given.
+//! Limits the energy of a network to the energy that it was given.
 //!
-//! The coupled step keeps the energy of small motions at any stiffness; of large ones, where lines turn
-//! far within a step, only to the order of the step. So the sum is watched. A surplus is taken out of the
-//! motion along the elements; where there is not so much motion, the step is taken again by the implicit
-//! Euler rule, moving only as far as the energy at hand allows.
+//! The coupled step conserves the energy of small motions at any stiffness. In large motions, lines turn far within a
+//! step, and the energy is only accurate to the order of the step. So the energy is checked after every step. A surplus is
+//! removed from the motion along the elements. If there is not enough such motion, the step is repeated: with finer
+//! micro-steps, or else by the implicit Euler rule, which moves only as far as the available energy allows.
 
 use super::body::Body;
 use super::element::{Element, End};
@@ -11,56 +11,59 @@ use super::energy::{Energy, take};
 use super::resolution::RESOLVED;
 use bevy::math::DVec3;
 
-/// Share of kinetic and stored energy by which the sum may seem to be too large: what a step of second order
-/// shows at its ends is not constant, only bounded.
+/// Tolerance of the energy check, as a share of kinetic and stored energy. Energy at the ends of second-order steps is not
+/// constant, but oscillates within bounds.
 const SWAY: f64 = 0.02;
 
-/// Share of energy by which the sum may seem too large where the step does not resolve the stiffest mode: it is the
-/// implicit midpoint rule there, whose ends show hardly any of that.
+/// Tolerance of the energy check where the step does not resolve the stiffest mode, as a share of kinetic and stored
+/// energy. There the step is the implicit midpoint rule, whose energy hardly oscillates.
 const UNRESOLVED_SWAY: f64 = 0.002;
 
-/// Share of [`SWAY`] that a step may win while a surplus waits. Roundings win a thousandth of that.
+/// Energy gain of one step up to which a surplus need not be removed yet, as a share of the tolerance. Rounding in one step
+/// gains a thousandth of this limit.
 const OWN: f64 = 0.1;
 
-/// Share of what was liveliest that counts in the next step: it is forgotten in some ten seconds.
+/// Factor by which [`Bound::liveliest`] decreases in each step. It is forgotten within about ten seconds.
 const REMEMBERED: f64 = 0.998;
 
-/// Rounds of taking.
+/// Greatest number of attempts to remove a surplus.
 const ROUNDS: usize = 4;
 
-/// What a network may have.
+/// The energy that a network may have.
 #[derive(Clone, Copy, Debug, Default)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Bound {
-    /// Energy given so far: at first what it had, then what others than its elements changed.
+    /// Energy given so far, J: the initial energy, and all changes since by anything but its elements.
     given: Option<f64>,
-    /// What it had at the end of the last step.
+    /// Energy at the end of the last step, J.
     last: f64,
-    /// What it had at the start of this one.
+    /// Energy at the start of this step, J.
     start: f64,
-    /// Work that moving ends can have done in this step, at most.
+    /// Greatest power of ends with prescribed motion in this step, W.
     work: f64,
-    /// The stiffest mode is not resolved.
+    /// Whether the step does not resolve the stiffest mode.
     unresolved: bool,
-    /// Most energy of motion and springs of late: what hangs has little of both where it turns back, J.
+    /// Greatest sum of kinetic and stored energy in recent steps, J. The present sum can be much less: a hanging network has
+    /// little of both where it turns back.
     liveliest: f64,
 }
 
 impl Bound {
-    /// Sees what was done to the network since the last step.
+    /// Begins a step, and accounts for changes of the network since the last step.
     pub(crate) fn begin(&mut self, elements: &[Element], bodies: &[Body], perturbed: bool) {
         let (energy, rounding) = energy_and_rounding(elements, bodies);
         let power = power(elements, bodies);
         self.start(energy.sum(), rounding, power, perturbed);
     }
 
-    /// Begins a step with the energy `now`, of which `rounding` can be noise, and the power of moving ends, W.
+    /// Begins a step with the energy `now` (J), of which `rounding` can be rounding errors. `power` is that of ends with
+    /// prescribed motion (W). `perturbed` says whether anything but elements may have changed the energy.
     pub(crate) fn start(&mut self, now: f64, rounding: f64, power: f64, perturbed: bool) {
         self.start = now;
         let change = now - self.last;
         let gift = if change.abs() < rounding || (change > 0.0 && !perturbed) {
-            // Noise of the engine's f32 is neither gift nor loss, nor is it a gift that it does not arrive where it
-            // was sent.
+            // Rounding to the engine's f32 does not count. Nor does an unexplained gain: the engine just did not arrive
+            // exactly where it should.
             0.0
         } else {
             change
@@ -69,17 +72,17 @@ impl Bound {
         self.work = power;
     }
 
-    /// Takes in (ω h)² of the stiffest mode.
+    /// Stores whether the step resolves the stiffest mode, with (ω h)² = `z`.
     pub(crate) fn see(&mut self, z: f64) {
         self.unresolved = z > RESOLVED;
     }
 
-    /// For a network whose energy is not ours to account for.
+    /// Forgets the given energy. The next step that is checked starts the account anew.
     pub(crate) fn forget(&mut self) {
         self.given = None;
     }
 
-    /// Whether a network that ends the step with so much is within its bound.
+    /// Whether `energy` at the end of a step is within the bound. `power` is that of ends with prescribed motion then, W.
     pub(crate) fn is_kept(&mut self, energy: &Energy, power: f64, time: f64) -> bool {
         self.work = self.work.max(power);
         self.surplus(energy, time) <= 0.0
@@ -90,7 +93,7 @@ impl Bound {
         most.map_or(0.0, |most| energy.sum() - most)
     }
 
-    /// Most energy that there may seem to be, with so much of it in motion and springs.
+    /// Greatest energy that passes the check if its kinetic and stored part is `lively`, J.
     fn most(&self, lively: f64, time: f64) -> Option<f64> {
         Some(self.given? + time * self.work + self.sway(lively))
     }
@@ -104,9 +107,9 @@ impl Bound {
         share * lively.max(self.liveliest)
     }
 
-    /// Takes a surplus out of the motion; returns what energy there is then, if that was enough. One that this step has not
-    /// made, as roundings make in an hour, waits until there is motion along the elements: to take the step again would cost
-    /// far more.
+    /// Removes a surplus from the motion. Returns the energy afterwards, or `None` if the step must be repeated. A surplus
+    /// that is not from this step, as rounding causes in an hour, waits until there is motion along the elements. To repeat
+    /// the step would cost far more.
     pub(crate) fn hold(
         &mut self,
         elements: &[Element],
@@ -140,8 +143,8 @@ impl Bound {
         surplus <= sway && energy.sum() - self.start <= OWN * sway
     }
 
-    /// Slows all motion, about the common centre of mass where nothing else holds the network, until the
-    /// bound is kept; for where the stored energy alone keeps it.
+    /// Slows all motion until the energy is within the bound, for a state whose energy without motion is. The motion of the
+    /// common centre of mass is kept unless an end with prescribed motion holds the network.
     pub(crate) fn slow(&mut self, elements: &[Element], bodies: &mut [Body], time: f64) {
         let energy = Energy::of(elements, bodies);
         let Some(most) = self.most(energy.stored, time) else {
@@ -149,7 +152,7 @@ impl Bound {
         };
         let room = most - energy.stored - energy.place;
         if room < 0.0 {
-            // Rounding has pressed it above its bound, without motion that could be taken.
+            // Rounding has raised the energy above the bound, and there is no motion to remove.
             self.given = self.given.map(|given| given - room);
         }
         if energy.motion <= room || energy.motion <= 0.0 {
@@ -179,25 +182,25 @@ impl Bound {
         }
     }
 
-    /// Whether the stored energy alone is within the bound.
+    /// Whether the energy without motion is within the bound.
     pub(crate) fn allows(&self, elements: &[Element], bodies: &[Body], time: f64) -> bool {
         let energy = Energy::of(elements, bodies);
         self.most(energy.stored, time)
             .is_none_or(|most| energy.stored + energy.place <= most)
     }
 
-    /// Notes what energy the step ends with.
+    /// Ends a step of `bodies` with an energy.
     pub(crate) fn end(&mut self, energy: &Energy, bodies: &[Body], time: f64) {
         if self.given.is_some() {
             self.finish(energy, time);
-            // From the next step on what torques gave is what the bodies have.
+            // From the next step on, the work of torques is part of the bodies' energy.
             let torque_work: f64 = bodies.iter().map(|body| body.torque_work).sum();
             self.last += torque_work;
             self.given = self.given.map(|given| given + torque_work);
         }
     }
 
-    /// Ends a step with such an energy.
+    /// Ends a step with an energy.
     pub(crate) fn finish(&mut self, energy: &Energy, time: f64) {
         self.last = energy.sum();
         self.liveliest = (REMEMBERED * self.liveliest).max(energy.motion + energy.stored);
@@ -207,13 +210,13 @@ impl Bound {
     }
 }
 
-/// The energy, and how much of it rounding a step's positions and velocities to f32 can add, J.
+/// Returns the energy, and the energy that rounding a step's positions and velocities to f32 can add, J.
 fn energy_and_rounding(elements: &[Element], bodies: &[Body]) -> (Energy, f64) {
     let unit = f64::from(f32::EPSILON);
     let mut energy = Energy::of(&[], bodies);
     let mut rounding = 2.0 * unit * energy.motion;
     for element in elements {
-        // Four substeps, two ends.
+        // Rounding in four substeps at two ends.
         let (length, reach) = element.distance(bodies);
         let off = 8.0 * unit * reach;
         let elastic = element.elastic(length);
@@ -223,7 +226,7 @@ fn energy_and_rounding(elements: &[Element], bodies: &[Body]) -> (Energy, f64) {
     (energy, rounding)
 }
 
-/// Power of ends that something else moves, at most, W.
+/// Greatest power of the ends with prescribed motion, W.
 fn power(elements: &[Element], bodies: &[Body]) -> f64 {
     let mut sum = 0.0;
     for element in elements {

@@ -1,34 +1,36 @@
-//! Conjugate gradients without a matrix (M. Hestenes and E. Stiefel, 1952), preconditioned, for whoever can apply a symmetric
-//! positive definite matrix to its own vectors.
+//! Preconditioned conjugate gradients (M. Hestenes and E. Stiefel, 1952). The matrix is not stored: it is symmetric and
+//! positive definite, and the system to be solved multiplies its own vectors by it.
 
-/// Residual, relative to the right side, at which iterations end: well below the engine's f32. Pinned by
-/// `dynamics::tests`.
+/// Residual, relative to the right side, at which iterations end. It is well below the rounding of the engine's f32. Pinned
+/// by `dynamics::tests`.
 const TOLERANCE: f64 = 1e-10;
 
-/// Times the square of that by which the weight of a residual may be greater and still count as rounding.
+/// Factor by which rᵀ P r may exceed its value at [`TOLERANCE`] when the iterations run out. Up to this factor the residual
+/// counts as rounding, and the solve as converged.
 const ROUNDING: f64 = 1e4;
 
-/// A linear system with the vectors of its solution: what is found so far x, the residual r, and the search direction p. P is the
-/// preconditioner.
+/// A linear system with matrix A, and the vectors of its iterative solution: the approximate solution x, the residual r, and
+/// the search direction p. P is the preconditioner.
 pub(super) trait Iterated {
-    /// Works out A p; returns pᵀ A p.
+    /// Computes A p. Returns pᵀ A p.
     fn apply(&mut self) -> f64;
 
-    /// x += by·p and r −= by·A p; returns rᵀ P r.
+    /// x += by·p and r −= by·A p. Returns rᵀ P r.
     fn advance(&mut self, by: f64) -> f64;
 
     /// p = P r + keep·p.
     fn turn(&mut self, keep: f64);
 }
 
-/// Iterates where the right side has such a weight rᵀ P r and the residual that; says whether it came to an end.
+/// Iterates at most `budget` times. `right` is bᵀ P b of the right side b, and `residual` is rᵀ P r of the first guess.
+/// Returns whether the solution converged.
 pub(super) fn solve(
     system: &mut impl Iterated,
     right: f64,
     mut residual: f64,
     budget: u32,
 ) -> bool {
-    // Without a right side the solution is zero, which nothing is small against but the first guess.
+    // If the right side is zero, so is the solution. Then the residual is compared with that of the first guess.
     let against = if right > 0.0 { right } else { residual };
     let target = TOLERANCE * TOLERANCE * against;
     system.turn(0.0);
@@ -47,7 +49,7 @@ pub(super) fn solve(
 mod tests {
     use super::*;
 
-    /// Three equations that do not know of each other, without a preconditioner.
+    /// Three independent equations, without a preconditioner.
     #[derive(Default)]
     struct Diagonal {
         x: [f64; 3],

@@ -1,30 +1,30 @@
-//! The impulse and force that make the engine arrive where the integrator did.
+//! Computes the impulse and force with which the engine arrives at the integrator's state.
 //!
-//! With n substeps the engine does `v += (dt/n)·a; x += (dt/n)·v` n times, so under an impulse at the
-//! start and a constant acceleration a over the step
+//! With n substeps the engine does `v += (dt/n)·a; x += (dt/n)·v` n times. Under an impulse J at the start and a constant
+//! acceleration a over the step this gives
 //!
 //! ```text
 //! v' = v + J/m + dt·a        x' = x + dt·(v + J/m) + β dt²·a        β = (n + 1)/(2n)
 //! ```
 //!
-//! Two unknowns meet two conditions wherever n > 1. Rotation is the same with the engine's own
-//! quaternion update and gyroscopic term in between, so there the linear answer is refined by running
-//! the engine's rotation, which its backend tells ([`TurnRule`]), and correcting what is missed.
+//! If n > 1, these two conditions determine J and a. Rotation also depends on the engine's quaternion update and its
+//! gyroscopic term. So its linear solution is refined: the backend's copy of the engine's rotation ([`TurnRule`]) is run,
+//! and the remaining error is corrected.
 
 use super::body::{Body, shortest, unwound};
 use crate::functions::atan;
 use bevy::math::{DMat3, DQuat, DVec3};
 
-/// How the engine will step: all substeps of one call together.
+/// How the engine will step a body in a tick: the substeps of all its steps together.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Schedule {
-    /// Seconds in all.
+    /// Total time, s.
     pub time: f64,
-    /// Equal substeps, each one velocity and one position update.
+    /// Number of equal substeps. Each is one velocity update and one position update.
     pub substeps: u32,
-    /// Seconds of each of them.
+    /// Duration of a substep, s.
     pub substep: f64,
-    /// Inverse of all seconds, 1/s.
+    /// 1/`time`, 1/s.
     pub per_time: f64,
     /// β dt, s.
     reach: f64,
@@ -32,23 +32,23 @@ pub(crate) struct Schedule {
     per_rest: f64,
 }
 
-/// A jump at the start and a constant rate of change over the step, of a linear or angular velocity.
+/// A change of a linear or angular velocity: a jump at the start of the step, and a constant rate of change over the step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Delivery {
     pub jump: DVec3,
     pub rate: DVec3,
 }
 
-/// A body about to be turned over a step.
+/// A body that the engine will rotate in a step.
 pub(crate) struct Spinning<'a> {
     pub schedule: &'a Schedule,
     pub body: &'a Body,
-    /// The engine counts in that it spins about another axis than that of its momentum.
+    /// Whether the engine applies its gyroscopic term to the body.
     pub gyroscopic: bool,
 }
 
-/// What an engine makes of a body that spins so, with such a delivery: rotation and angular velocity after the step, to the
-/// engine's own rounding.
+/// Computes how an engine rotates a body, for its angular velocity at the start (rad/s) and a delivery. Returns rotation and
+/// angular velocity after the step, including the engine's own rounding.
 pub(crate) type TurnRule = fn(&Spinning, DVec3, &Delivery) -> (DQuat, DVec3);
 
 impl Schedule {
@@ -66,16 +66,16 @@ impl Schedule {
         }
     }
 
-    /// β dt (s) and 1/((1 − β) dt) (1/s), of more than one substep.
+    /// Returns β dt (s) and 1/((1 − β) dt) (1/s), for more than one substep.
     #[inline]
     pub(crate) fn spread(&self) -> (f64, f64) {
         (self.reach, self.per_rest)
     }
 
-    /// Jump and rate for a wanted displacement beyond `time·velocity` and a wanted change of velocity.
+    /// Returns jump and rate for a displacement beyond `time·velocity` and a change of velocity.
     pub(crate) fn reach(&self, displacement: DVec3, change: DVec3) -> Delivery {
         if self.substeps < 2 {
-            // One substep has one degree of freedom; the velocity is the one that lasts.
+            // One substep has only one degree of freedom. It goes to the velocity, because a velocity error lasts.
             return Delivery {
                 jump: DVec3::ZERO,
                 rate: change * self.per_time,
@@ -88,8 +88,8 @@ impl Schedule {
         }
     }
 
-    /// The engine caps speeds. Where a delivery would exceed that at either end of the step, it moves more
-    /// steadily, by as much as it takes: the displacement stays right, the velocity comes as near as it can.
+    /// Adapts a delivery to the engine's cap on speeds. If the speed would exceed `cap` at either end of the step, its rate
+    /// is reduced as far as needed. The displacement stays exact, and the velocity comes as near as possible.
     #[inline]
     pub(crate) fn capped(&self, delivery: Delivery, velocity: DVec3, cap: f64) -> Delivery {
         let first = velocity + delivery.jump + self.substep * delivery.rate;
@@ -110,7 +110,7 @@ impl Schedule {
     ) -> Delivery {
         let mean = 0.5 * (first + last);
         let sway = last - mean;
-        // Both of |mean ± share · sway| reach the cap at most.
+        // With this share, both of |mean ± share · sway| are at most the cap.
         let (square, along) = (sway.length_squared(), mean.dot(sway).abs());
         let room = (cap * cap - mean.length_squared()).max(0.0);
         let share = room / (along + (along * along + square * room).sqrt()).max(f64::MIN_POSITIVE);
@@ -119,8 +119,8 @@ impl Schedule {
         Delivery { jump, rate }
     }
 
-    /// Angular part: from the start's rotation and angular velocity to where `end` now is, in an engine that turns bodies by
-    /// `rule`.
+    /// Returns the delivery that takes rotation and angular velocity from `start` to `end`, in an engine that rotates bodies
+    /// by `rule`.
     pub(crate) fn angular(
         &self,
         start: &Body,
@@ -135,7 +135,7 @@ impl Schedule {
             body: start,
             gyroscopic,
         };
-        // With the weight that a velocity has which is missed.
+        // `weight` is 1 if errors of the angular velocity are corrected too, and 0 if not.
         let refined =
             |mut delivery: Delivery, weight: f64, correct: &dyn Fn(DVec3, DVec3) -> Delivery| {
                 for _ in 0..ROUNDS {
@@ -171,15 +171,15 @@ impl Schedule {
                 return delivery;
             }
         }
-        // Where it arrives counts; the velocity is what it then is.
+        // With the cap, only the rotation is corrected. The velocity is what results.
         refined(eased, 0.0, &|angle, _| Delivery {
             jump: angle * self.per_time,
             rate: DVec3::ZERO,
         })
     }
 
-    /// How far a body is turned, and by how much its angular velocity changes, by what an engine that counts in the gyroscopic
-    /// term adds of itself: that goes evenly from what it is in the first substep to what it is in the last.
+    /// Returns the rotation (rad) and the change of angular velocity (rad/s) that the engine's gyroscopic term adds. The
+    /// term is assumed to change linearly from the first substep to the last.
     fn gyroscopic(
         &self,
         [start, end]: [&Body; 2],
@@ -193,8 +193,8 @@ impl Schedule {
         [self.time * way, 0.5 * self.time * (first + last)]
     }
 
-    /// What the substeps' turns must sum up to for them to come to this rotation: turns do not commute (W. Magnus, 1954, to
-    /// second order), and each goes along the tangent.
+    /// Returns the sum that the rotation vectors of the substeps must have, so that together they give the rotation `turned`.
+    /// Rotations do not commute (W. Magnus, 1954, to second order), and the engine rotates along tangents.
     fn summed(&self, turned: DVec3, spin: DVec3, delivery: &Delivery) -> DVec3 {
         let square = f64::from(self.substeps).powi(-2);
         let tangent = turned.length_squared() * square / 12.0;
@@ -203,33 +203,34 @@ impl Schedule {
         turned * (1.0 + tangent) - order
     }
 
-    /// How far the engine turns a body that its cap lets turn so far: it goes along tangents.
+    /// Greatest rotation by the engine in the step, if its cap on angular velocity allows `cap` (rad). It is less than
+    /// `cap`, because the engine rotates along tangents.
     pub(crate) fn farthest_turn(&self, cap: f64) -> f64 {
         let halves = 2.0 * f64::from(self.substeps);
         halves * atan(cap / halves)
     }
 }
 
-/// How often the first guess is made better by what an engine's rule comes to in closed form, which costs far less than to run it.
+/// Number of times that the first guess is improved by a closed-form approximation of the engine's rule. This costs far less
+/// than to run the rule.
 const FORESEEN: usize = 2;
 
-/// Most rounds of correction, each of which leaves a thirtieth of what was missed.
+/// Greatest number of corrections. Each leaves a thirtieth of the error.
 const ROUNDS: usize = 6;
 
-/// Share of the cap on turning that is planned with: where it is put right, it may come to a little more.
+/// Share of the cap on rotation that is planned with, because corrections may add a little.
 const CAUTION: f64 = 0.995;
 
-/// What may be missed before the last correction, rad.
+/// Error before a correction below which no further correction follows, rad.
 const MISSED: f64 = 3e-7;
 
-/// The rotation vector of a small rotation; of larger ones too little, by θ⁵/213.
+/// Rotation vector of a small rotation. For an angle θ it is too short by θ⁵/213.
 fn small_angle(rotation: DQuat) -> DVec3 {
     let half = shortest(rotation).xyz();
     2.0 * half * (1.0 + half.length_squared() / 6.0)
 }
 
-/// The force or torque with which an inverse mass or inertia gives an acceleration; nothing along
-/// locked axes.
+/// Force or torque that gives an acceleration, for an inverse mass or inertia along each axis; zero along locked axes.
 pub(crate) fn force_for(acceleration: DVec3, inverse_mass: DVec3) -> DVec3 {
     DVec3::select(
         inverse_mass.cmpgt(DVec3::ZERO),
@@ -238,7 +239,7 @@ pub(crate) fn force_for(acceleration: DVec3, inverse_mass: DVec3) -> DVec3 {
     )
 }
 
-/// See [`force_for`]: a locked axis has an empty row and column.
+/// Torque that gives an angular acceleration; zero about locked axes. A locked axis has an empty row and column.
 pub(crate) fn torque_for(acceleration: DVec3, mut inverse_inertia: DMat3) -> DVec3 {
     let mut free = DVec3::ONE;
     for axis in 0..3 {

@@ -1,4 +1,4 @@
-//! An element between two ends.
+//! An element between two ends: how its ends are held, its line, and its forces.
 
 use super::body::{Body, Spin, turn};
 use super::guide::Guide;
@@ -7,16 +7,16 @@ use super::line::Line;
 use bevy::math::{DMat3, DQuat, DVec3};
 use std::sync::Arc;
 
-/// Where an element is held.
+/// How an end of an element is held.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum End {
-    /// On a dynamic body, `arm` from its centre of mass in the body's frame.
+    /// On a dynamic body. `arm` is the vector from its centre of mass in the body's frame, m.
     Body { index: usize, arm: DVec3 },
-    /// A point that moves as something else decides: a fixed or kinematic body, or a plain entity.
+    /// At a point with prescribed motion: on a fixed or kinematic body, or a plain entity.
     Path(Path),
 }
 
-/// A point on its way, and the frame it belongs to.
+/// A point with prescribed motion, and its frame. World frame, SI units.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Path {
     pub position: DVec3,
@@ -27,7 +27,7 @@ pub(crate) struct Path {
 }
 
 impl Path {
-    /// Of a point whose frame does not turn.
+    /// A point whose frame does not turn.
     pub(crate) const fn straight(position: DVec3, velocity: DVec3) -> Self {
         Self {
             position,
@@ -38,41 +38,42 @@ impl Path {
     }
 }
 
-/// What the integrator needs of one spring, damper or pair of both.
+/// A spring, a damper or both, as the integrator sees it.
 #[derive(Clone, Debug)]
 pub(crate) struct Element {
     pub ends: [End; 2],
-    /// N/m.
+    /// Stiffness, N/m.
     pub stiffness: f64,
-    /// N s/m.
+    /// Damping, N s/m.
     pub damping: f64,
-    /// m.
+    /// Rest length, m.
     pub rest_length: f64,
-    /// What it acts along; angles take the place of lengths where that is a twist.
+    /// Direction or axis of its force. For a twist, angles take the place of lengths.
     pub guide: Guide,
-    /// Its own law instead of stiffness and damping.
+    /// Force law that replaces stiffness and damping.
     pub law: Option<Arc<Law>>,
-    /// Twist where the step began, rad, full turns counted.
+    /// Twist at the start of the micro-step, rad, including full turns.
     pub angle: f64,
-    /// Energy that it has turned into heat, and work that moving ends did on it, in this step so far, J.
+    /// Energy that its damping has turned into heat so far in this step, J.
     pub heat: f64,
+    /// Work of its ends with prescribed motion so far in this step, J.
     pub work: f64,
-    /// From end A to end B where the step began; see [`Element::aim`].
+    /// Last well-defined direction from end A to end B at the start of a micro-step; see [`Element::aim`].
     pub direction: Option<DVec3>,
-    /// A strong damper: then a spring of zero rest length has an axis after all.
+    /// Whether the damper is strong. Then a spring of zero rest length is not treated as isotropic.
     pub stiff_damper: bool,
 }
 
-/// One end of the line, resolved at an instant.
+/// One end of a line at an instant. World frame.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Hold {
     /// Index of the dynamic body, if there is one.
     pub body: Option<usize>,
-    /// From the centre of mass to the held point, world frame.
+    /// Vector from the centre of mass to the point at which the force acts, m.
     pub arm: DVec3,
     pub inverse_mass: DVec3,
     pub inverse_inertia: DMat3,
-    /// Pushed about an axis instead of along it.
+    /// Whether the element turns the body about an axis instead of pushing it.
     pub twist: bool,
     pub position: DVec3,
 }
@@ -113,7 +114,7 @@ impl End {
         }
     }
 
-    /// Whether it is not off the centre of mass of a body.
+    /// Whether the end is at the centre of mass of a body, or has prescribed motion.
     pub(super) fn is_central(&self) -> bool {
         match self {
             End::Body { arm, .. } => *arm == DVec3::ZERO,
@@ -125,7 +126,7 @@ impl End {
         matches!(self, End::Path(_))
     }
 
-    /// Where the held point is.
+    /// Position of the held point.
     fn position(&self, bodies: &[Body]) -> DVec3 {
         match *self {
             End::Path(path) => path.position,
@@ -134,7 +135,7 @@ impl End {
         }
     }
 
-    /// Moves a prescribed point along its path.
+    /// Moves a point with prescribed motion by `time` seconds.
     pub(crate) fn drift(&mut self, time: f64) {
         if let End::Path(path) = self {
             path.position += time * path.velocity;
@@ -144,7 +145,7 @@ impl End {
         }
     }
 
-    /// From the frame that holds it to the world.
+    /// Rotation from the frame that holds the end to the world.
     pub(crate) fn rotation(&self, bodies: &[Body]) -> DQuat {
         match *self {
             End::Path(path) => path.rotation,
@@ -159,7 +160,7 @@ impl End {
         }
     }
 
-    /// Velocity of the held point, its acceleration by outside forces, and that of free flight.
+    /// Returns the velocity of the held point, its acceleration from external forces, and its acceleration in free flight.
     pub(super) fn motion(&self, hold: &Hold, bodies: &[Body]) -> (DVec3, DVec3, DVec3) {
         match (*self, hold.body) {
             (End::Body { .. }, Some(index)) => {
@@ -187,7 +188,7 @@ impl End {
 }
 
 impl Hold {
-    /// A bound on its inverse effective mass along any direction.
+    /// Upper bound on the inverse effective mass along any direction.
     pub(crate) fn most_inverse_mass(&self) -> f64 {
         let inertia = &self.inverse_inertia;
         let trace = |m: &DMat3| m.x_axis.x + m.y_axis.y + m.z_axis.z;
@@ -199,13 +200,13 @@ impl Hold {
         self.inverse_mass.max_element() + turning
     }
 
-    /// Inverse effective mass of this end along a direction.
+    /// Inverse effective mass of this end along a direction, 1/kg.
     pub(crate) fn inverse_mass_along(&self, direction: DVec3) -> f64 {
         if self.twist {
             return direction.dot(self.inverse_inertia * direction);
         }
         let w = self.inverse_mass;
-        // Not rounded by the direction, so that equal lines have bitwise equal coefficients.
+        // The direction would add rounding. Without it, equal lines have bitwise equal coefficients.
         let linear = if w.x == w.y && w.y == w.z {
             w.x
         } else {
@@ -219,21 +220,21 @@ impl Hold {
     }
 }
 
-/// Distance of two points below which it may be rounding of the engine's f32.
+/// Distance up to which two points count as coincident, because it may be rounding, m.
 pub(crate) fn rounding(a: DVec3, b: DVec3) -> f64 {
     1e-9 * a.abs().max(b.abs()).max_element().max(1e-3)
 }
 
 impl Element {
-    /// The separation from end A to end B, and how much of it is more than rounding of the engine's f32.
+    /// Returns the vector from end A to end B, and whether it is longer than [`rounding`].
     fn separation(&self, holds: &[Hold; 2]) -> (DVec3, bool) {
         let d = holds[1].position - holds[0].position;
         let [a, b] = holds.map(|h| h.position);
         (d, d.length() > rounding(a, b))
     }
 
-    /// Inverse effective mass along the line, if no body that it holds turns or is freer one way than
-    /// another, and its ends are apart: then it does not depend on the line.
+    /// Inverse effective mass along the line, if it does not depend on the line's direction: no body of the element turns,
+    /// each has the same inverse mass along all axes, and the ends are apart.
     pub(crate) fn plain_inverse_mass(&self, bodies: &[Body]) -> Option<f64> {
         if self.guide != Guide::Centres {
             return None;
@@ -257,9 +258,8 @@ impl Element {
         (a.distance(b) > rounding(a, b)).then_some(sum)
     }
 
-    /// Notes on which side of end A end B is before a drift. A stiff spring that is far from rest
-    /// drifts through the centre and is kicked back within one step; its force must not turn round on
-    /// the way.
+    /// Stores on which side of end A end B is before a drift. A stiff spring far from rest drifts through the centre and is
+    /// kicked back within one step. Its force must not reverse meanwhile. For a twist, counts full turns instead.
     pub(crate) fn aim(&mut self, bodies: &[Body], step: f64) {
         if self.guide != Guide::Centres {
             self.count_turns(bodies);
@@ -271,13 +271,13 @@ impl Element {
         }
         let along = self.direction.unwrap_or(DVec3::Y);
         let inverse_mass: f64 = holds.iter().map(|h| h.inverse_mass_along(along)).sum();
-        // Past that the spring needs its isotropic, implicit form more than the damper its axis.
+        // For a stiffer spring, its isotropic, implicit form matters more than an axis for the damper.
         let resolved = self.stiffness * inverse_mass * step * step < 4.0;
         self.stiff_damper = resolved && self.damping * inverse_mass * step > 0.5;
     }
 
-    /// The line at this instant, or `None` where the ends coincide and nothing says which way to push.
-    /// Its length is negative while end B is on the far side of end A during a drift.
+    /// Returns the line at this instant, or `None` if the ends coincide and no direction is known. The length between
+    /// centres is negative while end B is on the far side of end A during a drift.
     pub(crate) fn line(&self, bodies: &[Body]) -> Option<Line> {
         if self.guide != Guide::Centres {
             return self.guided_line(bodies);
@@ -290,7 +290,7 @@ impl Element {
             (true, Some(side)) => d.normalize() * if d.dot(side) < 0.0 { -1.0 } else { 1.0 },
             (false, Some(side)) => side,
             (false, None) if self.rest_length == 0.0 => {
-                // Whatever acts on the ends decides; with nothing acting any axis will do.
+                // Relative velocity and acceleration give the direction. If both are zero, any axis will do.
                 let [a, b] = [0, 1].map(|i| self.ends[i].motion(&holds[i], bodies));
                 let hint = (b.0 - a.0) + (b.1 - a.1);
                 hint.try_normalize().unwrap_or(DVec3::Y)
@@ -308,7 +308,7 @@ impl Element {
         })
     }
 
-    /// Length with the sign it has at rest, and the largest coordinate of the ends; 0 where there is no line.
+    /// Returns the length as [`Line::distance`] gives it, and the largest coordinate of the ends; zeros without a line.
     pub(crate) fn distance(&self, bodies: &[Body]) -> (f64, f64) {
         if self.guide != Guide::Centres {
             return self
@@ -319,8 +319,8 @@ impl Element {
         (a.distance(b), a.abs().max(b.abs()).max_element())
     }
 
-    /// Tension without damping, its slope, and the stored energy. A length is negative on the far side
-    /// of end A only during a drift.
+    /// Tension without damping, its slope, and the stored energy. A length between centres is negative only during a drift,
+    /// while end B is on the far side of end A.
     pub(crate) fn elastic(&self, length: f64) -> Elastic {
         match &self.law {
             Some(law) => law.elastic(length, self.rest_length),
@@ -335,7 +335,7 @@ impl Element {
         }
     }
 
-    /// Tension that damping adds.
+    /// Tension from damping, and its slope.
     pub(crate) fn drag(&self, length: f64, rate: f64) -> Drag {
         match &self.law {
             Some(law) => law.drag(length, self.rest_length, rate),
@@ -346,12 +346,12 @@ impl Element {
         }
     }
 
-    /// Spring and damper together.
+    /// Tension of spring and damper together, N.
     pub(crate) fn tension(&self, length: f64, rate: f64) -> f64 {
         self.elastic(length).force + self.drag(length, rate).force
     }
 
-    /// Whether a law of a user's own gives numbers.
+    /// Whether a force law gives finite numbers at a length and rate.
     pub(crate) fn is_sound(&self, length: f64, rate: f64) -> bool {
         if self.law.is_none() {
             return true;
@@ -368,7 +368,7 @@ impl Element {
         .all(|x| x.is_finite())
     }
 
-    /// Slope of the spring's force, at a length and on the way that a step takes from there.
+    /// Greatest slope of the spring's force between a length and `length + way`, N/m.
     pub(crate) fn stiffness_ahead(&self, length: f64, way: f64) -> f64 {
         match &self.law {
             Some(law) => law.stiffest([length, length + way], self.rest_length),

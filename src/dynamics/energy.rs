@@ -1,22 +1,22 @@
-//! Mechanical energy of bodies and elements, and taking some of it out of the motion.
+//! Mechanical energy of bodies and elements, and its removal from the motion.
 
 use super::body::{Body, Spin};
 use super::element::Element;
 use bevy::math::DVec3;
 
-/// J.
+/// Mechanical energy, J.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Energy {
-    /// Kinetic.
+    /// Kinetic energy.
     pub motion: f64,
-    /// In the springs.
+    /// Energy stored in springs.
     pub stored: f64,
-    /// Potential in gravity and the users' forces, less the work of their torques in this step.
+    /// Potential energy in gravity and the users' forces, minus the work of the users' torques in this step.
     pub place: f64,
 }
 
 impl Energy {
-    /// Of all bodies and elements as they stand.
+    /// Energy of all bodies and elements in their present state.
     pub(crate) fn of(elements: &[Element], bodies: &[Body]) -> Self {
         let mut energy = Self::default();
         for body in bodies {
@@ -34,8 +34,9 @@ impl Energy {
     }
 }
 
-/// Takes so much energy out of the motion along the elements, as far as there is any, by impulse pairs
-/// along their lines, which keep both momenta; returns how much.
+/// Removes energy from the motion along the elements: `surplus` (J), or as much as there is. Returns the removed energy, J.
+/// Each element gets a pair of opposite impulses along its line, which conserves linear and angular momentum (on an axis of
+/// the world only linear momentum).
 pub(crate) fn take(elements: &[Element], bodies: &mut [Body], surplus: f64) -> f64 {
     let mut left = surplus;
     for element in elements {
@@ -57,7 +58,7 @@ pub(crate) fn take(elements: &[Element], bodies: &mut [Body], surplus: f64) -> f
 }
 
 impl Body {
-    /// Per world axis, kg; zero on a locked axis.
+    /// Mass along each world axis, kg; zero on a locked axis.
     pub(crate) fn mass(&self) -> DVec3 {
         let w = self.inverse_mass;
         DVec3::select(w.cmpgt(DVec3::ZERO), w.recip(), DVec3::ZERO)

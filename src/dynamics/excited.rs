@@ -1,45 +1,46 @@
-//! Micro-steps that follow a stiff mode are taken only where the mode moves.
+//! Takes the micro-steps that follow a stiff mode only while the mode is excited.
 //!
-//! How stiff a component is says how many micro-steps follow its fastest motion. Whether there is such a motion is seen by
-//! going over the step with few and with twice as many: where both come to the same end, the stiff modes are at rest. (They
-//! cannot hide: a mode of phase x turns by 2·atan(x/2) in one kick of the midpoint rule and by 4·atan(x/4) in two, and these
-//! are never the same angle.)
+//! The stiffness of a component determines how many micro-steps follow its fastest mode. To see whether that mode moves, the
+//! step is taken with few micro-steps and with twice as many. If both end in the same state, the stiff modes are at rest.
+//! (No mode escapes this test: one kick of the midpoint rule advances a mode of phase x by 2·atan(x/2), and two kicks
+//! advance it by 4·atan(x/4). These angles are never equal.)
 
 use super::tolerance::Motion;
 use bevy::math::DVec3;
 
-/// What the two ends may differ by, m per simulated second. Pinned by `stiff_by_default`, and by the map of mass ratios that
-/// `compare` draws.
+/// Difference of the two end states up to which stiff modes count as at rest, m per simulated second. Pinned by
+/// `stiff_by_default`, and by the map of mass ratios that `compare` draws.
 const UNNOTICED: f64 = 1e-4;
 
-/// What they may differ by as a share of the way that bodies go against each other: as far off is a mode that is just
-/// followed ([`super::resolution`]).
+/// Difference of the two end states up to which stiff modes count as at rest, as a share of the relative motion of bodies.
+/// It is the error of a mode that is just followed ([`super::resolution`]).
 const SMALL: f64 = 2e-3;
 
-/// Micro-steps from which on it pays to try with fewer.
+/// Least number of micro-steps for which an attempt with fewer pays.
 const WORTH: u32 = 8;
 
-/// Share of [`UNNOTICED`] below which the next step begins with half as many: the error goes with their square, and some
-/// is left so that it does not go to and fro.
+/// Share of the allowed difference below which the next attempt begins with half as many micro-steps. The error then
+/// grows by a factor of four. The margin beyond that prevents frequent changes of the number.
 const FAR_BELOW: f64 = 0.1;
 
-/// Most steps until it is tried again, where it was in vain: the attempts then cost a thirtieth of all.
+/// Greatest number of steps between attempts that fail. The attempts then cost a thirtieth of all work.
 const LONGEST_WAIT: u8 = 16;
 
 /// Memory of how finely a motion had to be followed.
 #[derive(Clone, Copy, Debug, Default)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Excited {
-    /// Micro-steps with which the next attempt begins.
+    /// Number of micro-steps with which the next attempt begins.
     first: u16,
-    /// Steps until the next attempt, and from the last one to then.
+    /// Number of steps until the next attempt.
     wait: u8,
+    /// Number of steps from the last attempt to the next; 0 if the last attempt succeeded.
     span: u8,
 }
 
 impl Excited {
-    /// Runs over the step in `all` micro-steps, or in fewer, but no fewer than `least`, that come to the same end. Tells how
-    /// many kicks that took.
+    /// Takes a step in `all` micro-steps, or in fewer (at least `least`) that end in the same state. Returns the number of
+    /// kicks that this took.
     pub(super) fn run(
         &mut self,
         motion: &mut impl Motion,
@@ -59,7 +60,7 @@ impl Excited {
         let mut kicks = count;
         motion.save(0);
         motion.run(time, count);
-        // Beyond, all of them at once are no dearer.
+        // Beyond a quarter, all micro-steps at once cost no more.
         while count.saturating_mul(4) <= all {
             motion.save(1);
             motion.load(0);
@@ -76,7 +77,7 @@ impl Excited {
             }
             count *= 2;
         }
-        // An eighth, a quarter: they tell at little cost whether it has come to rest.
+        // The next attempt compares an eighth with a quarter. It shows at little cost whether the mode has come to rest.
         self.first = u16::try_from(all / 8).unwrap_or(u16::MAX);
         self.span = (2 * self.span).clamp(1, LONGEST_WAIT);
         self.wait = self.span;
@@ -86,7 +87,7 @@ impl Excited {
     }
 }
 
-/// Half the size of the box about all displacements: none where all went the same way.
+/// Half the diagonal of the box around all displacements, m; zero if all displacements are equal.
 pub(super) fn spread(displacements: impl Iterator<Item = DVec3>) -> f64 {
     let (least, most) = displacements.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(a, b), d| {
         (a.min(d), b.max(d))

@@ -1,24 +1,24 @@
-//! A strong damper only takes energy, whatever the line does meanwhile.
+//! Prevents a lone element with a strong damper from gaining energy.
 //!
-//! With much damping in a step, the map between true and stepped velocities is steep; where the line or
-//! an arm turns within the step, a little lateral motion can come back as a lot along the line. Energy
-//! says how much of it can be true.
+//! With strong damping, the map between true and stepped velocities is steep. If the line or an arm turns within the step,
+//! a little lateral motion can become much motion along the line. The energy shows how much of it is wrong.
 
 use super::body::Body;
 use super::element::{Element, End};
 use bevy::math::DVec3;
 
-/// c h/m above which an element is watched.
+/// c h/m from which on the energy of an element is checked.
 const STRONG: f64 = 0.5;
 
-/// Mechanical energy at the start of a step, in the frame of a moving end.
+/// Mechanical energy at the start of a step, in the frame of an end with prescribed motion.
 pub(crate) struct Guard {
     energy: f64,
     frame: DVec3,
 }
 
 impl Guard {
-    /// Begins to watch a lone element, if it is strongly damped and all forces on its bodies are known.
+    /// Begins the check if the element is strongly damped, no user's torque acts on its bodies, and no end with prescribed
+    /// motion turns. Torques and turning ends do work that is not accounted for here.
     pub(crate) fn begin(element: &Element, bodies: &[Body], step: f64) -> Option<Self> {
         let line = element.line(bodies)?;
         let known = bodies.iter().all(|b| b.torque == DVec3::ZERO);
@@ -40,7 +40,7 @@ impl Guard {
         Some(guard)
     }
 
-    /// Takes the surplus out of the motion along the line.
+    /// Removes gained energy from the motion along the line.
     pub(crate) fn end(&self, element: &Element, bodies: &mut [Body], step: f64) {
         let (Some(line), Some(energy)) =
             (element.line(bodies), self.energy_of(element, bodies, step))
@@ -58,7 +58,7 @@ impl Guard {
         line.push(bodies, (left.copysign(rate) - rate) / line.inverse_mass);
     }
 
-    /// Kinetic, stored, and potential energy in the outside forces, after so much time.
+    /// Kinetic and stored energy, and potential energy in the external forces, `time` seconds after the start, J.
     fn energy_of(&self, element: &Element, bodies: &[Body], time: f64) -> Option<f64> {
         let mass = |inverse: DVec3| {
             DVec3::select(inverse.cmpgt(DVec3::ZERO), inverse.recip(), DVec3::ZERO)

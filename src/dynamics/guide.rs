@@ -1,7 +1,7 @@
-//! What an element acts along: the line of centres, a given axis, or a twist about one.
+//! What an element acts along: the line between its ends, a given axis, or a twist about an axis.
 //!
-//! Each is one generalised coordinate (a length or an angle), its rate is linear in the velocities, and the
-//! force on the bodies is its gradient, so that energy is kept whichever it is.
+//! Each of them is one generalised coordinate (a length or an angle). Its rate is linear in the velocities, and the force on
+//! the bodies is along its gradient. So each of them conserves energy.
 
 use super::body::Body;
 use super::element::{Element, Hold};
@@ -10,17 +10,17 @@ use crate::functions::atan2;
 use bevy::math::{DQuat, DVec3};
 use std::f64::consts::{PI, TAU};
 
-/// Unit vectors.
+/// What an element acts along. Axes are unit vectors.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) enum Guide {
-    /// From end to end.
+    /// The line from end to end.
     #[default]
     Centres,
-    /// Along an axis of the world: each end is pushed at its own point, so the pair is not free of torque.
+    /// An axis of the world. Each end is pushed at its own point, so the pair of forces has a torque.
     World(DVec3),
-    /// Along an axis of end A's frame: end A is pushed where end B is, as by a slide on it.
+    /// An axis of end A's frame. The force on end A acts at the point of end B, as from a slider on the axis.
     OfA(DVec3),
-    /// About an axis of end A's frame.
+    /// A twist about an axis of end A's frame.
     Twist(DVec3),
 }
 
@@ -30,13 +30,14 @@ impl Guide {
         matches!(self, Self::Twist(_))
     }
 
-    /// Whether it turns bodies even where it holds them at their centres.
+    /// Whether it turns bodies even if it holds them at their centres of mass.
     pub(crate) fn turns(self) -> bool {
         matches!(self, Self::OfA(_) | Self::Twist(_))
     }
 }
 
-/// Least cos² of half the tilt between both axes: beyond, within a degree of half a turn, a twist has no meaning.
+/// Least cos² of half the angle between the axes of both ends. Beyond it, within about a degree of half a turn, a twist is
+/// not defined.
 const UPRIGHT: f64 = 1e-4;
 
 impl Element {
@@ -72,13 +73,14 @@ impl Element {
         })
     }
 
-    /// Twist of end B against end A about an axis of A's (swing–twist decomposition), within a turn, and its
-    /// gradient with respect to rotation vectors of the world: the axis itself where that is common.
+    /// Returns the gradient of the twist with respect to rotation vectors of the world, and the twist within one turn, rad.
+    /// The twist is that of end B relative to end A about an axis of A (swing–twist decomposition). The gradient is the axis
+    /// itself if both ends share it.
     fn twist(&self, axis: DVec3, bodies: &[Body]) -> Option<(DVec3, f64)> {
         twist(axis, self.ends.each_ref().map(|end| end.rotation(bodies)))
     }
 
-    /// What it acts about where its ends are turned like this, if it is a torsion element.
+    /// Gradient of the twist at given rotations of the ends, if it is a torsion element.
     pub(crate) fn twist_gradient(&self, ends: [DQuat; 2]) -> Option<DVec3> {
         match self.guide {
             Guide::Twist(axis) => Some(twist(axis, ends)?.0),
@@ -86,7 +88,7 @@ impl Element {
         }
     }
 
-    /// Notes the twist, so that full turns are counted.
+    /// Stores the twist, so that full turns are counted.
     pub(super) fn count_turns(&mut self, bodies: &[Body]) {
         if let Guide::Twist(axis) = self.guide
             && let Some((_, angle)) = self.twist(axis, bodies)
@@ -96,7 +98,7 @@ impl Element {
     }
 }
 
-/// Twist of one frame against another, and its gradient: see [`Element::twist`].
+/// Returns the gradient of the twist and the twist of `other` relative to `frame`; see [`Element::twist`].
 fn twist(axis: DVec3, [frame, other]: [DQuat; 2]) -> Option<(DVec3, f64)> {
     let q = frame.inverse() * other;
     let (v, w) = (q.xyz(), q.w);
@@ -109,7 +111,7 @@ fn twist(axis: DVec3, [frame, other]: [DQuat; 2]) -> Option<(DVec3, f64)> {
     Some((frame * gradient, 2.0 * atan2(along, w)))
 }
 
-/// An angle less whole turns, so that it is within half a turn, rad.
+/// Removes whole turns from an angle, so that it is at most half a turn, rad.
 fn wrapped(angle: f64) -> f64 {
     let within = angle.rem_euclid(TAU);
     if within > PI { within - TAU } else { within }
@@ -151,7 +153,7 @@ impl Line {
         motion.pushed = (b.1 - a.1).dot(u);
         motion.arms = (b.2 - a.2).dot(u);
         if let Guide::OfA(_) = element.guide {
-            // Seen from a frame that turns.
+            // Coriolis acceleration, because the axis turns with end A.
             let turning = element.ends[0].angular_velocity(bodies);
             motion.arms -= 2.0 * turning.cross(b.0 - a.0).dot(u);
         }

@@ -1,19 +1,20 @@
-//! One element alone on its bodies: the closed form, with exact poles.
+//! The kick of a lone element on its bodies, in closed form with exact poles.
 //!
-//! With r = ω²·stretch − a_out (the acceleration that the element has yet to answer) and the
-//! coefficients of [`Poles`], the relative axial acceleration over the step is
-//! −restoring·r − loss/h·rate. The element's own share of it is that less a_out.
+//! a_out is the axial acceleration of the separation from everything but the element, and r = ω²·stretch − a_out. With the
+//! coefficients of [`Poles`], the axial acceleration over the step is −restoring·r − loss/h·rate. The element's own part is
+//! this minus a_out.
 
 use super::body::{Body, Spin};
 use super::element::Element;
 use super::line::{Line, Motion};
 use super::poles::{Poles, RESOLVED_PHASE};
 
-/// The last coefficients: where no body turns they are the same for every kick of a step.
+/// The last coefficients. If no body turns, they are the same for every kick of a step.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Memo {
-    /// For which z = (ω h)² and g = γh they are; no number before the first.
+    /// (ω h)² of these coefficients; NaN before the first ones.
     z: f64,
+    /// γh of these coefficients; NaN before the first ones.
     g: f64,
     poles: Poles,
 }
@@ -29,7 +30,7 @@ impl Default for Memo {
 }
 
 impl Memo {
-    /// The poles for z = (ω h)² and g = γh.
+    /// Returns the poles for z = (ω h)² and g = γh.
     pub(crate) fn poles(&mut self, z: f64, g: f64) -> Poles {
         if self.z != z || self.g != g {
             let poles = Poles::new(z, g);
@@ -39,7 +40,7 @@ impl Memo {
     }
 }
 
-/// The poles of an element on this line for a step.
+/// Returns the poles of an element on a line for a step.
 fn poles_of(element: &Element, line: &Line, step: f64, memo: &mut Memo) -> Poles {
     memo.poles(
         element.stiffness * line.inverse_mass * step * step,
@@ -47,12 +48,12 @@ fn poles_of(element: &Element, line: &Line, step: f64, memo: &mut Memo) -> Poles
     )
 }
 
-/// ω²·stretch − a_out for a length.
+/// ω²·stretch − a_out at a length, m/s². `outside` is a_out.
 fn residual_acceleration(element: &Element, line: &Line, length: f64, outside: f64) -> f64 {
     element.stiffness * line.inverse_mass * (length - element.rest_length) - outside
 }
 
-/// The kick at the half drift: element and outside forces together.
+/// Applies the kick after the first half drift: element and external forces together.
 pub(crate) fn kick(element: &Element, bodies: &mut [Body], step: f64, memo: &mut Memo) {
     let Some(line) = element.line(bodies) else {
         return external(bodies, step);
@@ -64,7 +65,7 @@ pub(crate) fn kick(element: &Element, bodies: &mut [Body], step: f64, memo: &mut
         let residual_acceleration =
             residual_acceleration(element, &line, line.length - drifted, outside);
         if line.inverse_mass <= 0.0 {
-            // Both ends are held: nothing moves for it, but what holds them feels the force.
+            // The element can move neither end, but its force still acts on them.
             let stretch = line.length - drifted - element.rest_length;
             return -step * (element.stiffness * stretch + element.damping * rate);
         }
@@ -73,12 +74,11 @@ pub(crate) fn kick(element: &Element, bodies: &mut [Body], step: f64, memo: &mut
     };
     let z = element.stiffness * line.inverse_mass * step * step;
     if swings_across(&line, bodies) && !is_resolved(z) {
-        // The line turns too fast to tell along from across: what is lost along it is lost across.
+        // The line turns too fast to separate axial from lateral motion, so both lose the same share.
         line.push_across(bodies, -poles.loss * before.lateral);
     }
-    // What acts from outside depends on the speed across the line, which the kick changes. The mean of
-    // before and after makes the step its own mirror image in time, so that its error has even powers
-    // of the step only.
+    // a_out depends on the lateral speed, which the kick changes. The mean of before and after makes the step time-symmetric,
+    // so that its error has only even powers of the step.
     let after = if line.is_plain(bodies) {
         line.coasted(&before, step)
     } else {
@@ -93,13 +93,13 @@ pub(crate) fn kick(element: &Element, bodies: &mut [Body], step: f64, memo: &mut
     act(&line, bodies, second, step);
 }
 
-/// Element and outside forces.
+/// Applies an impulse along the line, and the external forces.
 fn act(line: &Line, bodies: &mut [Body], impulse: f64, step: f64) {
     line.push(bodies, impulse);
     external(bodies, step);
 }
 
-/// Outside forces alone.
+/// Applies the external forces alone.
 pub(crate) fn external(bodies: &mut [Body], step: f64) {
     for body in bodies {
         let inverse_inertia = body.inverse_inertia();
@@ -107,18 +107,18 @@ pub(crate) fn external(bodies: &mut [Body], step: f64) {
     }
 }
 
-/// Which way to map velocities between the true motion and the stepped one.
+/// Direction of the velocity map between the true and the stepped motion.
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) enum Map {
     ToStepped,
     ToTrue,
 }
 
-/// The change of axial velocity under which the step becomes the exact axial flow.
+/// Maps the axial velocity so that the step becomes the exact axial flow.
 ///
-/// It is an impulse pair along the line at the true positions, so linear and angular momentum stay as
-/// they are; and as the map after one step is undone before the next, the long run is that of the
-/// drift–kick–drift step, time-symmetric and without energy drift.
+/// The map is a pair of impulses along the line at the true positions, so it conserves linear and angular momentum. The map
+/// after one step is undone before the next. So in the long run the motion is that of the drift–kick–drift step, which is
+/// time-symmetric and has no energy drift.
 pub(crate) fn map_velocity(
     element: &Element,
     bodies: &mut [Body],
@@ -147,8 +147,8 @@ pub(crate) fn map_velocity(
     }
 }
 
-/// An isotropic spring swings across its line as well as along it. Only where no body turns: a pair of
-/// impulses across the line is a torque.
+/// Whether the element is an isotropic spring, which also oscillates across its line, and no body turns. On turning bodies,
+/// a pair of impulses across the line would be a torque.
 fn swings_across(line: &Line, bodies: &[Body]) -> bool {
     line.isotropic && bodies.iter().all(|body| body.spin == Spin::Ignored)
 }
@@ -179,7 +179,7 @@ fn is_resolved(z: f64) -> bool {
     z < RESOLVED_PHASE * RESOLVED_PHASE
 }
 
-/// Whether a step resolves the element's oscillation, its decay, and the turning of its line.
+/// Whether a step resolves the element's oscillation and decay (up to `limit`), and the turning of its line.
 pub(crate) fn resolved(element: &Element, bodies: &[Body], step: f64, limit: f64) -> bool {
     let Some(line) = element.line(bodies) else {
         return false;

@@ -1,4 +1,4 @@
-//! The line from end to end at an instant, what it does, and pushing along it.
+//! The line from end to end at an instant, its motion, and impulses along it.
 
 use super::body::{Body, Spin};
 use super::element::{Element, Hold};
@@ -7,30 +7,30 @@ use bevy::math::DVec3;
 /// Velocity-dependent quantities of the line.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Motion {
-    /// Rate of the length.
+    /// Rate of the length, m/s.
     pub axial: f64,
-    /// Square of the speed across the line.
+    /// Square of the speed across the line, m²/s².
     pub lateral_square: f64,
-    /// Velocity across the line.
+    /// Velocity across the line, m/s.
     pub lateral: DVec3,
-    /// Acceleration across it by outside forces.
+    /// Acceleration across the line from external forces, m/s².
     pub pushed_across: DVec3,
-    /// Axial acceleration of the separation by outside forces,
+    /// Axial acceleration of the separation from external forces, m/s².
     pub pushed: f64,
-    /// by the arms' turning in free flight,
+    /// Axial acceleration of the separation from rotation of the arms in free flight, m/s².
     pub arms: f64,
-    /// and by the turning of the line itself.
+    /// Axial acceleration of the separation from the turning of the line itself (centripetal), m/s².
     pub turning: f64,
 }
 
 impl Motion {
-    /// What the straight half drift of a step added to the length by turning; the kick must not take
-    /// that for stretch, for it answers all turning at once.
+    /// Length that the straight half drift of a step added by turning, m. The kick must not count it as stretch, because the
+    /// kick already contains the whole turning.
     pub(crate) fn drifted(&self, step: f64) -> f64 {
         step * step / 8.0 * (self.turning + self.arms)
     }
 
-    /// Axial acceleration of the separation by everything but elements.
+    /// Axial acceleration of the separation from everything but elements, m/s².
     pub(crate) fn outside(&self) -> f64 {
         self.pushed + self.arms + self.turning
     }
@@ -44,14 +44,14 @@ pub(crate) struct Line {
     pub direction: DVec3,
     /// Inverse of the effective mass along the line, 1/kg.
     pub inverse_mass: f64,
-    /// Zero rest length: the spring is an isotropic oscillator and has no special axis.
+    /// Whether the element is an isotropic oscillator, without a special axis, because its rest length is zero.
     pub isotropic: bool,
-    /// The direction is given; it is not that from end to end.
+    /// Whether the guide gives the direction instead of the ends.
     pub guided: bool,
 }
 
 impl Line {
-    /// Length with the sign it has at rest.
+    /// Length without the sign that it may have during a drift; see [`Element::line`]. A guided length keeps its sign.
     pub(crate) fn distance(&self) -> f64 {
         if self.guided {
             self.length
@@ -60,13 +60,13 @@ impl Line {
         }
     }
 
-    /// Largest coordinate of its ends, which says how coarse their f32 is.
+    /// Largest coordinate of its ends, m. It determines the resolution of f32 there.
     pub(crate) fn reach(&self) -> f64 {
         let [a, b] = self.holds.map(|hold| hold.position.abs().max_element());
         a.max(b)
     }
 
-    /// What the line does at the bodies' present velocities; `step` resolves the turning.
+    /// Motion of the line at the bodies' present velocities. `step` bounds the centripetal acceleration.
     pub(crate) fn motion(&self, element: &Element, bodies: &[Body], step: f64) -> Motion {
         if self.guided {
             return self.guided_motion(element, bodies);
@@ -90,7 +90,7 @@ impl Line {
         }
     }
 
-    /// |lateral|²/L, bounded where the line turns further than the step can follow.
+    /// Centripetal acceleration |lateral|²/L, m/s². Bounded where the step does not resolve the turning of the line.
     fn turning(&self, lateral_square: f64, step: f64) -> f64 {
         if self.isotropic || self.guided || lateral_square == 0.0 {
             return 0.0;
@@ -98,8 +98,8 @@ impl Line {
         turning(self.length, lateral_square, step)
     }
 
-    /// Whether pushing along the line leaves the motion across it alone: no body turns, or is freer along
-    /// one axis than another.
+    /// Whether a push along the line does not change the motion across it: no body turns, and each has the same inverse
+    /// mass along all axes.
     pub(crate) fn is_plain(&self, bodies: &[Body]) -> bool {
         self.holds.iter().all(|hold| {
             let w = hold.inverse_mass;
@@ -111,7 +111,7 @@ impl Line {
         })
     }
 
-    /// The motion after a step's outside forces and any push along the line, for a plain one.
+    /// Motion after a step's external forces and any push along the line, if [`Self::is_plain`].
     pub(crate) fn coasted(&self, before: &Motion, step: f64) -> Motion {
         let lateral = before.lateral + step * before.pushed_across;
         let lateral_square = lateral.length_squared();
@@ -123,7 +123,7 @@ impl Line {
         }
     }
 
-    /// Length change over the step that led here, divided by the step: with it damping is second order.
+    /// Mean rate of the length over the step that ends here, m/s. With this rate, damping is of second order.
     pub(crate) fn backward_rate(&self, motion: &Motion, step: f64) -> f64 {
         let rate = if self.isotropic || self.guided {
             motion.axial
@@ -133,12 +133,12 @@ impl Line {
         rate - 0.5 * step * motion.arms
     }
 
-    /// An impulse pair along the line, positive pushing the ends apart.
+    /// Applies a pair of opposite impulses along the line. A positive impulse (N s) pushes the ends apart.
     pub(crate) fn push(&self, bodies: &mut [Body], impulse: f64) {
         self.impulse(bodies, impulse * self.direction);
     }
 
-    /// Changes the relative velocity across the line.
+    /// Changes the relative velocity across the line by a pair of opposite impulses.
     pub(crate) fn push_across(&self, bodies: &mut [Body], change: DVec3) {
         let Some(across) = change.try_normalize() else {
             return;
@@ -153,7 +153,7 @@ impl Line {
         }
     }
 
-    /// An impulse on end B and its opposite on end A.
+    /// Applies an impulse to end B and its opposite to end A. For a twist, the impulse is angular.
     pub(crate) fn impulse(&self, bodies: &mut [Body], impulse: DVec3) {
         for (hold, sign) in self.holds.iter().zip([-1.0, 1.0]) {
             match hold.body {
@@ -167,18 +167,18 @@ impl Line {
     }
 }
 
-/// |lateral|²/L, bounded where the line turns further than the step can follow.
+/// Centripetal acceleration |lateral|²/L, m/s². Bounded where the step does not resolve the turning of the line.
 pub(super) fn turning(length: f64, lateral_square: f64, step: f64) -> f64 {
     let half = 0.5 * step;
     let reach = (length * length + half * half * lateral_square).sqrt();
     (2.0 * lateral_square / (length.abs() + reach)).copysign(length)
 }
 
-/// Change of a length over the step that led there, divided by the step, for ends that moved straight.
+/// Mean rate of a length over the step that ends with it, m/s, for ends that moved straight.
 pub(super) fn backward_rate(length: f64, axial: f64, lateral_square: f64, step: f64) -> f64 {
     let along = length - step * axial;
     if along * length <= 0.0 {
-        // Through the centre: the line flips, its rate does not.
+        // The ends passed through each other. The direction of the line reverses, but its rate does not change.
         return axial;
     }
     let before = (along * along + step * step * lateral_square)

@@ -1,25 +1,25 @@
-//! What joints and contacts leave of the mobility of bodies.
+//! Computes the inverse effective mass that joints and contacts leave an element.
 //!
-//! With inverse masses W and constraints J v = 0, a push e moves a point along itself by
-//! e W eᵀ − e W Jᵀ (J W Jᵀ)⁻¹ J W eᵀ per impulse: the Schur complement of the saddle-point system (for instance
-//! D. Baraff, "Linear-time dynamics using Lagrange multipliers", 1996).
+//! With inverse masses W and constraints J v = 0, a unit impulse along the row e changes the velocity along e by
+//! e W eᵀ − e W Jᵀ (J W Jᵀ)⁻¹ J W eᵀ. This is the Schur complement of the saddle-point system (for instance D. Baraff,
+//! "Linear-time dynamics using Lagrange multipliers", 1996).
 
 use super::body::Body;
 use super::line::Line;
 use bevy::math::{DMat3, DVec3};
 use nalgebra::{DMatrix, DVector};
 
-/// Share of the greatest diagonal entry that is added to all of them: constraints may say the same twice. Pinned by
-/// `a_constraint_that_is_said_twice_counts_once`.
+/// Share of the greatest diagonal entry that is added to all diagonal entries, because constraints may be redundant. Pinned
+/// by `a_constraint_that_is_said_twice_counts_once`.
 const TWICE: f64 = 1e-9;
 
-/// One equation on velocities: the sum over its sides of linear · v + angular · ω is zero.
+/// A constraint row: the sum of linear · v + angular · ω over its sides is zero.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Constraint {
     pub sides: [Option<Side>; 2],
 }
 
-/// What it says of one body.
+/// The part of a constraint row for one body.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Side {
     pub body: usize,
@@ -28,7 +28,7 @@ pub(crate) struct Side {
 }
 
 impl Constraint {
-    /// The points of two bodies at `at` do not part along an axis.
+    /// Row that prevents relative motion of two bodies along an axis at the point `at`.
     pub(crate) fn along(axis: DVec3, at: DVec3, bodies: [Option<(usize, &Body)>; 2]) -> Self {
         let side = |(end, sign): (usize, f64)| {
             let (index, body) = bodies[end]?;
@@ -43,7 +43,7 @@ impl Constraint {
         }
     }
 
-    /// Two bodies do not turn against each other about an axis.
+    /// Row that prevents relative rotation of two bodies about an axis.
     pub(crate) fn about(axis: DVec3, bodies: [Option<usize>; 2]) -> Self {
         let side = |(end, sign): (usize, f64)| {
             Some(Side {
@@ -57,7 +57,7 @@ impl Constraint {
         }
     }
 
-    /// What an element pushes, its ends apart.
+    /// Row of an element's line, in the direction that pushes its ends apart.
     pub(crate) fn of_line(line: &Line) -> Self {
         let side = |(end, sign): (usize, f64)| {
             let hold = &line.holds[end];
@@ -79,7 +79,7 @@ impl Constraint {
     }
 }
 
-/// Bodies, and what holds them.
+/// Bodies, and the constraints on them.
 #[derive(Debug, Default)]
 pub(crate) struct Linkage {
     pub bodies: Vec<Body>,
@@ -87,8 +87,8 @@ pub(crate) struct Linkage {
 }
 
 impl Linkage {
-    /// How far an impulse along `push` moves what each of some pushes acts along, with what holds the bodies: 1/kg. None
-    /// where what holds them makes no sense.
+    /// Returns the change of velocity along each row of `along` per impulse along `push`, under the constraints, 1/kg. None
+    /// if the matrix of the constraints is not positive definite.
     pub(crate) fn response<const N: usize>(
         &self,
         push: &Constraint,
@@ -119,12 +119,12 @@ impl Linkage {
         Some(along.map(|to| coupling(push, to) - reactions.dot(&moved(to))))
     }
 
-    /// What is left of the inverse mass of a line between two of the bodies, 1/kg.
+    /// Inverse effective mass that the constraints leave a line between the bodies, 1/kg.
     pub(crate) fn inverse_mass(&self, line: &Line) -> f64 {
         let own = Constraint::of_line(line);
         let free = line.inverse_mass;
         let [left] = self.response(&own, [&own]).unwrap_or([free]);
-        // What is held altogether leaves nothing but rounding.
+        // If the constraints prevent all motion along the line, only rounding is left.
         if left > 10.0 * TWICE.sqrt() * free {
             left
         } else {
@@ -139,7 +139,7 @@ mod tests {
     use super::super::tests::{element, point, turning};
     use super::*;
 
-    /// A rod of 1 m and 2 kg that lies along x, and a spring upward at its end.
+    /// A rod of 1 m and 2 kg along x, and the line of a vertical spring at its end.
     fn rod() -> (Linkage, Line) {
         let inertia = DVec3::new(1e-3, 2.0 / 12.0, 2.0 / 12.0);
         let rod = point(2.0, DVec3::X * 0.5, DVec3::ZERO);

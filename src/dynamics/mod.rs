@@ -1,14 +1,17 @@
-//! The mathematics of springs and dampers: no ECS, no engine, f64 throughout, SI units.
+//! The mathematics of springs and dampers, without ECS and engine. All numbers are f64 in SI units.
 //!
-//! Read in the order in which a step runs. [`tolerance`] decides how finely to step, [`step`] holds what has
-//! to be solved together. [`body`] drifts, [`element`] has the [`mod@line`] between its ends (or
-//! what [`guide`] gives instead, and the [`linkage`] that holds their bodies), [`poles`] gives
-//! the exact coefficients; [`kick`] acts for a lone element, [`pair`] for one on bodies that do not turn, four of those at once in [`lanes`],
-//! [`nonlinear_pair`] for one of those with a force [`law`] of its own, [`network`] for elements that share bodies,
-//! with the linear algebra in [`system`] and [`strut`], and [`points`] for those that turn none; both iterate by
-//! [`conjugate`] gradients. [`guard`] keeps strong
-//! damping honest, and [`bound`] a network, by their [`energy`]. [`delivery`] says which impulse and force
-//! make the engine arrive there. What an engine's own solver is to solve is [`soft`], in [`pieces`].
+//! The modules in the order of a step:
+//!
+//! - [`tolerance`] chooses the number of micro-steps, and [`step`] advances a component.
+//! - A [`body`] drifts in free flight. An [`element`] acts along the [`mod@line`] between its ends, or as its [`guide`]
+//!   says. [`linkage`] computes how mobile joints and contacts leave the bodies.
+//! - [`poles`] computes exact coefficients. [`kick`] uses them for a lone element, [`pair`] for one that turns no body,
+//!   and [`lanes`] for four of those at once. [`nonlinear_pair`] solves one with a force [`law`].
+//! - [`network`] solves elements that share bodies, with the linear algebra in [`system`] and [`strut`]. [`points`] does
+//!   so if no body turns. Both iterate by [`conjugate`] gradients.
+//! - [`guard`] limits the [`energy`] of a strongly damped element, and [`bound`] that of a network.
+//! - [`delivery`] computes the impulse and force with which the engine arrives at the same state.
+//! - [`soft`] and [`pieces`] describe an element to the engine's own solver.
 
 pub(crate) mod body;
 mod bound;
@@ -38,7 +41,8 @@ mod strut;
 mod system;
 pub(crate) mod tolerance;
 
-/// The nearest number that is finite in single precision, and 0 for NaN: no overflow reaches the engine or a user.
+/// Rounds to single precision. Numbers that are too large become the largest finite number, and NaN becomes 0, so that no
+/// overflow reaches the engine or a user.
 pub(crate) fn single(number: f64) -> f32 {
     const MOST: f64 = f32::MAX as f64;
     if number.is_nan() {

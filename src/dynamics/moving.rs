@@ -1,4 +1,4 @@
-//! A lone pair in motion, for [`super::tolerance`] to drive.
+//! Lets [`super::tolerance`] advance a lone pair.
 
 use super::kick::Memo;
 use super::pair::{Pair, Separation};
@@ -6,7 +6,7 @@ use super::resolution::lone_steps;
 use super::tolerance::{Least, Motion, VELOCITY_COUNTS};
 use bevy::math::DVec3;
 
-/// A pair in motion, for [`super::tolerance`] to drive.
+/// A pair and its present state, as a [`Motion`].
 pub(crate) struct Moving<'a> {
     pub pair: &'a Pair,
     pub state: Separation,
@@ -24,7 +24,7 @@ impl<'a> Moving<'a> {
         }
     }
 
-    /// What was saved last in a slot.
+    /// State that was last saved in a slot; the present state if there is none.
     fn saved(&self, slot: usize) -> Separation {
         self.saved[slot].unwrap_or(self.state)
     }
@@ -53,7 +53,7 @@ impl Motion for Moving<'_> {
         let (moved, sped) = (a.d - b.d, a.v - b.v);
         let along = a.direction.unwrap_or(DVec3::ZERO);
         let axial = sped.dot(along);
-        // Along the line a wrong velocity swings back within a period.
+        // An axial velocity error reverses within a period, so it counts no longer than 1/ω.
         let omega = (self.pair.stiffness * self.pair.inverse_mass).sqrt();
         let counts = VELOCITY_COUNTS.min(omega.recip());
         moved.length() + counts * axial.abs() + VELOCITY_COUNTS * (sped - axial * along).length()

@@ -1,15 +1,15 @@
-//! Elements that share bodies: one linearised solve for all of them together.
+//! The kick of elements that share bodies: one linearised solve for all of them together.
 //!
-//! At the drifted positions, with K and C the elements' stiffness and damping along their lines and K
-//! also across them where they are in tension,
+//! At the drifted positions, C is the elements' damping along their lines. K is their stiffness along the lines, and across
+//! them for isotropic elements and those in tension. The accelerations a solve
 //!
 //! ```text
 //! (M + h/2 C + θ h² K) a = f(q, v) + f_outside + (θ h² k + h/2 c)·a_turning along each line
 //! ```
 //!
-//! θ places the stiffest mode exactly while it is resolved and is 1/4 beyond: there the step is the implicit
-//! midpoint rule, which keeps the energy of any linear motion however stiff. Modes that the step cannot
-//! resolve are damped a little, as those of a lone element are.
+//! While the stiffest mode is resolved, θ makes its frequency exact. Beyond, θ is 1/4 and the step is the implicit midpoint
+//! rule, which conserves the energy of any linear motion at any stiffness. Modes that the step cannot resolve are damped a
+//! little, as those of a lone element are.
 
 use super::body::{Body, Spin};
 use super::element::{Element, End};
@@ -26,26 +26,28 @@ mod placement;
 use placement::steep;
 pub(super) use placement::{damper_placement, placement, settling};
 
-/// (ω h)² of the stiffest mode up to which it is placed exactly.
+/// (ω h)² of the stiffest mode up to which θ makes its frequency exact.
 const PLACED: f64 = 9.0;
 
-/// (ω h)² up to which a law's own slope is taken, and c h/m up to which its damping's is.
+/// (ω h)² up to which a law's slope at the present length is used, instead of the greatest slope ahead.
 const SMOOTH: f64 = 1.0;
+/// c h/m up to which the slope of a damping law is used, instead of [`steep`].
 const STEEP: f64 = 0.5;
 
-/// The coupled kick of a component, with memory that is kept from step to step.
+/// The coupled kick of a component, and its memory, which is kept from step to step.
 #[derive(Clone, Default)]
 pub(crate) struct Network {
     rows: Vec<Row>,
     system: System,
     right: Twists,
-    /// The last solution, from which the next one starts.
+    /// The last solution, from which the next iterations start.
     acceleration: Twists,
     trial: Vec<Body>,
-    /// For each body, the stiffness of its elements over its mass: the Gershgorin bound on ω².
+    /// For each body, the stiffness of its elements over its mass, 1/s²: the Gershgorin bound on ω².
     stiffness: Vec<f64>,
+    /// For each body, the damping of its elements over its mass, 1/s.
     damping: Vec<f64>,
-    /// How the solves since the last [`Network::take_effort`] went.
+    /// Results of the solves since the last [`Network::take_effort`].
     effort: Option<Effort>,
 }
 
@@ -55,21 +57,22 @@ struct Row {
     element: usize,
     line: Line,
     before: Motion,
-    /// Force on its ends before the solve, world frame.
+    /// Force on its ends before the solve, without the centripetal part, world frame, N.
     load: DVec3,
-    /// Force along the line for each m/s² of centripetal acceleration, N per m/s².
+    /// Force along the line per centripetal acceleration, N per m/s².
     centripetal_gain: f64,
     /// Centripetal acceleration of the line and of the arms, m/s².
     centripetal: f64,
-    /// Force of the spring in the load, N.
+    /// Force of the spring in `load`, N.
     elastic: f64,
-    /// Damping force before the solve, N, and what it gains per m/s².
+    /// Damping force before the solve, N.
     drag: f64,
+    /// Damping force per relative acceleration along the line, N per m/s².
     damping: f64,
 }
 
 impl Network {
-    /// Bounds on (ω h)² of the stiffest mode, and on 2γh of the most damped one.
+    /// Returns bounds on (ω h)² of the stiffest mode and on 2γh of the most damped one.
     pub(crate) fn bounds(
         &mut self,
         elements: &[Element],
@@ -79,7 +82,7 @@ impl Network {
         self.begin_bounds(bodies.len());
         for element in elements {
             if let Some(line) = element.line(bodies) {
-                // Of a linear one they do not depend on how fast it is.
+                // The bounds of a linear element do not depend on its speed.
                 let (rate, predicted_travel) = match element.law {
                     Some(_) => {
                         let motion = line.motion(element, bodies, step);
@@ -93,7 +96,7 @@ impl Network {
         self.end_bounds(step)
     }
 
-    /// Where the lines are and what they do.
+    /// Fills the rows with the elements' lines and their motion.
     fn measure(&mut self, elements: &[Element], bodies: &[Body], step: f64) {
         self.rows.clear();
         self.rows
@@ -156,8 +159,8 @@ impl Network {
         )
     }
 
-    /// The kick at the half drift: all elements and outside forces together. `kinks` if it has to keep the energy of
-    /// laws that bend within the step.
+    /// Applies the kick after the first half drift: all elements and external forces together. `kinks` says whether the kick
+    /// must conserve the energy of laws with kinks.
     pub(crate) fn kick(
         &mut self,
         elements: &mut [Element],
@@ -181,7 +184,7 @@ impl Network {
         trial.extend_from_slice(bodies);
         self.act(&mut trial, step);
         for row in &mut self.rows {
-            // The mean of before and after the kick keeps the step its own mirror image in time.
+            // The mean of before and after the kick makes the step time-symmetric.
             let after = row.line.motion(&elements[row.element], &trial, step);
             row.centripetal = 0.5 * (row.centripetal + after.turning + after.arms);
         }
@@ -195,7 +198,7 @@ impl Network {
         self.system.end();
     }
 
-    /// Notes what dampers took and moving ends gave.
+    /// Adds up the heat of dampers, and the work of ends with prescribed motion.
     fn account(&self, elements: &mut [Element], step: f64) {
         for (row, strut) in self.rows.iter().zip(&self.system.struts) {
             let element = &mut elements[row.element];
@@ -217,8 +220,8 @@ impl Network {
         }
     }
 
-    /// Velocities after a step of the linearised implicit Euler rule, which only loses energy in what is
-    /// linear; see [`super::bound`]. The bodies come in memory that is to be given back.
+    /// Returns the bodies with their velocities after a step of the linearised implicit Euler rule, which only removes
+    /// energy from linear motion; see [`super::bound`]. Their memory should be returned by [`Self::give_back`].
     pub(crate) fn settle(
         &mut self,
         elements: &[Element],
@@ -251,22 +254,22 @@ impl Network {
         moved
     }
 
-    /// Takes the memory of [`Self::settle`] back.
+    /// Takes back the memory of [`Self::settle`].
     pub(crate) fn give_back(&mut self, moved: Vec<Body>) {
         self.trial = moved;
     }
 
-    /// Has the next iterations start from nothing.
+    /// Makes the next iterations start from zero.
     pub(super) fn forget_solution(&mut self) {
         self.acceleration = Twists::default();
     }
 
-    /// What iterations of the next solve start from, if it goes by iterations.
+    /// Vector from which the iterations of the next solve start; none for a network that is factorised.
     pub(super) fn start(&self) -> Option<&Twists> {
         (!self.system.is_dense()).then_some(&self.acceleration)
     }
 
-    /// Has iterations start there, if that is a place.
+    /// Makes the next iterations start from `start` if it is finite.
     pub(super) fn start_from(&mut self, start: &Twists) {
         if start
             .linear
@@ -278,7 +281,7 @@ impl Network {
         }
     }
 
-    /// Whether solves since this was last asked went by iterations, and whether all came to an end.
+    /// Returns whether the network is solved by iterations, and whether all solves since the last call converged.
     pub(crate) fn take_effort(&mut self) -> (bool, bool) {
         let effort = self.effort.take();
         (
@@ -318,7 +321,7 @@ impl Network {
                 .map(|h| h.inverse_mass.max_element())
                 .sum();
             let settle_across = settling(2.0 * h2 * across * freest) * step;
-            // The half drift counted h²/8 of the turning as stretch already.
+            // The half drift has already added h²/8 of the centripetal acceleration to the stretch.
             row.centripetal_gain = (theta - 0.125) * h2 * k + damping;
             row.elastic = elastic.force;
             row.drag = tension - elastic.force;
@@ -330,7 +333,7 @@ impl Network {
         }
     }
 
-    /// Accelerations for the lines' present turning.
+    /// Solves for the accelerations, with the present centripetal accelerations of the rows.
     fn solve(&mut self, bodies: &[Body], budget: u32) {
         let right = &mut self.right;
         right.clear(bodies.len(), self.system.turns());
@@ -350,8 +353,8 @@ impl Network {
         sum.converged &= effort.converged;
     }
 
-    /// What the solution does to the bodies. Forces come in pairs along the lines, so both momenta are
-    /// kept however exact it is.
+    /// Applies the solution and the external forces to the bodies. An element's two forces are opposite, so they conserve
+    /// linear momentum however exact the solution is. The forces along the lines also conserve angular momentum.
     fn act(&self, bodies: &mut [Body], step: f64) {
         for (row, strut) in self.rows.iter().zip(&self.system.struts) {
             let force = row.force() + strut.force(strut.relative(&self.acceleration));
@@ -361,7 +364,7 @@ impl Network {
     }
 }
 
-/// An element in the linear system.
+/// The part of an element in the linear system.
 fn strut(line: &Line, bodies: &[Body], along: f64, across: f64) -> Strut {
     let arm = |end: usize| match line.holds[end].body {
         _ if line.holds[end].twist => DVec3::ZERO,
@@ -384,7 +387,7 @@ impl Row {
     }
 }
 
-/// Stiffness across the line: a spring in tension pulls a displaced end back.
+/// Stiffness across the line, N/m. A spring in tension pulls a laterally displaced end back.
 fn across(element: &Element, line: &Line, tension: f64) -> f64 {
     if line.isotropic {
         element.stiffness

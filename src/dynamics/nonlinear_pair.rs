@@ -1,11 +1,10 @@
-//! A lone element with a law of its own, between ends that do not turn.
+//! Steps a lone element with a force law, between ends that do not turn.
 //!
-//! Where the law is smooth over a micro-step and the step resolves it, it is [`super::pair`]'s step with
-//! the slopes of the law as stiffness and damping and its true force: for a smooth potential that is the
-//! force-gradient kick of M. Takahashi and M. Imada (1984), so long runs keep their energy. Elsewhere (a rope
-//! goes taut, a stop is hit, the step is too long for the stiffness) the mean force over the step is the one
-//! that does exactly the work of the law's energy: D. Greenspan's and R. LaBudde's (1974) step, which
-//! conserves energy and angular momentum whatever the law and the step.
+//! Where the law is smooth over a micro-step and the step resolves it, the step is that of [`super::pair`], with the law's
+//! slopes as stiffness and damping, and with its true force. For a smooth potential this is the force-gradient kick of
+//! M. Takahashi and M. Imada (1984), so long runs conserve energy. Elsewhere (a rope becomes taut, a stop is hit, the step is
+//! too long for the stiffness) the mean force over the step does exactly the work of the law's energy. This is the step of
+//! D. Greenspan and R. LaBudde (1974), which conserves energy and angular momentum for any law and any step.
 
 mod pair_view;
 
@@ -18,27 +17,28 @@ use super::poles::{Poles, RESOLVED_PHASE, UNRESOLVED_DECAY, decay_ratio};
 use super::tolerance::{Least, Motion, VELOCITY_COUNTS};
 use bevy::math::DVec3;
 
-/// (ω h)² up to which the kick is used: where the law is smooth as a whole, and where it is kinked somewhere. The
-/// energy of a kicked motion sways a little, and at a bend the sway would be kept.
+/// (ω h)² up to which the kick is used for a law without kinks.
 const SMOOTH: f64 = 2.0;
+/// (ω h)² up to which the kick is used for a law with kinks. The energy of kicked motion oscillates a little, and at a kink
+/// the momentary difference would become permanent.
 const BENT: f64 = 0.04;
-/// c h/m up to which it is.
+/// c h/m up to which the kick is used.
 const LIGHT: f64 = 0.5;
-/// ω h of the energy-keeping steps, which are as many as that takes,
+/// ω h that the energy-conserving steps aim at.
 const FINE: f64 = 0.2;
-/// from so many up to so many in a micro-step.
+/// Least and greatest number of energy-conserving steps in a micro-step.
 const PARTS: [f64; 2] = [2.0, 16.0];
-/// Rounds of estimating how far the motion can reach.
+/// Number of iterations that estimate how far the motion can reach.
 const REACHES: usize = 6;
-/// Halvings and secants until a step's length is known.
+/// Greatest number of bisections and secants that find the length at the end of a step.
 const TRIES: usize = 80;
 
-/// A pair in motion under a law.
+/// A pair under a force law, and its present state.
 pub(crate) struct NonlinearPair<'a> {
     pub pair: &'a Pair,
     pub law: &'a Law,
     pub state: Separation,
-    /// Of the whole step, s.
+    /// Duration of the whole step, s.
     pub time: f64,
     memo: &'a mut Memo,
     saved: [Separation; 3],
@@ -51,7 +51,7 @@ impl<'a> NonlinearPair<'a> {
         mut state: Separation,
         memo: &'a mut Memo,
     ) -> Self {
-        // The slope along the line is not that across it, so even without a rest length it has an axis.
+        // A law's slope along the line differs from that across it, so it is not isotropic even at zero rest length.
         state.stiff_damper = true;
         Self {
             pair,
@@ -63,7 +63,7 @@ impl<'a> NonlinearPair<'a> {
         }
     }
 
-    /// Energy of the motion about the common centre of mass, in the outside forces, and stored, J.
+    /// Energy about the common centre of mass, J: kinetic, stored, and potential in the external forces.
     pub(crate) fn energy(&self) -> f64 {
         let Separation { d, v, .. } = self.state;
         let motion = 0.5 * v.length_squared() - self.pair.outside.dot(d);
@@ -74,7 +74,7 @@ impl<'a> NonlinearPair<'a> {
         self.pair.rest_length
     }
 
-    /// Whether the law is smooth from here to a length.
+    /// Whether the law has no kink between two lengths, and damping is light at both.
     fn is_smooth(&self, from: f64, to: f64, rate: f64, step: f64) -> bool {
         let (law, rest) = (self.law, self.rest_length());
         let weight = self.pair.inverse_mass * step;
@@ -85,8 +85,8 @@ impl<'a> NonlinearPair<'a> {
             && law.drag(to, rest, rate).slope * weight < LIGHT
     }
 
-    /// Whether a step resolves the stiffness wherever the present energy can take the motion: going to and
-    /// fro between the two ways of stepping would heap up the sway of the one.
+    /// Whether a step resolves the stiffness at all lengths that the motion can reach with its present energy. Frequent
+    /// changes between both kinds of step would accumulate the energy oscillations of the kick.
     fn is_resolved_in_reach(&self, step: f64) -> bool {
         let (law, pair, rest) = (self.law, self.pair, self.rest_length());
         let weight = pair.inverse_mass * step * step;
@@ -105,14 +105,15 @@ impl<'a> NonlinearPair<'a> {
             if stored >= most || stored <= 0.0 {
                 break;
             }
-            // Exact for the power of four, half of the way in its logarithm for that of two.
+            // Exact if the stored energy grows with the fourth power of the reach. If it grows with the second power, half of
+            // the error of the logarithm remains.
             reach *= (most / stored).sqrt().sqrt();
         }
         let limit = if law.is_bent() { BENT } else { SMOOTH };
         stiffest * weight < limit
     }
 
-    /// The whole time in energy-keeping steps, as fine as they come.
+    /// Advances by `time` seconds in the greatest number of energy-conserving steps.
     pub(super) fn keep_energy(&mut self, time: f64) {
         for _ in 0..PARTS[1] as u32 {
             self.keep_energy_through(time / PARTS[1]);
@@ -142,7 +143,7 @@ impl<'a> NonlinearPair<'a> {
         }
     }
 
-    /// Velocity map, drift, kick, drift, velocity map.
+    /// Takes a micro-step: velocity map, half drift, kick, half drift, velocity map.
     fn kick_through(&mut self, step: f64) {
         self.map(step, |axial, offset, speed| (axial - offset) / speed);
         self.state.d += 0.5 * step * self.state.v;
@@ -178,13 +179,13 @@ impl<'a> NonlinearPair<'a> {
         let poles = self
             .memo
             .poles(elastic.stiffness * weight * step, damped / 2.0);
-        // The damper alone, by its slope, is solved exactly: x(1 − e^(−s))/s for a force x of slope s.
+        // A damper alone is solved exactly for its present slope: x(1 − e^(−s))/s for a force x of slope s.
         let braked = drag.force * pair.inverse_mass * decay_ratio(damped);
         let total = -poles.restoring * (elastic.force * pair.inverse_mass - outside) - braked;
         self.state.v += step * (total - outside) * line.direction + step * pair.outside;
     }
 
-    /// Between the true axial velocity and the stepped one, as in [`super::pair`].
+    /// Maps the axial velocity between the true and the stepped motion, as in [`super::pair`].
     fn map(&mut self, step: f64, to: impl Fn(f64, f64, f64) -> f64) {
         let Some(line) = self.pair.line(&self.state) else {
             return;
@@ -204,13 +205,13 @@ impl<'a> NonlinearPair<'a> {
     fn poles_at(&mut self, line: &Line, step: f64) -> Poles {
         let weight = self.pair.inverse_mass * step;
         let elastic = self.law.elastic(line.length, self.rest_length());
-        // A slope that changes with the speed would be another one after the map.
+        // Only linear damping, because a slope that depends on speed would differ before and after the map.
         let damping = self.law.drag.linear().unwrap_or(0.0);
         self.memo
             .poles(elastic.stiffness * weight * step, damping * weight / 2.0)
     }
 
-    /// One step whose mean force does the work of the law's energy.
+    /// Takes one step whose mean force does the work of the law's energy.
     fn keep_energy_through(&mut self, step: f64) {
         let from = self.state.d.length();
         let to = self.length_after(from, step);
@@ -221,14 +222,15 @@ impl<'a> NonlinearPair<'a> {
         self.note_side();
     }
 
-    /// Half the step's pull towards the centre for each unit of the mean separation.
+    /// Displacement towards end A by the step's mean force, as a share of the sum of the separations at both ends of the step.
+    /// `from` and `to` are the lengths there.
     fn share(&self, from: f64, to: f64, step: f64) -> f64 {
         let (law, rest) = (self.law, self.rest_length());
         let middle = 0.5 * (from + to);
         let rate = (to - from) / step;
         let mean = law.mean_force([from, to], rest);
         let mut drag = law.drag(middle, rest, rate).force;
-        // As in `poles`: what rounding of the engine's f32 stirs up in unresolved motion has to settle.
+        // As in `poles`, unresolved motion is damped a little, because rounding of the engine's f32 excites it.
         let slope = law.elastic(middle, rest).stiffness;
         let z = slope * self.pair.inverse_mass * step * step;
         let unresolved = (1.0 - RESOLVED_PHASE * RESOLVED_PHASE / z).max(0.0);
@@ -244,7 +246,7 @@ impl<'a> NonlinearPair<'a> {
         (free - sigma * d) / weight.abs().max(1e-12).copysign(weight)
     }
 
-    /// The length at which the step's mean force leads to that very length.
+    /// Length at the end of the step, m. The mean force depends on it, so the equation is solved by iteration.
     fn length_after(&self, from: f64, step: f64) -> f64 {
         let miss = |to: f64| self.after(self.share(from, to, step), step).length() - to;
         let mut low = (0.0, miss(0.0));
@@ -260,7 +262,7 @@ impl<'a> NonlinearPair<'a> {
                 return free;
             }
         }
-        // Illinois: false position that halves the weight of an end that stays.
+        // Illinois method: false position that halves the weight of an end that stays.
         let mut stayed = 0;
         for _ in 0..TRIES {
             let width = high.0 - low.0;
@@ -308,7 +310,7 @@ impl Motion for NonlinearPair<'_> {
         self.state = self.saved[slot];
     }
 
-    /// One: it takes finer ones by itself where it needs them.
+    /// Returns one, because a micro-step takes finer steps itself where it needs them.
     fn least(&mut self, _: f64, _: u32) -> Least {
         Least {
             count: 1,
@@ -339,7 +341,7 @@ impl Motion for NonlinearPair<'_> {
         self.state.towards(&self.saved[slot]);
     }
 
-    /// The combination needs a smooth motion.
+    /// Whether the motion is smooth, as extrapolation requires.
     fn is_resolved(&mut self, step: f64) -> bool {
         let Some(line) = self.pair.line(&self.state) else {
             return false;

@@ -1,5 +1,6 @@
-//! Four lone elements at a time, from their bodies' places to what these are to be given: to the last bit what
-//! [`super::moving`] and [`super::delivery`] make of each. One after the other they would wait for their roots and divisions.
+//! Solves four lone elements at a time with vector instructions, from the state of their bodies to what the engine must give
+//! them. The results are bitwise those of [`super::moving`] and [`super::delivery`] for each element. One element after
+//! another would take longer, because each must wait for its square roots and divisions.
 
 mod run;
 mod vectors;
@@ -13,19 +14,20 @@ use run::Run;
 pub(crate) use vectors::LANES;
 use vectors::{Each, EachVector, Four, Vectors, get, put, rounding};
 
-/// Numbers of four elements.
+/// Four elements, one in each lane, and their results.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Lanes {
     ends: [Ends; 2],
-    /// N/m.
+    /// Stiffness, N/m.
     stiffness: Each,
-    /// m.
+    /// Rest length, m.
     rest_length: Each,
+    /// The fields of [`Poles`], in their order.
     poles: [Each; 4],
     reached: Outcome,
 }
 
-/// Four points at one end of them each.
+/// The points at one end of the four elements.
 #[derive(Clone, Debug, Default)]
 struct Ends {
     position: EachVector,
@@ -34,7 +36,7 @@ struct Ends {
     inverse_mass: Each,
 }
 
-/// What has become of the four.
+/// Result for the four elements.
 #[derive(Clone, Debug, Default)]
 struct Outcome {
     direction: EachVector,
@@ -42,20 +44,20 @@ struct Outcome {
     /// Energy lost, J.
     heat: Each,
     given: [Pushes; 2],
-    /// Lanes in which nothing special was met, bit by bit.
+    /// Bit mask of the lanes without a special case.
     plain: u32,
 }
 
-/// What four ends are to be given: a velocity at the start of the step, and a force over it.
+/// What one end of the four elements must be given: velocities at the start of the step (m/s), and forces over it (N).
 #[derive(Clone, Debug, Default)]
 struct Pushes {
     velocity: EachVector,
     force: EachVector,
-    /// Work of the point on its element, where that does not move it, J.
+    /// Work of the point on its element, J; for points that their element does not move.
     work: Each,
 }
 
-/// What has become of one.
+/// Result for one element.
 pub(crate) struct Way {
     pub direction: DVec3,
     pub length: f64,
@@ -63,27 +65,27 @@ pub(crate) struct Way {
     pub heat: f64,
 }
 
-/// What one of its ends is to be given.
+/// What one end of an element must be given: a velocity at the start of the step (m/s), and a force over it (N).
 pub(crate) struct EndPush {
     pub velocity: Vec3,
     pub force: Vec3,
-    /// Work of the point on the element, where that does not move it, J.
+    /// Work of the point on the element, J; for a point that the element does not move.
     pub work: f64,
 }
 
-/// The step that all four take.
+/// The step of all four elements.
 #[derive(Clone, Copy)]
 pub(crate) struct Stride {
     pub schedule: Schedule,
-    /// Micro-steps.
+    /// Number of micro-steps.
     pub count: u32,
     /// The engine's cap on speeds, m/s.
     pub fastest: f64,
 }
 
 impl Lanes {
-    /// Takes one in. It has a rest length above zero, its step is resolved and no strong damper in it: see
-    /// `plain_poles`.
+    /// Puts an element into a lane. It must have a rest length above zero and no strong damper, and the step must resolve
+    /// it; see `plain_poles`.
     #[inline(always)]
     pub(crate) fn take_in(
         &mut self,
@@ -112,7 +114,7 @@ impl Lanes {
         }
     }
 
-    /// The points that were taken in.
+    /// Returns the points of the element in a lane.
     pub(crate) fn points(&self, lane: usize) -> [FreePoint; 2] {
         self.ends.each_ref().map(|ends| FreePoint {
             position: get(&ends.position, lane),
@@ -122,8 +124,8 @@ impl Lanes {
         })
     }
 
-    /// What has become of one; none if that is not for here: its ends met on the way, or the engine would not fly a body so
-    /// fast.
+    /// Returns the result for a lane. None for a special case that must be solved elsewhere: the ends met on the way, or a
+    /// body may exceed the engine's cap on speeds.
     #[inline(always)]
     pub(crate) fn way(&self, lane: usize) -> Option<Way> {
         let Outcome {
@@ -140,7 +142,7 @@ impl Lanes {
         })
     }
 
-    /// What one of its ends is to be given.
+    /// Returns what one end of the element in a lane must be given.
     #[inline(always)]
     pub(crate) fn push(&self, lane: usize, end: usize) -> EndPush {
         let Pushes {
@@ -155,7 +157,7 @@ impl Lanes {
         }
     }
 
-    /// Takes all of them over the step, with what reckons with vectors.
+    /// Advances all four elements by the step, with the vector instructions of `simd`.
     #[inline(always)]
     pub(crate) fn run<S: Simd>(&mut self, simd: S, stride: &Stride) {
         let time = stride.schedule.time;
@@ -191,7 +193,7 @@ impl Lanes {
         };
         let end = run.go(d, v, length);
         let heat = store.energy(d, v, length) - store.energy(end.d, end.v, end.length);
-        // What the element adds to the free motion of the separation.
+        // Displacement and velocity that the elements add to the free motion of the separations.
         let all_time = all(time);
         let drifted = v.plus(outside.times(all(0.5 * time)));
         let moved = end.d.minus(d).minus(drifted.times(all_time));
@@ -208,7 +210,7 @@ impl Lanes {
     }
 }
 
-/// Does work with the widest vectors that the processor has, of those that have four lanes.
+/// Runs `work` with the best vector instructions of the processor that have four lanes.
 pub(crate) fn widest(work: impl WithSimd<Output = ()>) {
     #[cfg(target_arch = "x86_64")]
     if let Some(simd) = pulp::x86::V3::try_new() {
@@ -217,7 +219,7 @@ pub(crate) fn widest(work: impl WithSimd<Output = ()>) {
     work.with_simd(pulp::Scalar256b);
 }
 
-/// What tells energies.
+/// Constants of the elements' energies.
 struct Store<S: Simd> {
     half: Four<S>,
     stiffness: Four<S>,
@@ -227,7 +229,7 @@ struct Store<S: Simd> {
 }
 
 impl<S: Simd> Store<S> {
-    /// Of the motion about the common centres of mass, in the outside forces, and stored, J.
+    /// Energy about the common centres of mass, J: kinetic, stored, and potential in the external forces.
     #[inline(always)]
     fn energy(&self, d: Vectors<S>, v: Vectors<S>, length: Four<S>) -> Four<S> {
         let stretch = length - self.rest_length;
@@ -236,7 +238,7 @@ impl<S: Simd> Store<S> {
     }
 }
 
-/// Four points at one end.
+/// The points at one end of the four elements, loaded as vectors.
 #[derive(Clone, Copy)]
 struct Loaded<S: Simd> {
     position: Vectors<S>,
@@ -256,9 +258,10 @@ impl<S: Simd> Loaded<S> {
         }
     }
 
-    /// What takes them along, if elements add so much to the free motion of the separation, and how fast that is then. This
-    /// end's share goes by its mass, with a sign; `mass` is that of the pair. Returns the lanes in which they stay slower than
-    /// the engine lets them, bit by bit. See `is_within` and [`Schedule::reach`].
+    /// Computes the pushes of the points if the elements add the displacement `moved` and the velocity `sped` to the free
+    /// motion of the separations. `sign` is −1 at end A and 1 at end B, `mass` the effective mass of each pair. A point's
+    /// share is its inverse mass times `mass`. Returns the bit mask of the lanes in which the points certainly stay below the
+    /// engine's cap on speeds. See `is_within` and [`Schedule::reach`].
     #[inline(always)]
     fn push(
         &self,
@@ -288,15 +291,15 @@ impl<S: Simd> Loaded<S> {
         let jump = jump.times(all(per_rest));
         let rate = change.minus(jump).times(all(schedule.per_time));
         let begun = self.velocity.plus(jump);
-        // With a third of the cap at the start, and no more than that to gain, it is not met anywhere; else it is looked at
-        // more closely elsewhere. Four that are none are beyond it too.
+        // If the speed at the start and the gain are at most a third of the cap each, the cap is never reached. Other lanes
+        // are special cases and checked exactly elsewhere, and so are lanes with NaN.
         let third = all(fastest * fastest / 9.0);
         let gain = rate.times(time);
         let slow = begun.dot(begun).at_most(third) & gain.dot(gain).at_most(third);
-        // What nothing moves here, nothing flies too fast.
+        // The cap does not matter for points that the elements do not move.
         let still = self.inverse_mass.at_most(all(0.0));
         let given = begun.rounded();
-        // The engine's velocity is rounded; the force makes up for it.
+        // The engine stores velocities in single precision. The force corrects the rounding error.
         let rate = rate.plus(begun.minus(given).times(all(schedule.per_time)));
         let mass = all(1.0) / self.inverse_mass;
         let force = rate.minus(self.acceleration).times(mass);

@@ -1,38 +1,39 @@
-//! The plain micro-steps of [`crate::dynamics::pair`], each operation on four elements at once.
+//! The micro-steps of [`crate::dynamics::pair`] for four plain elements at once.
 
 use super::vectors::{Four, Mask, Vectors};
 use pulp::Simd;
 
-/// Constants of a run.
+/// Constants of the four elements and their micro-steps.
 pub(super) struct Run<S: Simd> {
     pub simd: S,
-    /// Of one micro-step, s.
+    /// Duration of a micro-step, s.
     pub step: f64,
-    /// How many.
+    /// Number of micro-steps.
     pub count: u32,
+    /// Acceleration of end B minus that of end A from everything but the element, m/s².
     pub outside: Vectors<S>,
     pub rest_length: Four<S>,
-    /// ω².
+    /// ω², 1/s².
     pub square: Four<S>,
-    /// The poles' [`restoring`, `loss`, `speed`, `skew`](crate::dynamics::poles::Poles).
+    /// Coefficients [`restoring`, `loss`, `speed`, `skew`](crate::dynamics::poles::Poles).
     pub poles: [Four<S>; 4],
-    /// Separation below which it is rounding.
+    /// Separation up to which the ends count as coincident, because it may be rounding, m.
     pub rounding: Four<S>,
 }
 
-/// What four separations have come to.
+/// State of the four separations after the step.
 pub(super) struct Reached<S: Simd> {
     pub d: Vectors<S>,
     pub v: Vectors<S>,
-    /// Unit vectors along them,
+    /// Unit vectors along the separations.
     pub side: Vectors<S>,
-    /// and their lengths.
+    /// Lengths of the separations, m.
     pub length: Four<S>,
-    /// Lanes whose ends came so close that the direction between them is rounding.
+    /// Lanes whose ends came so close that they counted as coincident.
     pub met: Mask<S>,
 }
 
-/// The lines at an instant: see `pair::Line`.
+/// The lines at an instant; see `pair::Line`.
 struct Lines<S: Simd> {
     length: Four<S>,
     axial: Four<S>,
@@ -78,14 +79,14 @@ impl<S: Simd> Run<S> {
         flips.select(lines.axial, (length - before.copysign(along)) / step)
     }
 
-    /// What the elements have yet to answer at these lengths.
+    /// ω²·stretch − a_out at the lengths; see `kick::residual_acceleration`.
     #[inline(always)]
     fn residual_acceleration(&self, length: Four<S>, outside: Four<S>) -> Four<S> {
         self.square * (length - self.rest_length) - outside
     }
 
-    /// Takes all of them over the step. In one piece, for it is the recipe of `Moving`, line by line: a test holds them to the
-    /// same bits.
+    /// Takes all micro-steps. It is one function because it follows the code of `Pair::microsteps` line by line. A test
+    /// requires bitwise equal results.
     #[inline(always)]
     pub(super) fn go(
         &self,
@@ -101,7 +102,7 @@ impl<S: Simd> Run<S> {
         let [restoring, loss, speed, skew] = run.poles;
         let per_step = loss / step;
 
-        // To the stepped velocities.
+        // Map to the stepped velocities.
         let mut met = length.at_most(rounding);
         let mut side = d.times(self.all(1.0) / length);
         let lines = run.along(v, side, length);
@@ -134,7 +135,7 @@ impl<S: Simd> Run<S> {
             met = met | length.at_most(rounding);
             side = d.times(self.all(1.0) / length);
         }
-        // And back to the true ones.
+        // Map back to the true velocities.
         let lines = run.along(v, side, length);
         let outside = lines.pushed + run.turning(length, lines.lateral_square);
         let offset = skew * step * run.residual_acceleration(length, outside);

@@ -1,16 +1,16 @@
-//! Four numbers, and four vectors, side by side, as the processor can.
+//! Four numbers or four vectors side by side, for the processor's vector instructions.
 
 use bevy::math::DVec3;
 use pulp::Simd;
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Sub};
 
-/// Elements side by side.
+/// Number of elements side by side.
 pub(crate) const LANES: usize = 4;
 
 /// One number for each lane.
 pub(super) type Each = [f64; LANES];
 
-/// One vector for each lane, axis by axis.
+/// One vector for each lane, stored axis by axis.
 pub(super) type EachVector = [Each; 3];
 
 /// Puts a vector into a lane.
@@ -21,17 +21,17 @@ pub(super) fn put(into: &mut EachVector, lane: usize, vector: DVec3) {
     }
 }
 
-/// Takes one out.
+/// Returns the vector in a lane.
 #[inline(always)]
 pub(super) fn get(from: &EachVector, lane: usize) -> DVec3 {
     DVec3::new(from[0][lane], from[1][lane], from[2][lane])
 }
 
-/// Four numbers, and what reckons with them. Its vectors of numbers must have four lanes.
+/// Four numbers, and the instruction set for them, whose vectors must have four lanes.
 #[derive(Clone, Copy)]
 pub(super) struct Four<S: Simd>(S::f64s, S);
 
-/// Of each of four, whether it is so.
+/// A condition for each lane.
 #[derive(Clone, Copy)]
 pub(super) struct Mask<S: Simd>(S::m64s, S);
 
@@ -46,7 +46,7 @@ impl<S: Simd> Four<S> {
         pulp::cast(self.0)
     }
 
-    /// The same number four times.
+    /// The same number in all lanes.
     #[inline(always)]
     pub(super) fn all(simd: S, number: f64) -> Self {
         Self(simd.splat_f64s(number), simd)
@@ -74,7 +74,7 @@ impl<S: Simd> Four<S> {
         Self(simd.or_f64s(simd.abs_f64s(self.0), bit), simd)
     }
 
-    /// Where this is at most the other: not where either is no number.
+    /// Whether each number is at most the other; false where either is NaN.
     #[inline(always)]
     pub(super) fn at_most(self, other: Self) -> Mask<S> {
         let so = self.1.less_than_or_equal_f64s(self.0, other.0);
@@ -83,13 +83,13 @@ impl<S: Simd> Four<S> {
 }
 
 impl<S: Simd> Mask<S> {
-    /// The one number where it is so, the other where it is not.
+    /// Returns `yes` in lanes where the condition holds, and `no` in the others.
     #[inline(always)]
     pub(super) fn select(self, yes: Four<S>, no: Four<S>) -> Four<S> {
         Four(self.1.select_f64s(self.0, yes.0, no.0), self.1)
     }
 
-    /// Bit by bit.
+    /// The conditions as a bit mask.
     #[inline(always)]
     pub(super) fn bits(self) -> u32 {
         let [one, nothing] = [1.0, 0.0].map(|x| Four::all(self.1, x));
@@ -192,7 +192,7 @@ impl<S: Simd> Vectors<S> {
     }
 }
 
-/// Distance of two points below which it may be rounding of the engine's f32; see [`crate::dynamics::element::rounding`].
+/// Distance up to which two points count as coincident, m; see [`crate::dynamics::element::rounding`].
 #[inline(always)]
 pub(super) fn rounding<S: Simd>(simd: S, a: Vectors<S>, b: Vectors<S>) -> Four<S> {
     let largest = |v: Vectors<S>| {

@@ -1,36 +1,36 @@
-//! How a damper's force depends on speed.
+//! Damping laws: the force of a damper as a function of speed.
 
 use super::Function;
 use super::table::Table;
 use std::sync::Arc;
 
-/// Tension (N) for a rate of the length (m/s). Has the sign of the rate.
+/// Tension (N) as a function of the rate of the length (m/s). It has the sign of the rate.
 #[derive(Clone, Debug)]
 pub(crate) enum DragLaw {
-    /// N s/m.
+    /// Damping, N s/m.
     Linear(f64),
-    /// N s/m while the length shrinks and while it grows.
+    /// Damping while the length shrinks (`bump`) and while it grows (`rebound`), N s/m.
     Sided { bump: f64, rebound: f64 },
-    /// N s/m and N s²/m².
+    /// Linear damping (N s/m) and quadratic damping (N s²/m²).
     Quadratic { linear: f64, quadratic: f64 },
-    /// N s/m up to a speed (m/s) and beyond it.
+    /// Slope up to the speed `knee` (m/s) and beyond it, N s/m.
     BlowOff {
         damping: f64,
         knee: f64,
         beyond: f64,
     },
-    /// Over the rate.
+    /// Table of tension over rate.
     Table(Arc<Table>),
-    /// A user's own.
+    /// A custom function of the user.
     Custom(Arc<dyn Function>),
 }
 
 /// A damping force and its slope.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Drag {
-    /// N, tension positive.
+    /// Force, N; tension is positive.
     pub force: f64,
-    /// N s/m, not negative.
+    /// Slope over the rate, N s/m; not negative.
     pub slope: f64,
 }
 
@@ -64,7 +64,7 @@ impl DragLaw {
             }
             Self::Custom(function) => (function.force(rate), function.slope(rate)),
         };
-        // A damper never drives.
+        // A damper must not add energy.
         if force * rate < 0.0 {
             return Drag::default();
         }
@@ -74,7 +74,7 @@ impl DragLaw {
         }
     }
 
-    /// The one coefficient it has, if that is all.
+    /// Damping of a linear law, N s/m; `None` for other laws.
     pub(crate) fn linear(&self) -> Option<f64> {
         match self {
             Self::Linear(damping) => Some(*damping),

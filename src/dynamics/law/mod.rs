@@ -1,8 +1,8 @@
-//! Force laws beyond the linear one: what an element's tension is for a length and its rate.
+//! Force laws beyond the linear one: an element's tension as a function of its length and rate.
 //!
-//! All of it derives from one energy that is bounded below, and a drag that only takes: that is what the
-//! integrators rely on. The spring's force is clamped between a least and a greatest one (rope, buffer, force
-//! limit); stops at the ends of the travel come on top.
+//! The elastic part derives from an energy that is bounded below, and damping only removes energy. The integrators rely on
+//! both. The spring's force is clamped between a least and a greatest one (rope, buffer, force limit). Stops at the ends of
+//! the travel add to it.
 
 mod drag;
 mod pieces;
@@ -14,36 +14,37 @@ pub(crate) use table::Table;
 use std::fmt::Debug;
 use std::sync::Arc;
 
-/// A function of a user's own: force over stretch or over rate.
+/// A custom function of the user: force over stretch or over rate.
 pub(crate) trait Function: Send + Sync + Debug {
     fn force(&self, x: f64) -> f64;
     fn slope(&self, x: f64) -> f64;
-    /// Integral of the force from 0.
+    /// Integral of the force from 0 to `x`.
     fn integral(&self, x: f64) -> f64;
 }
 
-/// Stretch beyond which a law's limit is not looked for, m. Pinned by `a_spring_that_is_beyond_its_limit_everywhere_has_the_limit`.
+/// Stretch at which the search for a law's limit ends, m. Pinned by
+/// `a_spring_that_is_beyond_its_limit_everywhere_has_the_limit`.
 const FARTHEST: f64 = 1e9;
 
-/// Tension (N) of a spring for a stretch (m), before clamps.
+/// Tension (N) of a spring as a function of its stretch (m), before clamps.
 #[derive(Clone, Debug)]
 pub(crate) enum SpringForce {
-    /// Coefficients of x, x|x| and x³, for pull and for push.
+    /// Coefficients of x, x|x| and x³, for pull (x ≥ 0) and for push (x < 0).
     Polynomial { pull: [f64; 3], push: [f64; 3] },
-    /// Over the stretch.
+    /// Table of tension over stretch.
     Table(Arc<Table>),
-    /// A user's own.
+    /// A custom function of the user.
     Custom(Arc<dyn Function>),
 }
 
-/// A stop at an end of the travel: force k p (1 + progression · p) for a penetration p.
+/// A stop at an end of the travel, with the force k p (1 + progression · p) at a penetration p.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Stop {
-    /// N/m.
+    /// Stiffness k at first touch, N/m.
     pub stiffness: f64,
-    /// 1/m.
+    /// Increase of stiffness with penetration, 1/m.
     pub progression: f64,
-    /// N s/m.
+    /// Damping while touched, N s/m.
     pub damping: f64,
 }
 
@@ -52,44 +53,44 @@ pub(crate) struct Stop {
 pub(crate) struct Law {
     spring: SpringForce,
     pub drag: DragLaw,
-    /// Constant tension that is added, N.
+    /// Constant tension that is added to the spring's, N.
     preload: f64,
-    /// Least and greatest tension of the spring, and the stretches from where on they hold: infinite where that is nowhere, or
-    /// everywhere.
+    /// Least and greatest tension of the spring, N.
     limits: [f64; 2],
+    /// Stretches at which the limits begin, m; infinite if a limit applies nowhere or everywhere.
     at_limits: [f64; 2],
     /// Least and greatest length before the stops, m.
     travel: [f64; 2],
     stop: Stop,
-    /// Integral of the spring's force up to where it has none, which counts as no stored energy.
+    /// Integral of the spring's force up to the stretch without force, J. There the stored energy is zero by definition.
     reference: f64,
-    /// Greatest tension of spring and damper together, N.
+    /// Greatest force of spring and damper together, N.
     most: f64,
-    /// A damper alone is never slack.
+    /// Whether there is neither spring nor preload. Such a damper is never slack.
     springless: bool,
 }
 
-/// What a law is made of.
+/// The parameters of a law; see [`Law`].
 #[derive(Clone, Debug)]
 pub(crate) struct Recipe {
     pub spring: SpringForce,
     pub drag: DragLaw,
     pub preload: f64,
-    /// Least and greatest tension of the spring: 0 on one side for ropes and buffers.
+    /// Least and greatest tension of the spring, N. One of them is 0 for ropes and buffers.
     pub limits: [f64; 2],
     pub most: f64,
     pub travel: [f64; 2],
     pub stop: Stop,
 }
 
-/// A spring's tension at a length.
+/// A spring's tension and stored energy at a length.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Elastic {
-    /// N.
+    /// Tension, N.
     pub force: f64,
-    /// Its slope, N/m, not negative.
+    /// Slope of the tension, N/m; not negative.
     pub stiffness: f64,
-    /// Stored, J.
+    /// Stored energy, J.
     pub energy: f64,
 }
 
@@ -118,14 +119,14 @@ impl SpringForce {
         }
     }
 
-    /// Whether its slope leaps at zero stretch.
+    /// Whether the slope jumps at zero stretch.
     fn is_bent(&self) -> bool {
         matches!(self, Self::Polynomial { pull, push } if pull[0] != push[0])
     }
 }
 
 impl Stop {
-    /// Force and stored energy for a penetration.
+    /// Force, stiffness and stored energy at a penetration `p`, m.
     fn at(&self, p: f64) -> Elastic {
         if p <= 0.0 {
             return Elastic::default();
@@ -140,7 +141,7 @@ impl Stop {
 }
 
 impl Law {
-    /// The law of an element without one: stiffness (N/m) and damping (N s/m).
+    /// The law of a linear element with a stiffness (N/m) and a damping (N s/m).
     pub(crate) fn linear(stiffness: f64, damping: f64) -> Self {
         let coefficients = [stiffness, 0.0, 0.0];
         let unlimited = [f64::NEG_INFINITY, f64::INFINITY];
@@ -188,7 +189,7 @@ impl Law {
         law
     }
 
-    /// Spring and preload, without clamps.
+    /// Spring and preload without clamps, at the stretch `x`.
     fn bare(&self, x: f64) -> Elastic {
         let mut bare = self.spring.at(x);
         bare.force += self.preload;
@@ -196,7 +197,8 @@ impl Law {
         bare
     }
 
-    /// The stretch at which the rising force reaches a value: −∞ where it is above it at every stretch, ∞ where it is below.
+    /// Stretch at which the rising force of spring and preload reaches `force`, m: −∞ if it is greater at every stretch, ∞ if
+    /// it is less at every stretch.
     fn stretch_for(&self, force: f64) -> f64 {
         if !force.is_finite() {
             return force;
@@ -225,15 +227,15 @@ impl Law {
         high
     }
 
-    /// The spring alone, clamped, its energy counted from the first point of the bare one's.
+    /// Spring and preload, clamped, at the stretch `x`. The energy has the same zero as that of [`Self::bare`].
     fn spring_at(&self, x: f64) -> Elastic {
         let within = x.clamp(self.at_limits[0], self.at_limits[1]);
         if within == x {
             return self.bare(x);
         }
-        // The force there is the limit but for rounding, and slack is no force at all.
+        // Exactly the limit, which `bare` gives only up to rounding: a slack rope must have exactly no force.
         let force = self.limits[usize::from(x > within)];
-        // Beyond its limit everywhere, it has no stretch from where on that holds: it stores as any constant force does.
+        // If the spring is beyond its limit at every stretch, its force is constant. Its energy then counts from zero stretch.
         let (edge, stored) = if within.is_finite() {
             (within, self.bare(within).energy)
         } else {
@@ -246,7 +248,7 @@ impl Law {
         }
     }
 
-    /// What the spring alone would have without its limits, where they cut its force to `cut`.
+    /// Tension of spring and preload without limits, where a limit cuts it to `cut`; elsewhere `cut`, N.
     fn uncut(&self, x: f64, cut: f64) -> f64 {
         if x > self.at_limits[1] {
             self.bare(x).force.max(cut)
@@ -257,7 +259,7 @@ impl Law {
         }
     }
 
-    /// Tension without damping.
+    /// Tension of spring and stops without damping, and their stored energy.
     pub(crate) fn elastic(&self, length: f64, rest_length: f64) -> Elastic {
         let mut sum = self.spring_at(length - rest_length);
         sum.energy -= self.reference;
@@ -269,7 +271,7 @@ impl Law {
         sum
     }
 
-    /// The mean tension between two lengths: the one that does exactly the work of the energy.
+    /// Mean tension between two lengths, N. Its work is exactly the change of stored energy.
     pub(crate) fn mean_force(&self, [from, to]: [f64; 2], rest_length: f64) -> f64 {
         if (to - from).abs() > 1e-7 * (from.abs() + to.abs()) {
             let [a, b] = [from, to].map(|length| self.elastic(length, rest_length).energy);
@@ -279,7 +281,7 @@ impl Law {
         }
     }
 
-    /// Forces of the stops at least and at greatest length, with their signs as tensions.
+    /// Forces of the stops at the least and the greatest length, with the signs of their tensions.
     fn stops(&self, length: f64) -> [(Elastic, f64); 2] {
         [
             (self.stop.at(self.travel[0] - length), -1.0),
@@ -287,16 +289,16 @@ impl Law {
         ]
     }
 
-    /// Whether it can take energy at all.
+    /// Whether the law can remove energy.
     pub(crate) fn damps(&self) -> bool {
         self.drag.linear() != Some(0.0) || self.stop.damping > 0.0
     }
 
-    /// Tension that damping adds.
+    /// Tension from damping, and its slope.
     pub(crate) fn drag(&self, length: f64, rest_length: f64, rate: f64) -> Drag {
         let mut sum = Drag::default();
         let spring = self.spring_at(length - rest_length).force;
-        // A slack rope does not damp, and no damper makes one push.
+        // A slack rope does not damp, and its damper cannot make it push.
         let one_way = self.limits[0] == 0.0 || self.limits[1] == 0.0;
         let slack = one_way && spring == 0.0 && !self.springless;
         if !slack {
@@ -311,8 +313,8 @@ impl Law {
             } else {
                 self.most
             };
-            // Their sum is cut, as a clutch that slips does: where the spring alone is past the limit, a damper that is weaker
-            // than what it has too much changes nothing. A cut keeps order, so this never drives.
+            // The limit applies to the sum, as in a slipping clutch. If the spring alone exceeds it by more than the damper's
+            // force, the damper has no effect. Clamping is monotone, so the damping force never adds energy.
             let total = self.uncut(length - rest_length, spring) + sum.force;
             if total < least || total > greatest {
                 let clamped = total.clamp(least, greatest) - spring;
@@ -324,7 +326,7 @@ impl Law {
             if stop.force <= 0.0 {
                 continue;
             }
-            // A stop holds nobody back who leaves it.
+            // A stop cannot pull. Where damping would exceed its force, the two cancel.
             let pressed = stop.force + sign * self.stop.damping * rate;
             if pressed > 0.0 {
                 sum.force += self.stop.damping * rate;
@@ -336,13 +338,13 @@ impl Law {
         sum
     }
 
-    /// Whether its slope leaps anywhere.
+    /// Whether the slope jumps anywhere.
     pub(crate) fn is_bent(&self) -> bool {
         let ends = self.at_limits.iter().chain(&self.travel);
         self.spring.is_bent() || ends.into_iter().any(|x| x.is_finite())
     }
 
-    /// Which of its smooth parts a length is in: between two lengths with the same answer nothing is kinked.
+    /// Bit mask of the smooth part of the law that contains a length. Between two lengths with the same mask there is no kink.
     pub(crate) fn part(&self, length: f64, rest_length: f64) -> u8 {
         let x = length - rest_length;
         let past = |condition: bool, bit: u8| u8::from(condition) << bit;
@@ -353,7 +355,7 @@ impl Law {
             | past(length > self.travel[1], 4)
     }
 
-    /// Greatest slope at and between two lengths, as far as its parts show it.
+    /// Greatest slope at and between two lengths, N/m. It is sampled at both, in the middle, and at kinks of the spring.
     pub(crate) fn stiffest(&self, lengths: [f64; 2], rest_length: f64) -> f64 {
         let [low, high] = [lengths[0].min(lengths[1]), lengths[0].max(lengths[1])];
         let inner = [
@@ -363,7 +365,7 @@ impl Law {
         ]
         .map(|length| {
             if length.is_finite() {
-                // Unlike `clamp` it stands NaN, which a motion that diverges within a step can come to.
+                // `clamp` would panic with NaN, which a motion that diverges within a step can produce.
                 length.max(low).min(high)
             } else {
                 low

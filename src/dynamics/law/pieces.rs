@@ -1,10 +1,10 @@
-//! A law as a sum of pieces, each of which is smooth but for the range that it never leaves: the spring, which a rope has
-//! pull only, and the stops, which push only where they are touched.
+//! Splits a law into pieces that continue smoothly beyond the range in which they act: the spring (that of a rope only
+//! pulls), and the stops, which only push where they are touched. [`crate::dynamics::pieces`] uses them.
 
 use super::{Elastic, Law, Stop};
 
 impl Stop {
-    /// As [`Stop::at`], and going on beyond where it is touched as if it held there too.
+    /// Like [`Stop::at`], but continued to where the stop is not touched, as if it were fastened there.
     fn held_at(&self, p: f64) -> Elastic {
         if p >= 0.0 {
             return self.at(p);
@@ -18,17 +18,18 @@ impl Stop {
 }
 
 impl Law {
-    /// The spring with its preload, going on beyond its range.
+    /// Spring and preload, continued beyond the limits.
     pub(crate) fn spring_beyond(&self, length: f64, rest_length: f64) -> Elastic {
         self.bare(length - rest_length)
     }
 
-    /// The length at which the spring's slope leaps, if it does: tables are smooth, and only pull and push may differ.
+    /// Length at which the spring's slope jumps, if it does, m. It only jumps between different stiffnesses of pull and push,
+    /// because tables are smooth.
     pub(crate) fn kink(&self, rest_length: f64) -> Option<f64> {
         self.spring.is_bent().then_some(rest_length)
     }
 
-    /// Lengths between which the spring's force is not cut.
+    /// Lengths between which no limit cuts the spring's force, m.
     pub(crate) fn uncut_between(&self, rest_length: f64) -> [f64; 2] {
         self.at_limits.map(|stretch| rest_length + stretch)
     }
@@ -41,7 +42,8 @@ impl Law {
         ]
     }
 
-    /// How far a length is from the touch of a stop, below or above; none where there is no such stop.
+    /// Distance of a length from the stop at the least or (`above`) the greatest length, m; negative where the stop is touched.
+    /// None if there is no such stop.
     pub(crate) fn to_stop(&self, above: bool, length: f64) -> Option<f64> {
         let away = if above {
             self.travel[1] - length
@@ -51,7 +53,7 @@ impl Law {
         (away.is_finite() && self.stop.stiffness > 0.0).then_some(away)
     }
 
-    /// Tension of a stop, going on beyond its range.
+    /// Tension of a stop, continued to where it is not touched.
     pub(crate) fn stop_beyond(&self, above: bool, length: f64) -> Elastic {
         let mut stop = if above {
             self.stop.held_at(length - self.travel[1])

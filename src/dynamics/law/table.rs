@@ -1,23 +1,22 @@
-//! A monotone curve through points: what a test bench measures.
+//! A monotone curve through points, as a test bench measures them.
 
-/// Piecewise cubic through the points, without overshoot: F. N. Fritsch and R. E. Carlson, "Monotone
-/// piecewise cubic interpolation", SIAM J. Numer. Anal. 17 (1980); beyond them straight on with the slope
-/// of the last piece.
+/// Piecewise cubic curve through the points, without overshoot (F. N. Fritsch and R. E. Carlson, "Monotone piecewise cubic
+/// interpolation", SIAM J. Numer. Anal. 17, 1980). Beyond the points it continues straight with the slope at its ends.
 #[derive(Clone, Debug)]
 pub(crate) struct Table {
     pieces: Vec<Piece>,
     end: f64,
-    /// Value, slope and integral at the end.
+    /// Value, slope and integral at `end`.
     last: [f64; 3],
 }
 
-/// value = a + b t + c t² + d t³ with t from 0 at `from` to 1 after `width`.
+/// value = a + b t + c t² + d t³, where t goes from 0 at `from` to 1 at `from + width`.
 #[derive(Clone, Copy, Debug)]
 struct Piece {
     from: f64,
     width: f64,
     coefficients: [f64; 4],
-    /// Integral from the first point to here.
+    /// Integral from the first point to `from`.
     before: f64,
 }
 
@@ -34,7 +33,7 @@ impl Piece {
 }
 
 impl Table {
-    /// Through two points or more, with strictly rising x and nowhere falling values.
+    /// Curve through at least two points. Their x must strictly rise, and their values must never fall.
     pub(crate) fn new(points: &[(f64, f64)]) -> Self {
         let slopes = slopes(points);
         let mut before = 0.0;
@@ -60,7 +59,7 @@ impl Table {
         Self { pieces, end, last }
     }
 
-    /// Value, slope, and integral from the first point.
+    /// Returns the value, the slope, and the integral from the first point.
     pub(crate) fn at(&self, x: f64) -> [f64; 3] {
         let straight = |[value, slope, integral]: [f64; 3], past: f64| {
             [
@@ -78,7 +77,7 @@ impl Table {
     }
 }
 
-/// Slopes at the points: weighted harmonic means of the pieces' own, which never overshoot.
+/// Slopes at the points: weighted harmonic means of the mean slopes of both neighbouring pieces, which never overshoot.
 fn slopes(points: &[(f64, f64)]) -> Vec<f64> {
     let secant = |i: usize| {
         let (a, b) = (points[i], points[i + 1]);

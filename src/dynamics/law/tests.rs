@@ -12,7 +12,7 @@ fn recipe(pull: [f64; 3], push: [f64; 3]) -> Recipe {
     }
 }
 
-/// Laws with everything that can be combined.
+/// Laws with all combinations of preload, limits and spring.
 fn laws() -> Vec<Law> {
     let stop = Stop {
         stiffness: 500.0,
@@ -146,10 +146,10 @@ fn ropes_never_push_and_buffers_never_pull() {
 fn a_spring_that_is_beyond_its_limit_everywhere_has_the_limit() {
     let endless = f64::INFINITY;
     for (preload, limits, held) in [
-        // A gas strut whose force is limited to less than its preload,
+        // A gas strut whose force is limited to less than its preload, and its opposite.
         (-400.0, [-300.0, 300.0], -300.0),
         (400.0, [-300.0, 300.0], 300.0),
-        // and what may only pull, or only push, and has nothing but a preload the other way.
+        // An element that can only pull, or only push, with nothing but a preload in the other direction.
         (-50.0, [0.0, endless], 0.0),
         (50.0, [-endless, 0.0], 0.0),
     ] {
@@ -164,7 +164,7 @@ fn a_spring_that_is_beyond_its_limit_everywhere_has_the_limit() {
             assert_eq!((now.force, now.stiffness), (held, 0.0), "{law:?}");
             let total = now.force + law.drag(length, 1.0, held.signum()).force;
             assert_eq!(total, held, "{law:?}: no damper adds to it");
-            // Its energy is the work that it does.
+            // The change of its energy is its work.
             let work = law.elastic(length + 0.1, 1.0).energy - now.energy;
             assert!((work - 0.1 * held).abs() < 1e-9, "{law:?}: {work} J");
         }

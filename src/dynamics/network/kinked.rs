@@ -1,13 +1,13 @@
-//! A kick that keeps the energy of laws that bend within the step.
+//! Makes a kick conserve the energy of laws with kinks.
 //!
-//! The mean force over the step is to do the work of the law's energy (D. Greenspan and R. LaBudde, 1974):
+//! The mean force over the step must do the work of the law's energy (D. Greenspan and R. LaBudde, 1974):
 //!
 //! ```text
 //! f = (U(l₁) − U(l₀)) / (l₁ − l₀)
 //! ```
 //!
-//! with the lengths at both ends of the step, of which the last depends on the force. What the linear solve has found
-//! is put right by that, a few times; its matrix stays.
+//! where l₀ and l₁ are the lengths at the start and the end of the step. l₁ depends on the force. So the result of the
+//! linear solve is corrected several times, with the same matrix.
 
 use super::{Network, Row};
 use crate::dynamics::body::Body;
@@ -15,10 +15,11 @@ use crate::dynamics::element::Element;
 use crate::dynamics::line::Line;
 use bevy::math::DVec3;
 
-/// Most rounds of putting right, the share of the greatest force below which nothing more is, and (ω h)² up to which
-/// they surely converge.
+/// Greatest number of corrections.
 const ROUNDS: usize = 6;
+/// Force error at which corrections end, as a share of the greatest force.
 const RIGHT: f64 = 1e-7;
+/// (ω h)² up to which corrections surely converge.
 const CONVERGES: f64 = 1.0;
 
 impl Network {
@@ -37,7 +38,7 @@ impl Network {
                 let Some(mean) = row.mean_force(element, gained, step) else {
                     continue;
                 };
-                // What the solve makes of the gain beyond damping is in the mean force.
+                // The solve itself adds an elastic force for this acceleration, which the mean force already contains.
                 let slope = strut.along - row.damping;
                 let now = mean - slope * gained.dot(row.line.direction);
                 greatest = greatest.max(mean.abs());
@@ -55,8 +56,8 @@ impl Network {
 }
 
 impl Row {
-    /// The force that does the work of the law's energy, for a relative acceleration of the ends; none where the law
-    /// is not kinked.
+    /// Force that does the work of the law's energy for a relative acceleration of the ends, N. None if the law has no kink,
+    /// or if corrections may not converge.
     fn mean_force(&self, element: &Element, gained: DVec3, step: f64) -> Option<f64> {
         let law = element.law.as_ref().filter(|law| law.is_bent())?;
         let before = self.before.axial * self.line.direction + self.before.lateral;
@@ -72,7 +73,7 @@ impl Row {
 }
 
 impl Line {
-    /// Its length where end B is displaced against end A.
+    /// Length if end B is displaced relative to end A, m.
     fn length_at(&self, by: DVec3) -> f64 {
         if self.guided {
             self.length + by.dot(self.direction)

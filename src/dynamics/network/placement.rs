@@ -1,12 +1,12 @@
-//! Where in a step stiffness and damping act.
+//! The times within a step at which stiffness and damping act.
 
 use super::PLACED;
 use crate::dynamics::law::Drag;
 use crate::dynamics::poles::{RESOLVED_PHASE, UNRESOLVED_DECAY};
 use crate::functions::{cos, exp_m1};
 
-/// Damping time, in steps, of stiffness-proportional damping that takes the [`UNRESOLVED_DECAY`] of a lone
-/// element from a mode with z = (ω h)²; less from slower ones.
+/// Ratio of damping to stiffness, in steps, with which a mode with z = (ω h)² has the [`UNRESOLVED_DECAY`] of a lone element.
+/// Slower modes decay less.
 pub(in crate::dynamics) fn settling(z: f64) -> f64 {
     if z <= RESOLVED_PHASE * RESOLVED_PHASE {
         return 0.0;
@@ -14,8 +14,8 @@ pub(in crate::dynamics) fn settling(z: f64) -> f64 {
     2.0 * UNRESOLVED_DECAY * (1.0 - RESOLVED_PHASE * RESOLVED_PHASE / z) / z
 }
 
-/// The slope of a damping force, or where that is steeper the one from zero: a force that flattens out at
-/// speed must not be taken for weak.
+/// Slope of a damping force over the rate, or the slope of the secant from zero if that is steeper, N s/m. A force that
+/// flattens at speed must not count as weak.
 pub(super) fn steep(drag: Drag, rate: f64) -> f64 {
     if rate == 0.0 {
         return drag.slope;
@@ -23,9 +23,9 @@ pub(super) fn steep(drag: Drag, rate: f64) -> f64 {
     drag.slope.max(drag.force / rate)
 }
 
-/// Share of the step at whose end a damper with x = c h/m acts: half, which is of second order, while it
-/// is resolved; beyond that the share with which a lone damper decays exactly, so that strong ones stop
-/// their ends instead of throwing them back and forth.
+/// Time whose velocity determines the force of a damper with x = c h/m, as a share of the step. While the damper is
+/// resolved, it is one half, which is of second order. Beyond, it is the share with which a lone damper decays exactly. Then
+/// a strong damper stops its ends instead of throwing them back and forth.
 pub(in crate::dynamics) fn damper_placement(x: f64) -> f64 {
     if x <= 1.0 {
         0.5
@@ -34,7 +34,7 @@ pub(in crate::dynamics) fn damper_placement(x: f64) -> f64 {
     }
 }
 
-/// θ for a stiffest mode with z = (ω h)².
+/// θ of [`crate::dynamics::network`] for a stiffest mode with z = (ω h)².
 pub(in crate::dynamics) fn placement(z: f64) -> f64 {
     if z <= 1e-3 {
         1.0 / 12.0

@@ -1,4 +1,4 @@
-//! A law's lone element among the bodies of a component: to the separation of its ends, and back.
+//! Converts a lone element with a force law to the separation of its ends, and the result back to its bodies.
 
 use super::NonlinearPair;
 use crate::dynamics::body::{Body, Spin};
@@ -9,16 +9,16 @@ use crate::dynamics::pair::{Pair, Separation};
 use crate::dynamics::tolerance::{Method, Outcome};
 use bevy::math::DVec3;
 
-/// Both ends as points that come apart.
+/// The ends of an element as two points, and their separation.
 pub(crate) struct PairView {
     pair: Pair,
     start: Separation,
-    /// Inverse mass of each end.
+    /// Inverse mass of each end, 1/kg.
     shares: [f64; 2],
 }
 
 impl PairView {
-    /// For an element with a law on bodies that nothing else holds and that it does not turn.
+    /// Returns the view of an element with a law, if no other element holds its bodies and it does not turn them.
     pub(crate) fn of(element: &Element, bodies: &[Body]) -> Option<Self> {
         element.law.as_ref()?;
         let free = |body: &Body| {
@@ -26,7 +26,7 @@ impl PairView {
             body.spin == Spin::Ignored && w.x == w.y && w.y == w.z
         };
         let held = element.ends.iter().filter(|end| !end.is_path()).count();
-        // Bodies of elements that take no part would be left where they are.
+        // If the component has more bodies, those of inert elements, they would not be moved.
         let complete = held == bodies.len() && bodies.iter().all(free);
         if element.guide != Guide::Centres || !complete {
             return None;
@@ -56,7 +56,7 @@ impl PairView {
         })
     }
 
-    /// Takes it through a step as `drive` says.
+    /// Advances the element and its bodies by a step, which `drive` takes.
     pub(crate) fn advance(
         &self,
         element: &mut Element,

@@ -27,7 +27,7 @@ fn polynomial(coefficients: [f64; 3]) -> Recipe {
     }
 }
 
-/// Steps a separation along x; calls back with time, place and speed.
+/// Steps a separation, and calls `see` with time, separation and velocity after each step.
 fn run(
     law: &Law,
     pair: &Pair,
@@ -44,7 +44,7 @@ fn run(
     }
 }
 
-/// Mean period of the stretch about a rest length of 10, by cubic interpolation of its zeros.
+/// Mean period of the stretch about a rest length of 10 m, from its zeros, which are interpolated by cubics.
 fn period(law: &Law, step: f64, count: u32, periods: f64) -> f64 {
     let mut last = (0.0, 1.0, 0.0);
     let mut crossings = Vec::new();
@@ -78,7 +78,7 @@ fn period(law: &Law, step: f64, count: u32, periods: f64) -> f64 {
 
 #[test]
 fn duffing_and_the_cubic_spring_keep_their_periods() {
-    // Periods at amplitude 1 from the complete elliptic integral.
+    // Periods at amplitude 1 m, from the complete elliptic integral, s.
     for (coefficients, exact, bars) in [
         ([1.0, 0.0, 1.0], 4.768_022, [[5e-4, 5e-6], [1e-2, 1e-4]]),
         ([0.0, 0.0, 1.0], 7.416_299, [[6e-4, 3e-6], [1.2e-2, 1e-4]]),
