@@ -28,7 +28,8 @@ impl PairView {
         let held = element.ends.iter().filter(|end| !end.is_path()).count();
         // If the component has more bodies, those of inert elements, they would not be moved.
         let complete = held == bodies.len() && bodies.iter().all(free);
-        if element.guide != Guide::Centres || !complete {
+        let central = element.ends.iter().all(End::is_central);
+        if element.guide != Guide::Centres || !complete || !central {
             return None;
         }
         let [a, b] = element.ends.map(|end| match end {

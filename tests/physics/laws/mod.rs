@@ -10,6 +10,7 @@ mod given;
 mod hold;
 mod ledger;
 mod light;
+mod off_centre;
 mod one_way;
 pub mod random;
 mod shock;
