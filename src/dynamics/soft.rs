@@ -155,14 +155,17 @@ impl Fineness {
     }
 }
 
+/// Rises from 0 to 1 between two numbers.
+pub(crate) fn ramp(number: f64, [from, to]: [f64; 2]) -> f64 {
+    ((number - from) / (to - from)).clamp(0.0, 1.0)
+}
+
 /// Damping with which an element must act in substeps of `substep` seconds, N s/m. `omega` is an upper bound on the
 /// stiffest mode in which the element takes part, and `lively` that bound if bodies under contact pressure do not move,
 /// rad/s.
 pub(crate) fn damping(tangent: &Tangent, [omega, lively]: [f64; 2], substep: f64) -> f64 {
-    let ramp =
-        |omega: f64, [from, to]: [f64; 2]| ((omega * substep - from) / (to - from)).clamp(0.0, 1.0);
-    let share = ramp(omega, UNRESOLVED)
-        .max(SETTLING * ramp(lively, STAGGERED))
+    let share = ramp(omega * substep, UNRESOLVED)
+        .max(SETTLING * ramp(lively * substep, STAGGERED))
         .max(LEAST);
     tangent
         .damping

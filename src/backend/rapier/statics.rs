@@ -3,14 +3,14 @@
 
 use crate::backend::rapier::body::is_movable;
 use crate::backend::rapier::find::RapierFinder;
-use crate::backend::rapier::held::{is_ours, locks};
+use crate::backend::rapier::held::{joints_of, locks};
 use crate::backend::rapier::tune::Lever;
 use crate::dynamics::body::Body;
 use crate::dynamics::linkage::{Constraint, Linkage, Side};
 use crate::element::{HeldEnd, HoldPose};
 use crate::input::check::Fault;
 use bevy::math::DVec3;
-use bevy_rapier3d::rapier::dynamics::{GenericJoint, RigidBodyHandle};
+use bevy_rapier3d::rapier::dynamics::RigidBodyHandle;
 
 /// Cosine of the angle between an element and the weight of its load below which the element counts as level: then its tension
 /// cannot carry the weight.
@@ -92,31 +92,20 @@ impl RapierFinder<'_, '_> {
         let Ok((set, _, joints, _)) = self.sets.get(lever.context) else {
             return held;
         };
-        let mut lock = |a: RigidBodyHandle, b: RigidBodyHandle, joint: &GenericJoint| {
-            let other = if a == handle { b } else { a };
-            let [Some(first), Some(second)] = [a, b].map(|handle| set.bodies.get(handle)) else {
-                return;
+        for (between, joint) in joints_of(joints, handle) {
+            let other = between[usize::from(between[0] == handle)];
+            let [Some(first), Some(second)] = between.map(|handle| set.bodies.get(handle)) else {
+                continue;
             };
-            let moves = if a == handle { second } else { first };
+            let moves = if between[0] == handle { second } else { first };
             if is_movable(moves) && Some(other) != still {
-                return;
+                continue;
             }
             let frame = (*first.position() * joint.local_frame1).rotation;
             let at = (*second.position() * joint.local_frame2).translation;
             let rotation = frame.as_dquat().normalize();
             let on = [None, Some((0, load))];
             held.extend(locks(joint, rotation, at.as_dvec3(), on));
-        };
-        let impulse = joints.impulse_joints.attached_enabled_joints(handle);
-        for (a, b, _, joint) in impulse.filter(|(_, _, _, joint)| !is_ours(joint)) {
-            lock(a, b, &joint.data);
-        }
-        let multibody = &joints.multibody_joints;
-        for (a, b, joint) in multibody.attached_joints(handle) {
-            let link = multibody.get(joint);
-            if let Some(link) = link.and_then(|(multibody, link)| multibody.link(link)) {
-                lock(a, b, &link.joint.data);
-            }
         }
         held
     }

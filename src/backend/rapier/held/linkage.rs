@@ -72,6 +72,23 @@ pub(crate) fn locks(
     })
 }
 
+/// The game's own joints of a body, and those of multibodies, with the bodies that each joins.
+pub(crate) fn joints_of(
+    joints: &RapierContextJoints,
+    body: RigidBodyHandle,
+) -> impl Iterator<Item = ([RigidBodyHandle; 2], &GenericJoint)> {
+    let impulse = joints.impulse_joints.attached_enabled_joints(body);
+    let impulse = impulse
+        .filter(|(_, _, _, joint)| !is_ours(joint))
+        .map(|(a, b, _, joint)| ([a, b], &joint.data));
+    let multibody = &joints.multibody_joints;
+    let links = multibody.attached_joints(body).filter_map(|(a, b, joint)| {
+        let (multibody, link) = multibody.get(joint)?;
+        Some(([a, b], &multibody.link(link)?.joint.data))
+    });
+    impulse.chain(links)
+}
+
 /// Linked bodies found so far, and their constraints.
 struct Found<'a> {
     all: Holding<'a>,
@@ -151,21 +168,11 @@ impl Found<'_> {
             let known = found.handles.iter().position(|h| *h == other);
             known.is_some_and(|known| known < index)
         };
-        let joints = all.joints.impulse_joints.attached_enabled_joints(handle);
-        for (a, b, _, joint) in joints.filter(|(_, _, _, joint)| !is_ours(joint)) {
+        for (between, joint) in joints_of(all.joints, handle) {
+            let [a, b] = between;
             let other = if a == handle { b } else { a };
             if !before(self, other) {
-                self.joint(&joint.data, [a, b]);
-            }
-        }
-        let sets = &all.joints.multibody_joints;
-        for (a, b, joint) in sets.attached_joints(handle) {
-            let other = if a == handle { b } else { a };
-            if !before(self, other)
-                && let Some((multibody, link)) = sets.get(joint)
-                && let Some(link) = multibody.link(link)
-            {
-                self.joint(&link.joint.data, [a, b]);
+                self.joint(joint, between);
             }
         }
         let Some(body) = all.bodies.get(handle).filter(|_| all.contacts) else {

@@ -24,7 +24,7 @@ mod write;
 
 pub(crate) use joint::is_ours;
 pub(crate) use lend::{fits, give_back};
-pub(crate) use linkage::{Holding, inverse_mass, locks};
+pub(crate) use linkage::{Holding, inverse_mass, joints_of, locks};
 pub(crate) use stand_in::remove;
 pub(crate) use step::{View, add_up};
 pub(crate) use write::{Engine as EngineParts, Solver};

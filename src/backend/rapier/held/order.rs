@@ -8,7 +8,7 @@ use crate::dynamics::guide::Guide;
 use crate::dynamics::line::{Line, Motion};
 use crate::dynamics::pieces::{Outreach, Pieces};
 use crate::dynamics::single;
-use crate::dynamics::soft::{self, Tangent};
+use crate::dynamics::soft::{self, Tangent, ramp};
 use crate::scene::held::{Along, Inside, SoftJoint, Turn, Wanted};
 use crate::scene::rows::{ElementRow, Held};
 use bevy::math::{DMat3, DQuat, DVec3, Quat, Vec3};
@@ -360,9 +360,4 @@ impl Order {
 /// Rotation that takes the x axis to a unit vector.
 fn x_to(axis: DVec3) -> DQuat {
     DQuat::from_rotation_arc(DVec3::X, axis)
-}
-
-/// Rises from 0 to 1 between two numbers.
-fn ramp(number: f64, [from, to]: [f64; 2]) -> f64 {
-    ((number - from) / (to - from)).clamp(0.0, 1.0)
 }
