@@ -1,13 +1,16 @@
 //! Pulls a body by one of its points: with a mouse, a hand or a tractor beam. Runs before `CoiloverSystems::Prepare`.
 
+use crate::backend::Wrench;
+use crate::backend::rapier::body::read;
 use crate::compat;
+use crate::dynamics::single;
 use crate::element::{Anchors, MaxForce, SpringAxis, SpringDamper, SpringFault, SpringTuning};
 use crate::input::say::{Stays, say};
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::{
     RapierContextEntityLink, RapierRigidBodyHandle, RapierRigidBodySet, RigidBody,
 };
-use bevy_rapier3d::rapier::dynamics::{LockedAxes, RigidBody as RapierBody};
+use bevy_rapier3d::rapier::dynamics::RigidBody as RapierBody;
 
 /// Pulls a point of a body to a target point of the world by critically damped springs, so that the body follows a
 /// pointer without swinging.
@@ -206,27 +209,12 @@ fn along(axis: Vec3, entity: Entity, spring: &MouseSpring, mass: f32) -> impl Bu
 /// inverse of 1/m + (r × n) · I⁻¹ (r × n), without the components of n and r × n that the body's locked axes take. What else holds
 /// the body does not count.
 fn mass_at(body: &RapierBody, point: Vec3, axis: Vec3) -> f32 {
-    let properties = &body.mass_properties().local_mprops;
-    let rotation = body.position().rotation;
-    let locked = body.locked_axes();
-    let free =
-        |axes: [LockedAxes; 3]| Vec3::from(axes.map(|axis| 1.0 - f32::from(locked.contains(axis))));
-    let torque = (rotation * (point - properties.local_com)).cross(axis);
-    let torque = torque
-        * free([
-            LockedAxes::ROTATION_LOCKED_X,
-            LockedAxes::ROTATION_LOCKED_Y,
-            LockedAxes::ROTATION_LOCKED_Z,
-        ]);
-    let along = axis
-        * free([
-            LockedAxes::TRANSLATION_LOCKED_X,
-            LockedAxes::TRANSLATION_LOCKED_Y,
-            LockedAxes::TRANSLATION_LOCKED_Z,
-        ]);
-    let about = (rotation * properties.principal_inertia_local_frame).inverse() * torque;
-    let turned = (about * about).dot(properties.inv_principal_inertia);
-    (properties.inv_mass * along.length_squared() + turned).recip()
+    let com = body.mass_properties().local_mprops.local_com;
+    let body = read(body, Vec3::ZERO, &Wrench::default(), true);
+    let axis = axis.as_dvec3();
+    let torque = (body.rotation * (point - com).as_dvec3()).cross(axis);
+    let turned = torque.dot(body.inverse_inertia() * torque);
+    single((axis.dot(body.inverse_mass * axis) + turned).recip())
 }
 
 fn release(entity: Entity, grip: &Grip, commands: &mut Commands) {

@@ -4,7 +4,6 @@ use super::stand::Stand;
 use crate::harness::*;
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
-use bevy_rapier3d::prelude::*;
 
 /// Mass of the load, kg.
 const LOAD: f32 = 5.0;
@@ -17,13 +16,8 @@ const STORED: f32 = 6.0;
 fn beside(lying: f32, stiffness: f32, across: f32, arm: Vec3) -> (Stand, [Entity; 2]) {
     let mut scene = Stand::new(CoiloverPlugin::default(), Engine::default());
     scene.ground();
-    let mut cube = |at: Vec3, mass: f32| {
-        let mass = ColliderMassProperties::Mass(mass);
-        let body = (Collider::cuboid(0.25, 0.25, 0.25), mass);
-        scene.body(Transform::from_translation(at), body)
-    };
-    let lying = cube(Vec3::new(0.0, 0.25, 0.0), lying);
-    let hung = cube(Vec3::new(across, 2.0, 0.0), LOAD);
+    let lying = scene.cube(Vec3::new(0.0, 0.25, 0.0), lying);
+    let hung = scene.cube(Vec3::new(across, 2.0, 0.0), LOAD);
     let stretch = (2.0 * STORED / stiffness).sqrt();
     let spring = Spring::new(hung, lying)
         .with_stiffness(stiffness)
@@ -78,8 +72,8 @@ fn a_load_far_beside_its_spring_keeps_time() {
         for tick in 1..=scene.lab.ticks(5.0) {
             scene.lab.tick();
             let now = height(&scene);
-            let rises = (before - middle).signum() != (now - middle).signum();
-            if rises {
+            let crosses = (before - middle).signum() != (now - middle).signum();
+            if crosses {
                 let share = f64::from((middle - before) / (now - before));
                 last = (tick as f64 - 1.0 + share) / 60.0;
                 count += 1;

@@ -132,14 +132,9 @@ fn along_an_axis_of_the_world_nothing_turns_what_is_held_by_its_centre() {
     ] {
         let mut scene = Stand::new(CoiloverPlugin::default(), Engine::default());
         scene.ground();
-        let mut cube = |at: Vec3, mass: f32| {
-            let mass = ColliderMassProperties::Mass(mass);
-            let body = (Collider::cuboid(0.25, 0.25, 0.25), mass);
-            scene.body(Transform::from_translation(at), body)
-        };
-        let lying = cube(Vec3::new(0.0, 0.25, 0.0), 20.0);
+        let lying = scene.cube(Vec3::new(0.0, 0.25, 0.0), 20.0);
         // Far beside it: what pushes one where the other is turns it fast.
-        let hung = cube(Vec3::new(0.6, 2.0, 0.0), 5.0);
+        let hung = scene.cube(Vec3::new(0.6, 2.0, 0.0), 5.0);
         let element = scene.coil([hung, lying], [Vec3::ZERO; 2], [k, c], Some(1.75));
         let axis = SpringAxis::World(Vec3::NEG_Y);
         scene.lab.app.world_mut().entity_mut(element).insert(axis);

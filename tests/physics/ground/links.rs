@@ -144,4 +144,12 @@ fn along_an_axis_of_the_world_a_link_and_a_body_that_moves_are_told_that_nothing
     scene.lab.run(0.1);
     assert!(scene.lab.app.world().get::<SpringFault>(element).is_none());
     assert!(scene.lab.readout(element).force() != 0.0);
+    // And with the first one again it does not.
+    let axis = SpringAxis::World(Vec3::Y);
+    scene.lab.app.world_mut().entity_mut(element).insert(axis);
+    scene.lab.tick();
+    let speed = scene.lab.velocity(ball).y;
+    scene.lab.run(0.1);
+    let gained = f64::from(scene.lab.velocity(ball).y - speed);
+    assert!((gained + 0.1 * GRAVITY).abs() < 0.01, "{gained} m/s");
 }

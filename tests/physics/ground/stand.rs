@@ -65,6 +65,13 @@ impl Stand {
         entity
     }
 
+    /// A cube of half a metre.
+    pub fn cube(&mut self, at: Vec3, mass: f32) -> Entity {
+        let mass = ColliderMassProperties::Mass(mass);
+        let body = (Collider::cuboid(0.25, 0.25, 0.25), mass);
+        self.body(Transform::from_translation(at), body)
+    }
+
     /// A spring between two points, at rest as it is unless told otherwise.
     pub fn coil(
         &mut self,

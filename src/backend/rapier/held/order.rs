@@ -34,7 +34,9 @@ const AHEAD: [f64; 2] = [0.5, 1.0];
 const FOLLOWED: [f64; 2] = [1.0, 4.0];
 
 /// Stiffness · dt² · [`Order::axis_mobility`] up to which a spring along an axis of the world follows the length that Rapier
-/// measures within the step, and from which on its force is fixed at the start of the step. Pinned by `ground::beside`.
+/// measures within the step, and from which on its force is fixed at the start of the step. The axis turns in Rapier with a body
+/// within the step. If elements turn that body and the other end is far away across the axis, Rapier measures a wrong length, and a
+/// stiff spring that followed it could throw both bodies off. Pinned by `ground::beside`.
 const DRIFTS: [f64; 2] = [0.1, 1.0];
 
 /// Greatest (ω·dt)² of a force that only pulls or only pushes; a stiffer force is softened to it. Then it yields a thousandth
@@ -77,10 +79,9 @@ pub(crate) struct Order {
     pub turn: Option<Turn>,
     /// Share of the element's inverse mass that joints leave.
     pub jointed: f64,
-    /// Velocity of end B relative to end A across the line, m/s.
-    pub lateral: DVec3,
-    /// Whether an end is a link of a multibody. Rapier ignores there which axes of a joint are coupled, and how softly it holds them.
-    pub is_linked: bool,
+    /// If an end is a link of a multibody: the velocity of end B relative to end A across the line, m/s. On links, Rapier ignores
+    /// which axes of a joint are coupled, and how softly it holds them.
+    pub on_link: Option<DVec3>,
 }
 
 struct Frame {
@@ -121,7 +122,7 @@ impl Order {
         inside: &Inside,
         (element, line, turn): (Element, Line, Option<Turn>),
         bodies: &[Body],
-        touched: bool,
+        [touched, is_linked]: [bool; 2],
         time: f64,
     ) -> Self {
         // After a slip, the twist of a torsion element differs from the rotation of its bodies.
@@ -167,8 +168,7 @@ impl Order {
             apart: false,
             turn,
             jointed: inside.leeway.jointed,
-            lateral,
-            is_linked: false,
+            on_link: is_linked.then_some(lateral),
         }
     }
 
@@ -193,6 +193,7 @@ impl Order {
         time: f64,
     ) -> Option<Wanted> {
         let frame = self.frame(row, holders, time);
+        let mobility = self.axis_mobility[self.steadier(time)].unwrap_or(0.0);
         let law = self.element.law.as_ref();
         let across = self
             .turn
@@ -217,7 +218,7 @@ impl Order {
             if stiffness == 0.0 && damping == 0.0 && force == 0.0 {
                 continue;
             }
-            let ahead = self.drift(stiffness, time) * stiffness;
+            let ahead = ramp(stiffness.abs() * mobility * time * time, DRIFTS) * stiffness;
             let stiffness = stiffness - ahead;
             let (middle, most) = piece.middle();
             let apart = self.apart && i == 0 && damping > 0.0 && most == f64::INFINITY;
@@ -282,14 +283,6 @@ impl Order {
         })
     }
 
-    /// Share of a stiffness whose force is fixed at the start of the step. An axis of the world turns in Rapier with a body within
-    /// the step. If elements turn that body and the other end is far away across the axis, Rapier measures a wrong length, and a
-    /// stiff spring that followed it could throw both bodies off.
-    fn drift(&self, stiffness: f64, time: f64) -> f64 {
-        let mobility = self.axis_mobility[self.steadier(time)].unwrap_or(0.0);
-        ramp(stiffness.abs() * mobility * time * time, DRIFTS)
-    }
-
     /// Damping that makes a force implicit that is fixed at the start of a step, N s/m. With a share of a half, the force does
     /// the work k s₀ Δs + ½ k dt ∫ṡ² dt. By the Cauchy–Schwarz inequality that is at least the change of the spring's energy, so
     /// no motion within the step gains any.
@@ -323,28 +316,28 @@ impl Order {
             rotations: [Quat::IDENTITY; 2],
             along: Along::Distance,
         };
-        match self.element.guide {
-            Guide::Centres if self.is_linked => {
+        match (self.element.guide, self.on_link) {
+            (Guide::Centres, Some(lateral)) => {
                 // From end to end as it will be in the middle of the step.
                 let [a, b] = self.line.holds.map(|hold| hold.position);
-                let axis = b - a + 0.5 * time * self.lateral;
+                let axis = b - a + 0.5 * time * lateral;
                 frame.along = Along::Slide;
                 self.fix_axis(&mut frame, axis.normalize_or(self.line.direction), time);
             }
-            Guide::Centres => {}
-            Guide::OfA(axis) => {
+            (Guide::Centres, None) => {}
+            (Guide::OfA(axis), _) => {
                 frame.along = Along::Slide;
                 frame.rotations[0] = x_to(axis).as_quat();
             }
-            Guide::World(axis) => {
-                frame.along = if self.is_linked {
+            (Guide::World(axis), on_link) => {
+                frame.along = if on_link.is_some() {
                     Along::Slide
                 } else {
                     Along::Apart
                 };
                 self.fix_axis(&mut frame, axis, time);
             }
-            Guide::Twist(_) => {
+            (Guide::Twist(_), _) => {
                 frame.along = Along::Twist;
                 if let Some(turn) = &self.turn {
                     let first = x_to(turn.axis);

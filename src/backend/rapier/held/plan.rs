@@ -192,11 +192,10 @@ impl Plan {
             inside,
             (element, line, turn),
             &self.bodies,
-            touched,
+            [touched, is_linked],
             time,
         );
         order.apart = self.jointed && !touched;
-        order.is_linked = is_linked;
         self.orders.push(order);
     }
 
