@@ -1,9 +1,9 @@
 #![allow(missing_docs, reason = "criterion writes a public function")]
-//! Whole frames, and the share of them that our own systems take.
+//! Time of whole frames, and the part of it spent in our own systems.
 //!
-//! `cargo bench -p benches --bench frame` prints the times of one run; compare them within it, not between machines.
-//! `frame` are whole frames: bodies that fly freely, our springs, and Rapier's `SpringJoint` on the same
-//! bodies. `own` is the time spent in our systems alone.
+//! `cargo bench -p benches --bench frame` prints the times of one run. Compare them within that run, not between
+//! machines. `frame` times whole frames: free bodies, our springs, and Rapier's `SpringJoint` on the same bodies.
+//! `own` times our systems only.
 
 use benches::{Link, Own, Scene};
 use bevy::app::App;
@@ -11,10 +11,10 @@ use bevy::ecs::world::World;
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use std::time::Duration;
 
-/// What happens before a frame.
+/// A change to the world before a frame.
 type Change = fn(&mut World);
 
-/// An app that is made when a benchmark first needs it, so that one left out by a filter costs nothing.
+/// An app that is created when a benchmark first needs it, so that a filtered-out benchmark costs nothing.
 struct Lazy<F>(Option<App>, F);
 
 impl<F: Fn() -> App> Lazy<F> {
@@ -26,7 +26,7 @@ impl<F: Fn() -> App> Lazy<F> {
         self.0.get_or_insert_with(&self.1)
     }
 
-    /// Time in our systems over so many frames, each after some change.
+    /// Returns the time in our systems over this number of frames, each after a change.
     fn own(&mut self, frames: u64, change: Change) -> Duration {
         let app = self.app();
         app.world_mut().resource_mut::<Own>().0 = Duration::ZERO;
@@ -54,7 +54,7 @@ fn frames(c: &mut Criterion) {
     group.finish();
 }
 
-/// Cars on a road, which contacts and joints hold: whole frames, and our own systems.
+/// Times cars on a road, held by contacts and joints: whole frames, and our own systems.
 fn road(c: &mut Criterion) {
     for (name, scene, count) in [
         ("rolling", Scene::Rolling, 100),
@@ -107,7 +107,7 @@ fn isolated(c: &mut Criterion) {
 fn networks(c: &mut Criterion) {
     let sizes = [1_000, 10_000, 50_000, 100_000];
     for (scene, sizes) in [
-        // A longer one reaches so far that the engine's f32 shakes it.
+        // A longer chain reaches so far from the origin that the engine's f32 makes it shake.
         (Scene::Chain, &sizes[..3]),
         (Scene::Lattice, &sizes),
         (Scene::Cloth, &sizes),
@@ -127,7 +127,7 @@ fn networks(c: &mut Criterion) {
     }
 }
 
-/// What it costs that something comes and goes in every frame.
+/// Times spawning and despawning in every frame.
 fn churn(c: &mut Criterion) {
     let mut group = c.benchmark_group("own/churn");
     group.sample_size(10);

@@ -1,6 +1,6 @@
-//! How much memory springs take: `cargo bench -p benches --bench memory`.
+//! Memory that springs take: `cargo bench -p benches --bench memory`.
 //!
-//! All that lives on the heap after twenty steps, above that of the same bodies without springs.
+//! Everything on the heap after twenty steps, minus that of the same bodies without springs.
 
 use benches::{Link, Scene};
 use stats_alloc::{INSTRUMENTED_SYSTEM, StatsAlloc};
@@ -9,7 +9,7 @@ use std::alloc::System;
 #[global_allocator]
 static GLOBAL: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
 
-/// Bytes that an app holds beyond what was there before it.
+/// Returns the bytes that an app holds on the heap.
 fn held(scene: Scene, count: u32, link: Link) -> usize {
     let live = || {
         let stats = GLOBAL.stats();
@@ -23,7 +23,7 @@ fn held(scene: Scene, count: u32, link: Link) -> usize {
 }
 
 fn main() {
-    // What the first app of a process makes stays.
+    // The first app of a process allocates memory that stays.
     held(Scene::Isolated, 1, Link::Ours);
     for count in [1 << 13, 1 << 16] {
         let nothing = held(Scene::Isolated, count, Link::Nothing);

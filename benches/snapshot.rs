@@ -1,8 +1,8 @@
 #![allow(missing_docs, reason = "criterion writes a public function")]
-//! What a snapshot takes, and how large it is.
+//! Time and size of a snapshot.
 //!
-//! `cargo bench -p benches --bench snapshot` prints bytes for each spring, and times: to take a snapshot, to put it back, and
-//! the same of Rapier's side, each for so many springs.
+//! `cargo bench -p benches --bench snapshot` prints bytes for each spring, and the times to take a snapshot and to
+//! restore it, for our side and for Rapier's, for several numbers of springs.
 
 use benches::{Link, Scene};
 use bevy_coilover::{CoiloverSnapshot, RapierSnapshot};

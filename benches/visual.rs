@@ -1,9 +1,8 @@
 #![allow(missing_docs, reason = "criterion writes a public function")]
-//! What it costs to lay coils between their ends, without rendering and on one thread: time per frame of
-//! the plugin's systems alone, in a `PostUpdate` that has nothing else to do. "Bevy alone" is what that
-//! schedule takes without the plugin.
+//! Time to lay coils between their ends, without rendering and on one thread. It times only the plugin's systems, in
+//! a `PostUpdate` without anything else. "Bevy alone" is the time of that schedule without the plugin.
 //!
-//! `cargo bench -p benches --bench visual` prints the time of a frame and how many coils a second that is.
+//! `cargo bench -p benches --bench visual` prints the time of a frame and the coils per second.
 
 use bevy::asset::AssetPlugin;
 use bevy::camera::primitives::Frustum;
@@ -16,10 +15,10 @@ use std::time::{Duration, Instant};
 
 const COUNT: u32 = 10_000;
 
-/// Who looks on.
+/// The camera that looks at the coils.
 #[derive(Clone, Copy)]
 enum Onlooker {
-    /// Nobody, as on a server: every coil is laid in every frame, as if it were seen.
+    /// No camera, as on a server: every coil is laid in every frame, as if it were visible.
     None,
     /// A camera that sees every coil.
     SeesAll,
@@ -27,7 +26,7 @@ enum Onlooker {
     SeesNothing,
 }
 
-/// What the elements look like.
+/// Adds the look of an element.
 type Looks = fn(&mut EntityWorldMut);
 
 fn coil(element: &mut EntityWorldMut) {
@@ -38,7 +37,7 @@ fn coilover(element: &mut EntityWorldMut) {
     element.insert((Coil::default(), Telescope::default()));
 }
 
-/// An app without renderer, and the ends of its coils.
+/// An app without renderer, with the ends of its coils.
 struct Scene {
     app: App,
     ends: Vec<Entity>,
@@ -86,7 +85,7 @@ impl Scene {
         Self { app, ends, frame }
     }
 
-    /// Turns every end A, swings and stretches every element.
+    /// Rotates every end A, and swings and stretches every element.
     fn sway(&mut self) {
         self.frame += 1;
         let phase = (0.1 * self.frame as f32).sin();
@@ -106,7 +105,7 @@ impl Scene {
         }
     }
 
-    /// Time that some frames take.
+    /// Returns the time of this number of frames.
     fn spent(&mut self, frames: u64, moving: bool) -> Duration {
         let mut spent = Duration::ZERO;
         for _ in 0..frames {
@@ -121,7 +120,7 @@ impl Scene {
     }
 }
 
-/// A camera as the renderer would have prepared it.
+/// Spawns a camera as the renderer would prepare it.
 fn look(world: &mut World, from: Vec3, to: Vec3) {
     let projection = Projection::from(PerspectiveProjection {
         aspect_ratio: 16.0 / 9.0,

@@ -1,9 +1,9 @@
 #![allow(missing_docs, reason = "criterion writes a public function")]
-//! What the workbench adds to a frame over ten thousand springs.
+//! Time that the workbench adds to a frame with ten thousand springs.
 //!
-//! `cargo bench -p benches --features workbench --bench workbench` times frames with the panel closed, open, and open with an
-//! element chosen. The clock stands, so that no physics is in them; nothing is rendered, but the panel is laid out and cut
-//! into triangles.
+//! `cargo bench -p benches --features workbench --bench workbench` times frames with the panel closed, open, and open
+//! with an element selected. The clock is paused, so frames contain no physics. Nothing is rendered, but the panel is
+//! laid out and tessellated.
 
 use bevy::asset::AssetPlugin;
 use bevy::camera::RenderTargetInfo;
@@ -18,7 +18,7 @@ use criterion::{Criterion, criterion_group, criterion_main};
 const SPRINGS: u16 = 10_000;
 const SIZE: UVec2 = UVec2::new(1280, 1200);
 
-/// Weights on springs in rows, a window, and a camera; the first spring.
+/// Returns an app with weights on springs in rows, a window and a camera, and the first spring.
 fn scene() -> (App, Entity) {
     let mut app = App::new();
     app.add_plugins((
@@ -98,7 +98,7 @@ fn frames(c: &mut Criterion) {
         let mut workbench = app.world_mut().resource_mut::<CoiloverWorkbench>();
         workbench.open = open;
         workbench.selected = selected;
-        // The list is made, and texts are laid out for the first time.
+        // Builds the list, and lays out texts for the first time.
         for _ in 0..60 {
             app.update();
         }

@@ -1,8 +1,8 @@
-//! Two bodies ride over the same bumps on equal wheels. Behind, a spring and a damper as in any car. In
-//! front, a weak damper, and an actuator that makes the spring longer or shorter every tick, as if the
-//! body hung in the sky by a spring and a damper.
+//! Two bodies ride over the same bumps on equal wheels. The one behind has a spring and a damper as in any car. The
+//! one in front has a weak damper, and an actuator that changes the spring's rest length every tick, as if a spring
+//! and a damper held the body from the sky (skyhook).
 //!
-//! Opens a window where there is a display; `--screenshot FILE` and `--headless` do without.
+//! Opens a window where there is a display. `--screenshot FILE` and `--headless` need none.
 
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
@@ -12,25 +12,31 @@ use std::f32::consts::TAU;
 
 const MASS: f32 = 300.0;
 const STIFFNESS: f32 = 12e3;
-/// N s/m: of the damper that is alone, and of the one with an actuator.
+/// Damping of the passive suspension, N s/m.
 const PASSIVE: f32 = 1_150.0;
+/// Damping of the suspension with the actuator, N s/m.
 const ACTIVE: f32 = 250.0;
-/// Between the body and the sky, N/m and N s/m, and how far the actuator goes to either side, m.
+/// Stiffness of the virtual spring between body and sky, N/m.
 const HOLD: f32 = 36e3;
+/// Damping of the virtual damper between body and sky, N s/m.
 const SKY: f32 = 9_000.0;
+/// Stroke of the actuator to either side, m.
 const STROKE: f32 = 0.12;
 const REST: f32 = 0.75;
 const GRAVITY: f32 = 9.81;
-/// Of a wheel, m.
+/// Radius of a wheel, m.
 const RADIUS: f32 = 0.32;
-/// Radius of the bars that lie in the road, how far they stand out, and where they are on x, m.
+/// Radius of the bars in the road, m.
 const BAR: f32 = 0.4;
+/// Height of the bars above the road, m.
 const BUMP: f32 = 0.09;
+/// Positions of the bars along x, m.
 const BARS: [f32; 4] = [-2.6, -1.4, -0.2, 1.0];
-/// m/s, m
+/// Speed of the wheels, m/s.
 const SPEED: f32 = 2.0;
+/// Position of the wheels along x at the start, m.
 const START: f32 = -4.5;
-/// Half the body, m.
+/// Half the size of a body, m.
 const HALF: Vec3 = Vec3::new(0.6, 0.17, 0.32);
 
 fn main() -> AppExit {
@@ -50,15 +56,15 @@ fn main() -> AppExit {
     })
 }
 
-/// What rolls: a body, and its looks.
+/// A wheel, or a visible part of one.
 #[derive(Component)]
 struct Wheel;
 
-/// A body, with its heights tick by tick, m.
+/// A body, with its height in each tick, m.
 #[derive(Component, Default)]
 struct Body(Vec<f32>);
 
-/// On an element whose rest length is governed, with the work of that, J.
+/// On an element whose rest length is controlled: work of the actuator, J.
 #[derive(Component, Default)]
 struct Skyhook(f32);
 
@@ -72,7 +78,7 @@ fn road(mut commands: Commands) {
     }
 }
 
-/// Height of the middle of a wheel that rolls over the bars.
+/// Returns the height of a wheel's centre while it rolls over the bars, m.
 fn height(x: f32) -> f32 {
     let on = |bar: &f32| {
         let reach = RADIUS + BAR;
@@ -89,8 +95,8 @@ fn cars(mut commands: Commands) {
         let wheel = commands
             .spawn((RigidBody::KinematicPositionBased, at, tyre, Wheel))
             .id();
-        // Not as children: when several ticks pass in one frame, the engine's plugin sees bodies with
-        // children move in the last of them only.
+        // Not a child: when several ticks pass in one frame, Rapier's plugin sees bodies with children move only in
+        // the last of them.
         commands.spawn((
             at,
             Shape::Cylinder(0.55 * RADIUS, 0.22, Paint::Ivory),
@@ -120,9 +126,9 @@ fn cars(mut commands: Commands) {
                 .with_stiffness(STIFFNESS)
                 .with_damping(if active { ACTIVE } else { PASSIVE })
                 .with_rest_length(REST),
-            // Up and down only: nothing holds the wheel back or drives it on.
+            // Acts only vertically: nothing drives the wheel forward or holds it back.
             SpringAxis::World(Vec3::Y),
-            // On the axle, beside the wheel; its Y lies along that.
+            // On the axle, beside the wheel. The wheel's Y is along the axle.
             Anchors::new(Vec3::Y * 0.22, Vec3::new(0.0, -HALF.y, 0.22)),
             Coil::new(0.085, 0.013, 7.0).with_color(color),
             Telescope::new(0.035, 0.014).with_stroke(0.36),
@@ -144,12 +150,12 @@ fn roll(time: Res<Time>, mut wheels: Query<&mut Transform, With<Wheel>>) {
     }
 }
 
-/// Height at which a body stands on the level.
+/// Returns the height of a body at rest on the level, m.
 fn level() -> f32 {
     RADIUS + REST - MASS * GRAVITY / STIFFNESS + HALF.y
 }
 
-/// The spring is to push as spring and damper between body and sky would.
+/// Sets the rest length so that the spring's force is that of spring and damper between body and sky.
 fn act(
     mut elements: Query<(&mut SpringDamper, &SpringReadout, &mut Skyhook)>,
     bodies: Query<(&Transform, &Velocity), With<Body>>,
@@ -172,7 +178,7 @@ fn act(
     }
 }
 
-/// Notes each body's height, and leaves a mark twenty times a second.
+/// Records the height of each body, and spawns a mark twenty times a second.
 fn trace(time: Res<Time>, mut bodies: Query<(&Transform, &mut Body)>, mut commands: Commands) {
     let tick = stage::tick(&time);
     for (at, mut body) in &mut bodies {

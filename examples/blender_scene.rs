@@ -1,7 +1,8 @@
-//! A scene made in Blender: a car on wishbones with four coilovers, a rope bridge, and one of each element. All of it,
-//! bodies and joints too, comes from `assets/blender_scene.glb`, which `assets/blender_scene.py` makes.
+//! A scene made in Blender: a car on wishbones with four coilovers, a rope bridge, and one of each element.
+//! Everything, including bodies and joints, comes from `assets/blender_scene.glb`, which `assets/blender_scene.py`
+//! makes.
 //!
-//! Opens a window where there is a display; `--screenshot FILE` and `--headless` do without.
+//! Opens a window where there is a display. `--screenshot FILE` and `--headless` need none.
 
 use bevy::asset::handle_internal_asset_events;
 use bevy::gltf::GltfPlugin;
@@ -15,11 +16,13 @@ use std::time::{Duration, Instant};
 
 const FILE: &str = "blender_scene.glb#Scene0";
 const GRAVITY: f32 = 9.81;
-/// Of the spring alone and of the coilover beside it, as in the file: kg, N/m, m.
+/// Mass on the single spring and on the coilover beside it, as in the file, kg.
 const MASS: f32 = 4.0;
+/// Stiffness of both, as in the file, N/m.
 const STIFFNESS: f32 = 400.0;
+/// Rest length of both, as in the file, m.
 const REST: f32 = 0.9;
-/// Of the chassis, as in the file, m.
+/// Height of the chassis, as in the file, m.
 const RIDE: f32 = 0.52;
 
 fn main() -> AppExit {
@@ -36,7 +39,7 @@ fn main() -> AppExit {
 
 fn setup(app: &mut App) {
     if !app.is_plugin_added::<GltfPlugin>() {
-        // Without a window there is nothing yet that reads files.
+        // Without a window no plugin that reads files has been added yet.
         app.add_plugins((
             AssetPlugin::default(),
             bevy::image::ImagePlugin::default(),
@@ -54,7 +57,7 @@ fn setup(app: &mut App) {
         .add_systems(PreUpdate, track);
 }
 
-/// Waits for the file, so that the first tick is the scene's first too.
+/// Waits until the file is loaded, so that the first tick is also the scene's first.
 fn load(world: &mut World) {
     let scene: Handle<WorldAsset> = world.resource::<AssetServer>().load(FILE);
     let begun = Instant::now();
@@ -77,7 +80,7 @@ fn track(mut commands: Commands, elements: Query<Entity, (With<SpringReadout>, W
     }
 }
 
-/// What was tracked of the element of this name.
+/// Returns the track of the element with this name.
 fn tracked<'w>(world: &'w World, name: &str) -> Option<&'w Track> {
     world
         .iter_entities()

@@ -1,26 +1,27 @@
-//! Five weights on springs that break at 50 to 250 N. Every second a disc more is laid on each: one spring
-//! after another breaks, the weakest first, at its own load, and the weight falls.
+//! Five weights on springs that break at 50 to 250 N. Every second, one more disc is laid on each weight. One spring
+//! after another breaks at its own limit, the weakest first, and its weight falls.
 //!
-//! Opens a window where there is a display; `--screenshot FILE` and `--headless` do without.
+//! Opens a window where there is a display. `--screenshot FILE` and `--headless` need none.
 
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
 use stage::{Begin, Finding, Paint, PictureAt, Shape, Stage};
 
-/// What the springs bear, N, from left to right: not in order.
+/// Force limits of the springs from left to right, N; deliberately unsorted.
 const LIMITS: [f32; 5] = [150.0, 50.0, 250.0, 100.0, 200.0];
 const STIFFNESS: f32 = 900.0;
 const REST: f32 = 0.7;
-/// Of a disc, kg.
+/// Mass of a disc, kg.
 const DISC: f32 = 2.0;
-/// Of a disc, m.
+/// Radius of a disc, m.
 const RADIUS: f32 = 0.2;
+/// Thickness of a disc, m.
 const THICK: f32 = 0.045;
 const GRAVITY: f32 = 9.81;
-/// Of the rod that the discs are laid on, m.
+/// Length of the rod that the discs are laid on, m.
 const ROD: f32 = 0.66;
-/// Underside of the beam, m.
+/// Height of the beam's underside, m.
 const BEAM: f32 = 2.3;
 
 fn main() -> AppExit {
@@ -40,15 +41,15 @@ fn main() -> AppExit {
     })
 }
 
-/// Of which spring, with how many discs, at what force (N).
+/// Breaks: index of the spring, number of discs, and force (N).
 #[derive(Resource, Default)]
 struct Breaks(Vec<(usize, u32, f32)>);
 
-/// A weight, with its discs.
+/// A weight, with its number of discs.
 #[derive(Component)]
 struct Weight(u32);
 
-/// A spring: its place in the row.
+/// On a spring: its index in the row.
 #[derive(Component)]
 struct Place(usize);
 
@@ -78,7 +79,7 @@ fn setup(mut commands: Commands) {
                 Collider::cylinder(0.5 * THICK, RADIUS),
                 ColliderMassProperties::Mass(DISC),
                 Friction::coefficient(0.8),
-                // At rest from the start.
+                // In equilibrium from the start.
                 Transform::from_xyz(x, BEAM - REST - DISC * GRAVITY / STIFFNESS - ROD, 0.0),
                 Visibility::default(),
                 Weight(1),
@@ -92,7 +93,7 @@ fn setup(mut commands: Commands) {
             ))
             .id();
         let wire = 0.009 * (limit / LIMITS[1]).powf(0.4);
-        // Critically damped, so that a disc more does not make it swing past its new place.
+        // Critically damped, so that one more disc causes no overshoot.
         commands.spawn((
             SpringDamper::new(beam, body)
                 .with_stiffness(STIFFNESS)
@@ -107,7 +108,7 @@ fn setup(mut commands: Commands) {
     }
 }
 
-/// A disc more on each, every second.
+/// Adds a disc to each weight, once a second.
 fn load(
     time: Res<Time>,
     mut weights: Query<(Entity, &mut Weight, &mut ColliderMassProperties)>,
@@ -118,7 +119,7 @@ fn load(
         return;
     }
     for (entity, mut weight, mut mass) in &mut weights {
-        // Not on what lies on the ground.
+        // Skips weights on the ground.
         if springs.iter().any(|s| s.body_b == entity) {
             *mass = ColliderMassProperties::Mass(DISC * (weight.0 + 1) as f32);
             commands
@@ -152,11 +153,11 @@ fn check(world: &mut World) -> Vec<Finding> {
     let mut last = 0.0;
     for (i, discs, force) in &world.resource::<Breaks>().0 {
         let limit = LIMITS[*i];
-        // The first number of discs that weighs more than it bears.
+        // The smallest number of discs that weighs more than the limit.
         let wanted = (limit / (DISC * GRAVITY)).ceil();
         let name = format!("the spring for {limit} N: discs");
         out.push(Finding::close(&name, *discs as f32, wanted, "", 1e-3));
-        // Seen once a tick, so a little above its limit.
+        // The force is read once a tick, so it is a little above the limit.
         let most = limit + 0.5 * DISC * GRAVITY;
         out.push(Finding::between("  broke at", *force, limit, most, "N"));
         out.push(Finding::between(

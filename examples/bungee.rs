@@ -1,7 +1,7 @@
-//! A jump from a bridge: 70 kg on ten metres of rope, which pulls and never pushes. Up to where the rope
-//! goes taut it is a free fall, and twenty bounces later no energy is gone.
+//! A jump from a bridge: 70 kg on ten metres of rope, which pulls and never pushes. The jump is a free fall until the
+//! rope goes taut. After twenty bounces no energy is lost.
 //!
-//! Opens a window where there is a display; `--screenshot FILE` and `--headless` do without.
+//! Opens a window where there is a display. `--screenshot FILE` and `--headless` need none.
 
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
@@ -12,9 +12,9 @@ const MASS: f32 = 70.0;
 const STIFFNESS: f32 = 400.0;
 const REST: f32 = 10.0;
 const GRAVITY: f32 = 9.81;
-/// Length of rope that the jump begins with, m.
+/// Length of the rope at the start of the jump, m.
 const START: f32 = 3.0;
-/// Of the rope's hook above the ground, m.
+/// Height of the rope's hook above the ground, m.
 const BRIDGE: f32 = 20.5;
 
 fn main() -> AppExit {
@@ -94,7 +94,7 @@ fn check(world: &mut World) -> Vec<Finding> {
     for (t, seen) in track.0.iter().filter(|(t, _)| *t < fall) {
         off = off.max((seen.length - START - 0.5 * GRAVITY * t * t).abs());
     }
-    // Above the lowest the jumper could hang, so that shares mean something.
+    // Height relative to the lowest point at which the jumper could hang, so that relative errors are meaningful.
     let sag = MASS * GRAVITY / STIFFNESS;
     let energy = |seen: &SpringReadout| {
         let height = REST + sag - seen.length;

@@ -1,9 +1,9 @@
-//! A catapult: twisted ropes drive an arm. A winch pulls it down against them, a ball comes to lie in its cup, the hook lets
-//! go, the arm swings up against a padded beam, and the ball flies on into a wall of boxes.
+//! A catapult whose arm is driven by twisted ropes. A winch pulls the arm down, a ball is put into its cup, and the
+//! hook releases it. The arm swings up against a padded beam, and the ball flies on into a wall of boxes.
 //!
-//! Work of the winch, speed of the arm, and where the ball comes down are compared with theory.
+//! The work of the winch, the speed of the arm, and the height of the ball at the wall are compared with theory.
 //!
-//! Opens a window where there is a display; `--screenshot FILE` and `--headless` do without.
+//! Opens a window where there is a display. `--screenshot FILE` and `--headless` need none.
 
 #[path = "catapult/mod.rs"]
 mod rooms;

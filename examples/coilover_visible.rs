@@ -1,6 +1,6 @@
-//! A coilover as on a car: spring of real wire, damper, eyes, bump rubber and spring seats.
+//! A coilover as on a car: a spring with real wire data, a damper, eyes, a bump rubber and spring seats.
 //!
-//! Opens a window where there is a display; `--screenshot FILE` and `--headless` do without.
+//! Opens a window where there is a display. `--screenshot FILE` and `--headless` need none.
 
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
@@ -26,7 +26,7 @@ fn main() -> AppExit {
     })
 }
 
-/// Wire of 13 mm, coil of 115 mm, six turns that act, spring steel.
+/// Wire of 13 mm, coil of 115 mm, six active turns, spring steel.
 fn wound() -> WoundCoil {
     match Coil::from_wire(0.013, 0.115, 6.0, 79.3e9) {
         Ok(wound) => wound,
@@ -56,7 +56,7 @@ fn setup(mut commands: Commands) {
         ))
         .id();
     let wound = wound();
-    // The rod's end on the car, the tube's below.
+    // The rod's end is on the car, the tube's end below.
     commands.spawn(coilover(foot, car)).insert((
         SpringDamper::new(foot, car)
             .with_stiffness(wound.stiffness)
@@ -77,7 +77,7 @@ fn setup(mut commands: Commands) {
 fn check(world: &mut World) -> Vec<Finding> {
     let stiffness = wound().stiffness;
     let sag = REST - tracks(world)[0].last().length;
-    // By hand from the same figures.
+    // The formula, written out with the same values.
     let theory = 79.3e9 * 0.013_f32.powi(4) / (8.0 * 0.115_f32.powi(3) * 6.0);
     vec![
         Finding::close("stiffness of the wire", stiffness, theory, "N/m", 1e-4),

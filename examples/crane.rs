@@ -1,8 +1,8 @@
-//! A crane lifts a crate, carries it along its jib and sets it down, over and over. Its cables pull and never push, and the
-//! winch is nothing but a rest length that changes. On the ground the slings are slack; in the air the crate swings as a
-//! double pendulum does, until the air has damped it.
+//! A crane lifts a crate, carries it along its jib and sets it down, over and over. Its cables pull and never push,
+//! and the winch is a rest length that changes. On the ground the slings are slack. In the air the crate swings as a
+//! double pendulum until drag has damped it.
 //!
-//! Opens a window where there is a display; `--screenshot FILE` and `--headless` do without.
+//! Opens a window where there is a display. `--screenshot FILE` and `--headless` need none.
 
 #[path = "crane/mod.rs"]
 mod rooms;

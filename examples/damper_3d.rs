@@ -1,6 +1,6 @@
-//! A damper between two free bodies above a plane: what speed they have between them fades away.
+//! A damper between two free bodies above a plane: their relative velocity decays.
 //!
-//! Opens a window where there is a display; `--screenshot FILE` and `--headless` do without.
+//! Opens a window where there is a display. `--screenshot FILE` and `--headless` need none.
 
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
@@ -59,7 +59,7 @@ fn check(world: &mut World) -> Vec<Finding> {
     let half = half.map_or(f32::NAN, |(t, _)| *t);
     vec![
         Finding::small("largest error of the length", error, 1e-4, "m"),
-        // To the tick in which it falls below the half.
+        // Exact to one tick: that in which the speed falls below half.
         Finding::close(
             "half the speed is gone after",
             half,

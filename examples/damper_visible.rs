@@ -1,6 +1,6 @@
-//! A damper seen as two cylinders that slide into each other: a weight sinks at a steady speed.
+//! A damper drawn as two cylinders that slide into each other: a weight sinks at a steady speed.
 //!
-//! Opens a window where there is a display; `--screenshot FILE` and `--headless` do without.
+//! Opens a window where there is a display. `--screenshot FILE` and `--headless` need none.
 
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
@@ -47,7 +47,7 @@ fn setup(mut commands: Commands) {
         Damper::new(beam, weight).with_damping(DAMPING),
         Anchors::new(Vec3::NEG_Y * 0.05, Vec3::Y * 0.15),
         Telescope {
-            // From 0.7 m when first drawn down to where it ends.
+            // Long enough for 0.7 m at the start, short enough for the length at the end.
             tube_length: Some(0.62),
             rod_length: Some(0.62),
             ..Telescope::new(0.075, 0.035)

@@ -1,8 +1,8 @@
-//! Two doors on hinges, each with a torsion spring and a damper. The left one has a door closer: it comes back without
-//! swinging past, and meets its frame gently. The right one is a swing door that has less damping: it swings through its
-//! frame to both sides, a little less each time. Someone goes in by the one and comes out by the other.
+//! Two doors on hinges, each with a torsion spring and a damper. The left door has a door closer: it returns without
+//! overshoot and meets its frame gently. The right door is a swing door with less damping: it swings through its
+//! frame to both sides with decreasing amplitude. A person goes in by the left door and comes out by the right one.
 //!
-//! Opens a window where there is a display; `--screenshot FILE` and `--headless` do without.
+//! Opens a window where there is a display. `--screenshot FILE` and `--headless` need none.
 
 #[path = "door_closer/mod.rs"]
 mod rooms;

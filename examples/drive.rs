@@ -1,10 +1,10 @@
-//! A car to drive, over kerbs, waves, a washboard and a jump. Arrows or WASD steer, space brakes, R starts again.
+//! A car to drive over kerbs, waves, a washboard and a jump. Arrow keys or WASD steer, space brakes, R restarts.
 //!
-//! Until a key is pressed it drives itself, and measures: how high it stands, how far it rolls in a corner and dives under
-//! its brakes, what its wheels press on the washboard, how it lands, and whether it creeps on a slope.
+//! Until a key is pressed, a script drives the car and the example measures: ride height, roll in a corner, dive
+//! under braking, wheel load on the washboard, the landing after the jump, and creep on a slope.
 //!
-//! Opens a window where there is a display; `--screenshot FILE` and `--headless` do without. With `--rapier` it stands on
-//! Rapier's `SpringJoint`s.
+//! Opens a window where there is a display. `--screenshot FILE` and `--headless` need none. With `--rapier` the car
+//! uses Rapier's `SpringJoint`s instead of coilovers.
 
 #[path = "drive/mod.rs"]
 mod rooms;

@@ -1,9 +1,9 @@
-//! A flag in the wind: 19 × 13 points under a mesh that follows them. It flutters for twenty seconds; then a gust tears it,
-//! thread by thread, and the wind carries off what has come loose.
+//! A flag in the wind: 19 × 13 points under a mesh that follows them. It flutters for twenty seconds. Then a gust
+//! tears it, thread by thread, and the wind carries the loose parts away.
 //!
-//! Whatever it does, the pole carries its weight and its drag: in the mean, momentum goes nowhere.
+//! On average the pole carries the weight and the drag of the flag, as conservation of momentum requires.
 //!
-//! Opens a window where there is a display; `--screenshot FILE` and `--headless` do without.
+//! Opens a window where there is a display. `--screenshot FILE` and `--headless` need none.
 
 #[path = "flag/mod.rs"]
 mod rooms;

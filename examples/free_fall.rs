@@ -1,6 +1,6 @@
-//! Two bodies joined by a spring at rest fall as Galileo says, and the spring stays at rest.
+//! Two bodies joined by a spring at rest fall as free bodies do, and the spring keeps its length.
 //!
-//! Opens a window where there is a display; `--screenshot FILE` and `--headless` do without.
+//! Opens a window where there is a display. `--screenshot FILE` and `--headless` need none.
 
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
@@ -72,7 +72,7 @@ fn check(world: &mut World) -> Vec<Finding> {
     let fallen = 0.5 * GRAVITY * t * t;
     vec![
         Finding::close("joined bodies fell", HEIGHT - joined, fallen, "m", 1e-5),
-        // Without springs the engine is ahead of the parabola by a part of its step.
+        // Without springs, Rapier is ahead of the parabola by part of a step.
         Finding::close("a lone one fell", HEIGHT - lone, fallen, "m", DT / SECONDS),
         Finding::small("change of length", track.error(|_| length), 2e-6, "m"),
     ]

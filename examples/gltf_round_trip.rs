@@ -1,11 +1,11 @@
-//! Bodies and springs of a running game into a glTF file, and from there into another game.
+//! Exports bodies and springs of a running game to a glTF file, and loads them in another game.
 //!
 //! ```sh
 //! cargo run --example gltf_round_trip --features gltf
 //! ```
 //!
-//! The file is `renders/round_trip.gltf`; Blender with this crate's add-on reads it too. The exit code is the check: the
-//! second game has the same numbers, and its lamp sags as far.
+//! The file is `renders/round_trip.gltf`. Blender with this crate's add-on reads it too. The exit code tells whether
+//! the second game has the same values and its lamp the same sag.
 
 use bevy::gltf::GltfPlugin;
 use bevy::image::ImagePlugin;
@@ -48,7 +48,7 @@ fn game() -> App {
     app
 }
 
-/// A lamp on a coilover below a hook.
+/// Spawns a lamp on a coilover below a hook. Returns the root entity.
 fn build(world: &mut World) -> Entity {
     let root = world
         .spawn((
@@ -93,7 +93,7 @@ fn run(app: &mut App, seconds: usize) {
     }
 }
 
-/// Height of the lamp, and what the spring says.
+/// Returns the height of the lamp, m, and the spring.
 fn look(app: &mut App) -> Option<(f32, SpringDamper)> {
     let world = app.world_mut();
     let mut names = world.query::<(&Name, &GlobalTransform)>();

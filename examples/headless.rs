@@ -1,6 +1,6 @@
-//! Physics without rendering, stepped by hand: how a game's own CI would test its springs.
+//! Physics without rendering, stepped by hand, as a game's own CI could test its springs.
 //!
-//! A 2 kg body on 80 N/m must swing at √(k/m)/2π and keep its amplitude; the program fails if not.
+//! A 2 kg body on 80 N/m must oscillate at √(k/m)/2π and keep its amplitude. Otherwise the program fails.
 
 use bevy::prelude::*;
 use bevy::time::TimeUpdateStrategy;

@@ -1,7 +1,7 @@
-//! A cube of jelly: 4 × 4 × 4 points on a lattice of springs, under a skin that follows them. It falls on its edge, wobbles,
-//! and comes to rest; then a ball falls on it and bounces off, and it takes its shape again.
+//! A cube of jelly: 4 × 4 × 4 points on a lattice of springs, under a skin that follows them. The cube falls on its
+//! edge, wobbles and comes to rest. Then a ball falls on it and bounces off, and the cube returns to its shape.
 //!
-//! Opens a window where there is a display; `--screenshot FILE` and `--headless` do without.
+//! Opens a window where there is a display. `--screenshot FILE` and `--headless` need none.
 
 #[path = "jelly/mod.rs"]
 mod rooms;

@@ -1,7 +1,7 @@
-//! The simplest spring of all: it carries a body above a plane, and acts up and down only, so the body
-//! may drift sideways as it likes.
+//! The simplest spring: it carries a body above a plane. It acts only vertically, so the body can drift sideways
+//! freely.
 //!
-//! Opens a window where there is a display; `--screenshot FILE` and `--headless` do without.
+//! Opens a window where there is a display. `--screenshot FILE` and `--headless` need none.
 
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
@@ -12,13 +12,15 @@ const STIFFNESS: f32 = 20.0;
 const MASS: f32 = 1.0;
 const REST: f32 = 1.2;
 const GRAVITY: f32 = 9.81;
-/// Stretch at the start, m.
+/// Length minus rest length at the start, m.
 const STRETCH: f32 = -0.1;
-/// Where it starts, on x (m), and how fast it drifts (m/s).
+/// Position along x at the start, m.
 const START: f32 = -1.9;
+/// Horizontal velocity of the body, m/s.
 const DRIFT: f32 = 0.65;
-/// Of the shoe's top above the plane, and of half the body, m.
+/// Height of the shoe's top above the plane, m.
 const SHOE: f32 = 0.06;
+/// Half the edge of the body, m.
 const HALF: f32 = 0.16;
 
 fn main() -> AppExit {
@@ -38,20 +40,20 @@ fn main() -> AppExit {
     })
 }
 
-/// Largest difference from steady drift, m.
+/// Largest difference from a steady drift, m.
 #[derive(Resource, Default)]
 struct Drift(f32);
 
 #[derive(Component)]
 struct Body;
 
-/// What the spring stands on.
+/// The part that the spring stands on.
 #[derive(Component)]
 struct Shoe;
 
 fn setup(mut commands: Commands) {
     commands.spawn(stage::floor());
-    // A point of no weight that glides on the plane, so that the coil is drawn upright.
+    // The shoe has no rigid body and glides below the body, so that the coil is drawn upright.
     let shoe = commands
         .spawn((
             Transform::from_xyz(START, 0.5 * SHOE, 0.0),
@@ -80,7 +82,7 @@ fn setup(mut commands: Commands) {
     ));
 }
 
-/// The shoe stays below the body; the spring feels nothing of it.
+/// Keeps the shoe below the body. This does not affect the spring's force.
 fn follow(
     mut shoes: Query<&mut Transform, With<Shoe>>,
     bodies: Query<&Transform, (With<Body>, Without<Shoe>)>,
@@ -90,7 +92,7 @@ fn follow(
     }
 }
 
-/// Leaves a mark twenty times a second, and notes how steady the drift is.
+/// Spawns a mark twenty times a second, and records the largest error of the drift.
 fn trace(
     time: Res<Time>,
     mut drift: ResMut<Drift>,

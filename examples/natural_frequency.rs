@@ -1,6 +1,6 @@
-//! Four bodies on springs from soft to stiff, each at its own natural frequency.
+//! Four bodies on springs from soft to stiff, each oscillating at its own natural frequency.
 //!
-//! Opens a window where there is a display; `--screenshot FILE` and `--headless` do without.
+//! Opens a window where there is a display. `--screenshot FILE` and `--headless` need none.
 
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
@@ -29,7 +29,7 @@ fn main() -> AppExit {
     })
 }
 
-/// Length at which a spring holds its body.
+/// Returns the length of a spring that holds its body at rest, m.
 fn rest(stiffness: f32) -> f32 {
     REST + MASS * GRAVITY / stiffness
 }
@@ -45,7 +45,7 @@ fn setup(mut commands: Commands) {
         .id();
     for (i, stiffness) in STIFFNESS.into_iter().enumerate() {
         let x = 0.7 * (i as f32 - 1.5);
-        // Let go 5 cm above where it would hang.
+        // Released 5 cm above the position at rest.
         let length = rest(stiffness) - 0.05;
         let body = commands
             .spawn((
@@ -56,7 +56,7 @@ fn setup(mut commands: Commands) {
                 Upright(0.05),
             ))
             .id();
-        // The stiffer, the thicker the wire: with its fourth power.
+        // The stiffness grows with the fourth power of the wire's thickness.
         let wire = 0.009 * (stiffness / STIFFNESS[0]).powf(0.25);
         commands.spawn((
             Spring::new(beam, body)

@@ -1,8 +1,9 @@
-//! Waves along three rows of beads on springs, each row shaken faster than the one above: the faster,
-//! the shorter the wave and the slower it travels, from √(k/m) beads a second downwards.
+//! Waves along three rows of beads on springs. Each row is driven at a higher frequency than the one above it. A
+//! higher frequency means a shorter and a slower wave. The greatest speed is √(k/m) beads a second.
 //!
-//! At its far end every row has a damper that swallows the wave whole, so nothing comes back.
-//! Opens a window where there is a display; `--screenshot FILE` and `--headless` do without.
+//! At the far end of each row a damper absorbs the wave, so nothing is reflected.
+//!
+//! Opens a window where there is a display. `--screenshot FILE` and `--headless` need none.
 
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
@@ -12,17 +13,18 @@ use std::f32::consts::TAU;
 
 const BEADS: usize = 20;
 const MASS: f32 = 0.5;
-/// From bead to bead, m.
+/// Distance between neighbouring beads, m.
 const PITCH: f32 = 0.25;
 /// √(k/m), rad/s.
 const OMEGA: f32 = 18.0;
 const STIFFNESS: f32 = MASS * OMEGA * OMEGA;
 const AMPLITUDE: f32 = 0.075;
-/// Of each row's shaking, in ticks, so that the check can look at whole periods.
+/// Period of each row's drive, in ticks, so that the check uses whole periods.
 const PERIODS: [u32; 3] = [70, 21, 13];
 const RADIUS: f32 = 0.06;
-/// Of the check, the last seconds: the beginnings of the waves have long passed through.
+/// Time of the check, s.
 const SECONDS: f32 = 12.0;
+/// Duration at the end in which the beads are measured, s: the initial transients have left the rows by then.
 const WATCHED: f32 = 4.0;
 
 fn main() -> AppExit {
@@ -41,14 +43,14 @@ fn main() -> AppExit {
     })
 }
 
-/// Drives a row.
+/// The piston that drives a row.
 #[derive(Component)]
 struct Piston {
     row: usize,
     home: Vec3,
 }
 
-/// Its row, its number, and its swing at the row's own frequency: cosine and sine share.
+/// A bead: row, number, and amplitude at the row's frequency, as cosine and sine parts, m.
 #[derive(Component)]
 struct Bead {
     row: usize,
@@ -57,12 +59,12 @@ struct Bead {
     swing: Vec2,
 }
 
-/// Of a row's shaking, rad/s.
+/// Returns the angular frequency of a row's drive, rad/s.
 fn frequency(row: usize) -> f32 {
     TAU / (PERIODS[row] as f32 * DT)
 }
 
-/// Phase from bead to bead of a wave of this frequency: ω = 2 √(k/m) sin(phase/2).
+/// Returns the phase difference between neighbouring beads at the row's frequency: ω = 2 √(k/m) sin(phase/2).
 fn phase(row: usize) -> f32 {
     2.0 * (0.5 * frequency(row) / OMEGA).asin()
 }
@@ -85,7 +87,7 @@ fn setup(mut commands: Commands) {
         let mut before = commands.spawn(piston).id();
         let mut reach = 0.05;
         for number in 1..=BEADS {
-            // Half a bead at the end, as the rest of an endless row would weigh on the damper.
+            // The last bead has half the mass: with it, the damper acts as the rest of an endless row would.
             let share = if number == BEADS { 0.5 } else { 1.0 };
             let bead = commands
                 .spawn((
@@ -119,7 +121,7 @@ fn setup(mut commands: Commands) {
                 Shape::Cuboid(Vec3::new(0.1, 0.26, 0.26), Paint::Iron),
             ))
             .id();
-        // The impedance of the row: what a wave meets here is what it has met all along.
+        // The characteristic impedance of the row: a wave continues into the damper without reflection.
         let impedance = (STIFFNESS * MASS).sqrt() * (0.5 * phase(row)).cos();
         commands.spawn((
             Damper::new(before, wall).with_damping(impedance),
@@ -138,7 +140,7 @@ fn shake(time: Res<Time>, mut pistons: Query<(&Piston, &mut Transform)>) {
     }
 }
 
-/// How each bead swings at its row's frequency, over as many whole periods as fit.
+/// Measures the amplitude of each bead at its row's frequency, over as many whole periods as fit.
 fn watch(time: Res<Time>, mut beads: Query<(&Transform, &mut Bead)>) {
     let t = time.elapsed_secs();
     for (transform, mut bead) in &mut beads {
@@ -171,7 +173,8 @@ fn check(world: &mut World) -> Vec<Finding> {
             "m/s",
             0.01,
         ));
-        // Nothing is lost on the way; what the steps round off the piston's path shows at the fastest.
+        // No energy is lost along the row. The error at the highest frequency comes from the piston's path, which is
+        // sampled per step.
         let last = beads[BEADS - 1].swing.length();
         let what = "  swing at the far end against the piston's";
         out.push(Finding::close(what, last, AMPLITUDE, "m", 0.05));

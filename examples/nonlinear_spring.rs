@@ -1,6 +1,6 @@
-//! Cubic springs, F = k x³, on rails: the wider they swing, the faster they are, T = 7.4163 √(m/k)/A.
+//! Cubic springs, F = k x³, on rails. A larger amplitude gives a shorter period: T = 7.4163 √(m/k)/A.
 //!
-//! Opens a window where there is a display; `--screenshot FILE` and `--headless` do without.
+//! Opens a window where there is a display. `--screenshot FILE` and `--headless` need none.
 
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
@@ -8,15 +8,15 @@ use bevy_rapier3d::prelude::*;
 use stage::{Begin, Finding, Paint, PictureAt, Shape, Stage, Track, tracks};
 use std::f32::consts::TAU;
 
-/// N/m³
+/// Stiffness, N/m³.
 const STIFFNESS: f32 = 60.0;
 const MASS: f32 = 1.0;
 const REST: f32 = 1.5;
-/// How far each is drawn out at first, m.
+/// Amplitude of each body, m.
 const AMPLITUDES: [f32; 3] = [0.9, 0.6, 0.3];
-/// Of a body, m.
+/// Edge of a body, m.
 const SIZE: f32 = 0.3;
-/// Face of the wall that holds the springs, on x, m.
+/// Position along x of the wall that holds the springs, m.
 const WALL: f32 = -1.7;
 
 fn main() -> AppExit {
@@ -50,7 +50,7 @@ fn setup(mut commands: Commands) {
     ));
     for (i, amplitude) in AMPLITUDES.into_iter().enumerate() {
         let y = 1.65 - 0.65 * i as f32;
-        // The rail goes through coil and body; it is there to look at, and the locked axes do its work.
+        // The rail through coil and body is visual only. The locked axes guide the body.
         commands.spawn((
             Transform::from_xyz(0.5 * (WALL + far), y, 0.0)
                 .with_rotation(Quat::from_rotation_z(TAU / 4.0)),

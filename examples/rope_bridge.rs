@@ -1,10 +1,10 @@
-//! A rope bridge that someone walks over: twenty planks on two ropes, with a rope for each hand. A character controller
-//! walks, and its weight is a force where its feet are. Arrows or A and D walk in a window.
+//! A rope bridge with a walker: twenty planks on two ropes, and a rope for each hand. A character controller moves
+//! the walker, whose weight is a force at its feet. In a window, arrow keys or A and D walk.
 //!
-//! The banks carry bridge and walker, each bank its share by the lever rule, and the bridge sags as far as the moment in its
-//! middle says.
+//! The banks carry bridge and walker according to the lever rule, and the sag of the bridge follows from the moment
+//! in its middle.
 //!
-//! Opens a window where there is a display; `--screenshot FILE` and `--headless` do without.
+//! Opens a window where there is a display. `--screenshot FILE` and `--headless` need none.
 
 #[path = "rope_bridge/mod.rs"]
 mod rooms;

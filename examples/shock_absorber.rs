@@ -1,9 +1,9 @@
-//! A shock absorber on a test rig, three times as hard in rebound as in bump, with preload: force over
-//! velocity, drawn point by point on the board behind it. Beside it one that a weight has pressed onto its
-//! bump stop.
+//! A shock absorber on a test rig, with preload and three times as much damping in rebound as in bump. The board
+//! behind it shows force over velocity, point by point. Beside it, a weight presses a second absorber onto its bump
+//! stop.
 //!
-//! Opens a window where there is a display; `--screenshot FILE` and `--headless` do without, and
-//! `--plot FILE` writes force over velocity as a PNG.
+//! Opens a window where there is a display. `--screenshot FILE` and `--headless` need none, and `--plot FILE` writes
+//! force over velocity as a PNG.
 
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
@@ -15,22 +15,28 @@ use std::f32::consts::{PI, TAU};
 const STIFFNESS: f32 = 6_000.0;
 const REST: f32 = 0.62;
 const PRELOAD: f32 = -300.0;
-/// N s/m
+/// Damping in bump, N s/m.
 const BUMP: f32 = 800.0;
+/// Damping in rebound, N s/m.
 const REBOUND: f32 = 2_400.0;
-/// Lengths at which the stops begin, m, and what they are made of.
+/// Length at which the bump stop begins, m.
 const SHORTEST: f32 = 0.42;
+/// Length at which the rebound stop begins, m.
 const LONGEST: f32 = 0.68;
+/// Stiffness of the stops, N/m.
 const STOP: f32 = 60e3;
+/// Progression of the stops, 1/m.
 const PROGRESSION: f32 = 20.0;
-/// Of the driven one: where the drive begins, how far it goes to either side (m), and how often (Hz).
+/// Length of the driven absorber at the start, its longest, m.
 const START: f32 = 0.60;
+/// Amplitude of the drive, m.
 const AMPLITUDE: f32 = 0.05;
+/// Frequency of the drive, Hz.
 const FREQUENCY: f32 = 1.0;
-/// What lies on the other, kg.
+/// Mass of the weight on the other absorber, kg.
 const MASS: f32 = 250.0;
 const GRAVITY: f32 = 9.81;
-/// Lower eyes above the ground, m.
+/// Height of the lower eyes above the ground, m.
 const FOOT: f32 = 0.24;
 
 fn main() -> AppExit {
@@ -50,11 +56,11 @@ fn main() -> AppExit {
     })
 }
 
-/// What the drive moves, and its height at the start.
+/// The part that the drive moves, with its height at the start, m.
 #[derive(Component)]
 struct Crosshead(f32);
 
-/// The absorber between an eye on a foot and an eye below a body.
+/// Returns an absorber between an eye on `foot` and an eye below `body`.
 fn absorber(foot: Entity, body: Entity, below: f32) -> impl Bundle {
     (
         SpringDamper::new(foot, body)
@@ -127,7 +133,7 @@ fn pressed(mut commands: Commands) {
     commands.spawn(absorber(foot, weight, 0.2));
 }
 
-/// Where on the board a velocity (m/s) and a force (N) are.
+/// Returns the position on the board for a velocity (m/s) and a force (N).
 fn on_board(velocity: f32, force: f32) -> Vec3 {
     Vec3::new(0.05 + 1.1 * velocity, 0.72 + 3.6e-4 * force, -0.33)
 }
@@ -150,7 +156,7 @@ fn board(mut commands: Commands) {
     }
 }
 
-/// Height of the drive over its start.
+/// Returns the height of the drive relative to its start, m.
 fn path(t: f32) -> f32 {
     AMPLITUDE * ((TAU * FREQUENCY * t).cos() - 1.0)
 }
@@ -161,7 +167,7 @@ fn drive(time: Res<Time>, mut crossheads: Query<(&mut Transform, &Crosshead)>) {
     }
 }
 
-/// One stroke of points on the board: ivory the damper's force, blue the whole.
+/// Draws one cycle of points on the board: the damper's force in ivory, the total force in blue.
 fn draw(elements: Query<(Entity, &Track)>, mut commands: Commands) {
     let Some((_, track)) = elements.iter().min_by_key(|(e, _)| e.index_u32()) else {
         return;
@@ -184,12 +190,12 @@ fn damping(rate: f32) -> f32 {
     rate * if rate < 0.0 { BUMP } else { REBOUND }
 }
 
-/// Force of a stop so far in, N.
+/// Returns the force of a stop at this depth, N.
 fn stop(depth: f32) -> f32 {
     STOP * depth * (1.0 + PROGRESSION * depth)
 }
 
-/// How deep the weight goes into the stop when it is let go, by fine steps.
+/// Returns the greatest depth of the weight in the stop after its release, m, integrated in fine steps.
 fn plunge() -> f32 {
     let (mut length, mut rate, h) = (f64::from(REST), 0.0_f64, 1e-5);
     while rate <= 0.0 {
@@ -204,7 +210,7 @@ fn plunge() -> f32 {
 
 fn check(world: &mut World) -> Vec<Finding> {
     let tracks = tracks(world);
-    // The first stroke is for settling in.
+    // The first cycle is for settling in.
     let cycle = (1.0 / (FREQUENCY * DT)).round() as usize;
     let seen = &tracks[0].0[cycle..];
     let mut off = [0.0_f32; 2];
@@ -214,7 +220,7 @@ fn check(world: &mut World) -> Vec<Finding> {
         off[1] = off[1].max((r.damper_force - damping(r.rate)).abs());
     }
     let cycles = (seen.len() - 1) / cycle;
-    // The area of the loop; the drive goes at a constant speed in each tick.
+    // The work is the area of the loop. The drive moves at a constant speed within each tick.
     let strokes = seen[..=cycles * cycle].windows(2);
     let work = strokes.map(|w| {
         let (before, after) = (w[0].1, w[1].1);

@@ -1,7 +1,7 @@
-//! The main job: a body hanging on a coilover, a spinning pair, and a four-post rig.
+//! A body that hangs on a coilover, a spinning pair, and a four-post rig.
 //!
-//! Opens a window where there is a display, otherwise renders frames to PNG where any Vulkan adapter
-//! exists, otherwise prints the read-outs; `--headless`, `--screenshot FILE` and `--frames FOLDER` choose.
+//! Opens a window where there is a display. Otherwise renders frames to PNG where there is a Vulkan adapter.
+//! Otherwise prints the read-outs. `--headless`, `--screenshot FILE` and `--frames FOLDER` choose one of these.
 
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
@@ -11,12 +11,12 @@ use std::f32::consts::TAU;
 
 const GRAVITY: f32 = 9.81;
 
-/// The hanging body.
+/// Mass (kg), stiffness (N/m) and damping (N s/m) of the hanging body.
 const MASS: f32 = 12.0;
 const STIFFNESS: f32 = 900.0;
 const DAMPING: f32 = 6.0;
 
-/// The car body on four posts.
+/// Mass (kg), stiffness (N/m) and damping (N s/m) of the car body on four posts.
 const CAR: f32 = 60.0;
 const CAR_STIFFNESS: f32 = 2_400.0;
 const CAR_DAMPING: f32 = 140.0;
@@ -37,14 +37,14 @@ fn main() -> AppExit {
     })
 }
 
-/// What the read-outs gave, tick by tick.
+/// Measurements.
 #[derive(Resource, Default)]
 struct Trace {
-    /// Momentum of the spinning pair about its centre: first and last, kg m²/s.
+    /// Angular momentum of the spinning pair about its centre, first and last, kg m²/s.
     spin: Option<(Vec3, Vec3)>,
-    /// Energy of the pair: least and most, J.
+    /// Least and greatest energy of the pair, J.
     energy: Option<(f32, f32)>,
-    /// Shortening of the rig's coilovers while the posts rested, m.
+    /// Compression of the rig's coilovers while the posts rest, m.
     sag: Option<f32>,
 }
 
@@ -68,7 +68,7 @@ fn hang(mut commands: Commands) {
             Shape::Cuboid(Vec3::new(1.3, 0.14, 0.5), Paint::Iron),
         ))
         .id();
-    // Released 0.25 m above where it would hang at rest.
+    // Released 0.25 m above the position at rest.
     let hanging = 1.1 + MASS * GRAVITY / STIFFNESS - 0.25;
     let weight = commands
         .spawn((
@@ -164,9 +164,9 @@ fn rig(mut commands: Commands) {
             Upright(0.3),
         ))
         .id();
-    // Four coilovers on ball ends carry a car but do not guide it; a column in the middle does, on which it
-    // slides up and down, pitches and rolls. It holds the heading itself: a car that may not *turn* about
-    // the vertical still comes out of every round of pitch and roll with another heading.
+    // Four coilovers on ball joints carry a car but do not guide it. It slides up and down, pitches and rolls on a
+    // column in the middle. The column also holds the heading: locking only the rotation about the vertical lets the
+    // heading change with every cycle of pitch and roll.
     let guide = GenericJointBuilder::new(
         JointAxesMask::LIN_X | JointAxesMask::LIN_Z | JointAxesMask::ANG_Y,
     )

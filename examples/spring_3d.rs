@@ -1,6 +1,6 @@
-//! A spring between two free bodies above a plane: they swing about their common centre.
+//! A spring between two free bodies above a plane: they oscillate about their common centre of mass.
 //!
-//! Opens a window where there is a display; `--screenshot FILE` and `--headless` do without.
+//! Opens a window where there is a display. `--screenshot FILE` and `--headless` need none.
 
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
@@ -41,7 +41,7 @@ fn setup(mut commands: Commands) {
             ))
             .id()
     };
-    // Let go 0.35 m too far apart.
+    // Released 0.35 m too far apart.
     let a = ball(MASSES[0], Vec3::new(-0.75, 0.8, 0.0), Paint::Blue);
     let b = ball(MASSES[1], Vec3::new(0.6, 0.8, 0.0), Paint::Ivory);
     commands.spawn((

@@ -1,6 +1,6 @@
 //! A soft spring and a damper side by side, 7 N/m and 2 N s/m: a body of 1 kg comes to rest.
 //!
-//! Opens a window where there is a display; `--screenshot FILE` and `--headless` do without.
+//! Opens a window where there is a display. `--screenshot FILE` and `--headless` need none.
 
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
@@ -57,7 +57,7 @@ fn setup(mut commands: Commands) {
 }
 
 fn check(world: &mut World) -> Vec<Finding> {
-    // Let go where the spring has no force, under gravity.
+    // Released under gravity at the rest length.
     let sag = MASS * GRAVITY / STIFFNESS;
     let decay = DAMPING / (2.0 * MASS);
     let turn = (STIFFNESS / MASS - decay * decay).sqrt();

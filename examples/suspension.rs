@@ -1,7 +1,7 @@
-//! A car on four coilovers, its wheels real bodies on real ground: it drives over bumps, left and right
-//! in turn, brakes, and comes to rest as high as it must.
+//! A car on four coilovers, with wheels that are bodies on the ground. It drives over bumps, left and right in turn,
+//! brakes, and comes to rest at the ride height of statics.
 //!
-//! Opens a window where there is a display; `--screenshot FILE` and `--headless` do without.
+//! Opens a window where there is a display. `--screenshot FILE` and `--headless` need none.
 
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
@@ -16,19 +16,20 @@ const STIFFNESS: f32 = 30e3;
 const DAMPING: f32 = 3e3;
 /// Length of a coilover without load, m.
 const REST: f32 = 0.76;
-/// Of the coilovers' upper ends above the middle of the chassis, m.
+/// Height of the coilovers' upper ends above the middle of the chassis, m.
 const TOWER: f32 = 0.24;
 const GRAVITY: f32 = 9.81;
-/// m/s
+/// Speed of the car, m/s.
 const SPEED: f32 = 3.0;
-/// Where it starts, on x, m.
+/// Position along x at the start, m.
 const START: f32 = -5.4;
-/// Seconds after which it brakes.
+/// Time at which the car brakes, s.
 const BRAKE: f32 = 2.1;
-/// Of the engine and of the brakes on each wheel, N m s.
+/// Torque of the engine on each wheel per rad/s of speed error, N m s.
 const GRIP: f32 = 80.0;
+/// Torque of the brakes on each wheel per rad/s, N m s.
 const BRAKES: f32 = 250.0;
-/// Of the bumps above the ground, m.
+/// Height of the bumps above the ground, m.
 const BUMP: f32 = 0.09;
 
 fn main() -> AppExit {
@@ -48,12 +49,12 @@ fn main() -> AppExit {
     })
 }
 
-/// What happened on the way.
+/// Measurements.
 #[derive(Resource, Default)]
 struct Ride {
-    /// Largest angle between the car's up and the world's, rad.
+    /// Largest angle between the car's up axis and the world's, rad.
     lean: f32,
-    /// Of chassis and wheels, m/s, in the last tick.
+    /// Greatest speed of chassis and wheels in the last tick, m/s.
     fastest: f32,
 }
 
@@ -68,7 +69,7 @@ fn road(mut commands: Commands) {
         Collider::cuboid(20.0, 0.05, 20.0),
         Friction::coefficient(1.0),
     ));
-    // Round bars, nearly buried; one wheel of each axle meets each.
+    // Nearly buried round bars. Each meets one wheel of each axle.
     for (i, x) in [-3.2, -2.2, -1.2, -0.2].into_iter().enumerate() {
         let z = if i % 2 == 0 { 0.85 } else { -0.85 };
         let (radius, half) = (0.4, 0.45);
@@ -102,7 +103,7 @@ fn car(mut commands: Commands) {
         ))
         .id();
     for (x, z) in [(-1.25, -0.85), (1.25, -0.85), (-1.25, 0.85), (1.25, 0.85)] {
-        // The wheel goes up and down along the chassis and turns about its axle.
+        // The wheel moves up and down along the chassis and turns about its axle.
         let guide = GenericJointBuilder::new(
             JointAxesMask::LIN_X
                 | JointAxesMask::LIN_Z
@@ -116,7 +117,7 @@ fn car(mut commands: Commands) {
         let wheel = commands
             .spawn((
                 RigidBody::Dynamic,
-                // Rolls as a wheel does; a cylinder's contacts let even a parked car creep sideways.
+                // A ball rolls as a wheel does. The contacts of a cylinder let even a parked car creep sideways.
                 Collider::ball(RADIUS),
                 ColliderMassProperties::Mass(WHEEL),
                 Friction::coefficient(1.0),
@@ -140,7 +141,7 @@ fn car(mut commands: Commands) {
                 ],
             ))
             .id();
-        // On the axle, beside the wheel, up to an arm of the chassis.
+        // The coilover stands on the axle, inside the wheel, and reaches up to an arm of the chassis.
         let inside = 0.2 * z.signum();
         commands.entity(chassis).with_child((
             Transform::from_xyz(x, TOWER + 0.03, 0.55 * z.signum()),
@@ -159,7 +160,7 @@ fn car(mut commands: Commands) {
     }
 }
 
-/// The motors that drove the wheels against the chassis now slow them.
+/// Brakes: the motors that drove the wheels now hold them against the chassis.
 fn brake(time: Res<Time>, mut wheels: Query<&mut ImpulseJoint>) {
     if stage::tick(&time) == (BRAKE / DT) as u32 {
         for mut wheel in &mut wheels {

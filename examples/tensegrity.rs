@@ -1,7 +1,7 @@
-//! A tensegrity ball: six rigid struts that touch nothing, held apart by twenty-four springs in tension.
-//! It falls, bounces, rolls, and has its shape again, that of another one that was set down gently.
+//! A tensegrity ball: six rigid struts that do not touch each other, held apart by twenty-four springs in tension. It
+//! falls, bounces, rolls, and returns to the shape of a second ball that was set down gently.
 //!
-//! Opens a window where there is a display; `--screenshot FILE` and `--headless` do without.
+//! Opens a window where there is a display. `--screenshot FILE` and `--headless` need none.
 
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
@@ -10,16 +10,18 @@ use stage::{Begin, Finding, Paint, PictureAt, Shape, Stage};
 
 /// Length of a strut, m.
 const STRUT: f32 = 1.6;
-/// Half the thickness of a strut, m. (Round ones roll on their ends for ever, for the engine knows no
-/// rolling resistance.)
+/// Half the thickness of a strut, m. Struts are square: round ones would roll on their ends for ever, because Rapier
+/// has no rolling resistance.
 const HALF: f32 = 0.035;
-/// Of a strut, kg.
+/// Mass of a strut, kg.
 const MASS: f32 = 1.0;
+/// Stiffness of a spring, N/m.
 const STIFFNESS: f32 = 1_500.0;
+/// Damping of a spring, N s/m.
 const DAMPING: f32 = 6.0;
-/// Length of a spring without force, as a share of its length in the ball without weight.
+/// Rest length of a spring, as a share of its length in the weightless ball.
 const REST: f32 = 0.75;
-/// How far it falls, m.
+/// Fall height of the dropped ball, m.
 const FALL: f32 = 1.5;
 const GRAVITY: f32 = 9.81;
 
@@ -39,14 +41,14 @@ fn main() -> AppExit {
     })
 }
 
-/// Which ball a strut or a spring is of.
+/// The ball that a strut or a spring belongs to.
 #[derive(Component, Clone, Copy, PartialEq)]
 enum Ball {
     Dropped,
     SetDown,
 }
 
-/// Of the dropped ball, in J: at first, and the most since.
+/// Energy of the dropped ball at the start, the largest since, and the last, J.
 #[derive(Resource, Default)]
 struct Energy {
     first: Option<f32>,
@@ -58,7 +60,7 @@ fn setup(mut commands: Commands) {
     commands
         .spawn(stage::floor())
         .insert(Collider::cuboid(20.0, 0.05, 20.0));
-    // Standing on one of its eight triangles of springs.
+    // This ball stands on one of its eight triangles of springs.
     let stand = Quat::from_rotation_arc(Vec3::ONE.normalize(), Vec3::Y);
     let height = 0.75 * STRUT / 3.0_f32.sqrt() + HALF;
     ball(
@@ -76,12 +78,12 @@ fn setup(mut commands: Commands) {
     );
 }
 
-/// Two struts along each axis, half their length apart: all springs are as long, and the struts alone
-/// are pressed.
+/// Spawns a ball with two struts along each axis, half their length apart. All springs have the same length. Only the
+/// struts are in compression.
 fn ball(commands: &mut Commands, which: Ball, center: Vec3, turn: Quat) {
     let mut ends = Vec::new();
     for axis in [Vec3::X, Vec3::Y, Vec3::Z] {
-        // To the side of x comes y, of y z, of z x.
+        // Struts along x are offset along y, those along y along z, and those along z along x.
         let side = 0.25 * STRUT * Vec3::new(axis.z, axis.x, axis.y);
         for side in [side, -side] {
             let rotation = turn * Quat::from_rotation_arc(Vec3::Y, axis);
@@ -145,7 +147,7 @@ fn record(
     energy.last = sum;
 }
 
-/// Lengths of a ball's springs, shortest first.
+/// Returns the spring lengths of a ball, shortest first.
 fn lengths(world: &mut World, which: Ball) -> Vec<f32> {
     let mut query = world.query::<(&Ball, &SpringReadout)>();
     let own = query.iter(world).filter(|(ball, _)| **ball == which);
@@ -169,7 +171,7 @@ fn check(world: &mut World) -> Vec<Finding> {
     let first = energy.first.unwrap_or(f32::NAN);
     let drop = 6.0 * MASS * GRAVITY * FALL;
     vec![
-        // The most that it has is in the step in which it lands.
+        // The largest energy is that of the landing step.
         Finding::small(
             "energy above the first",
             (energy.most - first) / first,

@@ -1,7 +1,7 @@
-//! Two torsion springs with dampers: a balance wheel that turns to and fro on a spiral spring, as in a clock, and a
-//! wheel's arm on a bar that is twisted by what the wheel carries.
+//! Two torsion springs with dampers: a balance wheel that oscillates on a spiral spring, as in a clock, and a wheel's
+//! arm on a torsion bar that is twisted by the wheel load.
 //!
-//! Opens a window where there is a display; `--screenshot FILE` and `--headless` do without.
+//! Opens a window where there is a display. `--screenshot FILE` and `--headless` need none.
 
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
@@ -9,22 +9,25 @@ use bevy_rapier3d::prelude::*;
 use stage::{Begin, Finding, Paint, PictureAt, Shape, Stage, Track, tracks};
 use std::f32::consts::TAU;
 
-/// Of the balance wheel about its axis, kg m².
+/// Moment of inertia of the balance wheel about its axis, kg m².
 const INERTIA: f32 = 0.05;
-/// N m/rad, N m s/rad
+/// Stiffness of the spiral spring, N m/rad.
 const SPIRAL: f32 = 0.8;
+/// Damping of the spiral spring, N m s/rad.
 const SPIRAL_DAMPING: f32 = 0.012;
-/// How far the spiral is twisted at first, rad: nearly half a turn.
+/// Twist of the spiral spring at the start, rad: nearly half a turn.
 const TWIST: f32 = 3.0;
 
-/// Of the arm, m, and what hangs on its end, kg.
+/// Length of the arm, m.
 const ARM: f32 = 0.7;
+/// Mass at the end of the arm, kg.
 const LOAD: f32 = 40.0;
-/// N m/rad, N m s/rad
+/// Stiffness of the torsion bar, N m/rad.
 const BAR: f32 = 700.0;
+/// Damping of the torsion bar, N m s/rad.
 const BAR_DAMPING: f32 = 60.0;
 const GRAVITY: f32 = 9.81;
-/// Angle of the arm above the level where the bar has no moment, rad.
+/// Angle of the arm above the horizontal at which the bar has no moment, rad.
 const SET: f32 = 0.45;
 
 fn main() -> AppExit {
@@ -81,7 +84,7 @@ fn balance(mut commands: Commands) {
                     Transform::from_rotation(along_z),
                     Shape::Cylinder(0.36, 0.06, Paint::Blue),
                 ),
-                // What shows how far it has turned.
+                // A mark that shows the angle.
                 (
                     Transform::from_xyz(0.3, 0.0, 0.035),
                     Shape::Cuboid(Vec3::new(0.1, 0.05, 0.03), Paint::Ivory),
@@ -110,7 +113,7 @@ fn bar(mut commands: Commands) {
             Transform::from_translation(pivot),
             Visibility::default(),
             children![
-                // The clamp at the far end, and the bearing at the arm's.
+                // The clamp at the far end, and the bearing at the arm's end.
                 (
                     Transform::from_xyz(0.0, -0.3, -1.2),
                     Shape::Cuboid(Vec3::new(0.26, 0.9, 0.12), Paint::Iron),
@@ -160,7 +163,7 @@ fn bar(mut commands: Commands) {
             ],
         ))
         .id();
-    // Angles count from where both bodies' frames are alike.
+    // The angle is 0 where both bodies' frames are aligned.
     commands.spawn((
         TorsionSpringDamper::new(frame, arm, Vec3::Z)
             .with_stiffness(BAR)
@@ -170,7 +173,7 @@ fn bar(mut commands: Commands) {
     ));
 }
 
-/// κ (set − θ) = m g r cos θ
+/// Returns the angle of the arm at rest, rad: κ (set − θ) = m g r cos θ.
 fn level() -> f32 {
     let mut angle = 0.0_f32;
     for _ in 0..50 {
@@ -187,7 +190,7 @@ fn check(world: &mut World) -> Vec<Finding> {
         TWIST - TWIST * (-decay * t).exp() * ((turn * t).cos() + decay / turn * (turn * t).sin())
     });
     let period = 1.0 / tracks[0].frequency(TWIST);
-    // From one largest angle to the next.
+    // The largest angle of each period.
     let tops: Vec<f32> = tracks[0]
         .0
         .windows(3)

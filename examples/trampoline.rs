@@ -1,32 +1,34 @@
-//! A trampoline: a cloth of 16 × 16 points and 420 springs in a frame, onto which balls fall. None falls
-//! through, none rises higher than it fell from, and in the end the frame carries what lies on the cloth.
+//! A trampoline: a cloth of 16 × 16 points and 420 springs in a frame. Balls fall onto it. No ball falls through, no
+//! ball rises above its start, and at the end the frame carries the weight of cloth and balls.
 //!
-//! Opens a window where there is a display; `--screenshot FILE` and `--headless` do without.
+//! Opens a window where there is a display. `--screenshot FILE` and `--headless` need none.
 
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
 use stage::{Begin, DT, Finding, Paint, PictureAt, Shape, Stage};
 
-/// Points along an edge; the outermost are fixed to the frame.
+/// Number of points along an edge. The outermost points are fixed to the frame.
 const SIDE: usize = 16;
-/// From point to point, m.
+/// Distance between neighbouring points, m.
 const PITCH: f32 = 0.2;
-/// Of a point, kg.
+/// Mass of a point, kg.
 const MASS: f32 = 0.05;
+/// Stiffness of a spring, N/m.
 const STIFFNESS: f32 = 300.0;
+/// Damping of a spring, N s/m.
 const DAMPING: f32 = 2.0;
-/// Length of a spring without force, m: all are in tension.
+/// Rest length of a spring, m. It is shorter than `PITCH`, so all springs are in tension.
 const REST: f32 = 0.1;
-/// Of the cloth above the ground, m.
+/// Height of the cloth above the ground, m.
 const HEIGHT: f32 = 1.1;
-/// Radius (m), mass (kg), place (m), and height of the fall (m) of the balls.
+/// Radius (m), mass (kg), position (m) and fall height (m) of each ball.
 const BALLS: [(f32, f32, Vec2, f32); 3] = [
     (0.36, 3.0, Vec2::new(-0.65, -0.2), 1.0),
     (0.28, 1.5, Vec2::new(0.5, -0.5), 1.3),
     (0.32, 2.0, Vec2::new(0.4, 0.55), 0.7),
 ];
-/// The balls are let go after this, s.
+/// Time at which the balls are released, s.
 const DROP: f32 = 2.0;
 const SECONDS: f32 = 9.0;
 const GRAVITY: f32 = 9.81;
@@ -56,18 +58,18 @@ struct Knot;
 #[derive(Component)]
 struct Ball(f32);
 
-/// What happened.
+/// Measurements.
 #[derive(Resource, Default)]
 struct Seen {
-    /// Of the cloth's middle before the balls fall, m.
+    /// Sag of the cloth's middle before the balls fall, m.
     sag: f32,
-    /// Energy when the balls are let go, and the most since, J.
+    /// Energy when the balls are released, and the largest since, J.
     energy: Option<(f32, f32)>,
-    /// How far above its first place any ball has been since, m.
+    /// Greatest height of any ball above its start since then, m.
     rise: f32,
-    /// Of a ball below the cloth's frame, m.
+    /// Lowest height of a ball relative to the frame, m.
     lowest: f32,
-    /// What the springs at the frame carry, the mean of the last second, N.
+    /// Vertical force of the springs at the frame, N: mean over the last second.
     carried: f32,
 }
 
@@ -102,7 +104,7 @@ fn setup(mut commands: Commands) {
     };
     let points: Vec<Entity> = (0..SIDE * SIDE)
         .map(|i| {
-            // Let go near its shape at rest.
+            // The cloth starts near its shape at rest.
             let bow = |x: f32| (std::f32::consts::FRAC_PI_2 * x / reach).cos();
             let low = sag() * bow(at(i).x) * bow(at(i).z);
             let point = Transform::from_translation(at(i) - low * Vec3::Y);
@@ -115,7 +117,7 @@ fn setup(mut commands: Commands) {
                 ColliderMassProperties::Mass(MASS),
                 CollisionGroups::new(Group::GROUP_1, Group::GROUP_2),
                 LockedAxes::ROTATION_LOCKED,
-                // The air that the cloth moves.
+                // Drag of the air that the cloth moves.
                 Damping {
                     linear_damping: 2.0,
                     ..default()
@@ -178,7 +180,7 @@ fn record(
     if t < DROP {
         let lowest = knots.iter().map(|(at, _)| at.translation.y);
         let sag = HEIGHT - lowest.fold(HEIGHT, f32::min);
-        // The mean of the last second.
+        // Mean over the last second before the release.
         if t > DROP - 1.0 - 0.5 * DT {
             seen.sag += DT * sag;
         }
@@ -216,7 +218,7 @@ fn record(
     }
 }
 
-/// Sag of the middle of a square membrane under its own weight, for small sag.
+/// Returns the sag of the middle of a square membrane under its own weight, m, for small sag.
 fn sag() -> f32 {
     let tension = STIFFNESS * (PITCH - REST) / PITCH;
     let weight = MASS * GRAVITY / (PITCH * PITCH);

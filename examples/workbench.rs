@@ -1,5 +1,5 @@
-//! The workbench on a few springs below a beam that shakes: choose one in the list or click it, drag its numbers, and look
-//! at its curves. F9 closes and opens the panel.
+//! The workbench with a few springs below a shaking beam. Select a spring in the list or click it, drag its numbers,
+//! and look at its curves. F9 closes and opens the panel.
 //!
 //! `cargo run --features workbench --example workbench`
 
@@ -8,9 +8,11 @@ use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
 use std::f32::consts::TAU;
 
-/// Of the beam, m and Hz.
+/// Amplitude of the beam, m.
 const AMPLITUDE: f32 = 0.05;
+/// Frequency of the beam, Hz.
 const FREQUENCY: f32 = 0.7;
+/// Height of the beam, m.
 const HEIGHT: f32 = 2.0;
 
 #[derive(Component)]
@@ -46,7 +48,7 @@ fn setup(
     mut meshes: ResMut<Assets<Mesh>>,
     mut materials: ResMut<Assets<StandardMaterial>>,
 ) {
-    // The springs are seen between the panels.
+    // The springs are visible between the panels.
     let eye = Transform::from_xyz(0.15, 1.0, 6.5).looking_at(Vec3::new(0.15, 0.45, 0.0), Vec3::Y);
     commands.spawn((Camera3d::default(), eye));
     let light = Transform::from_xyz(2.0, 4.0, 5.0).looking_at(Vec3::ZERO, Vec3::Y);

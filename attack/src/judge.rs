@@ -1,4 +1,4 @@
-//! Runs a planned scene and says what is wrong with it.
+//! Runs a planned scene and returns what is wrong with it.
 
 use crate::plan::{Plan, TICKS};
 use crate::stage::Stage;
@@ -13,18 +13,18 @@ thread_local! {
     static LAST_PANIC: RefCell<String> = const { RefCell::new(String::new()) };
 }
 
-/// What came of a scene.
+/// Result of a scene.
 #[derive(Debug, PartialEq)]
 pub enum Verdict {
     /// Nothing is wrong.
     Sound,
-    /// Something is, but the same deeds without springs do the same: the engine's.
+    /// Something is wrong, but the scene without springs fails as well: a fault of the engine.
     Engines(String),
-    /// It is ours.
+    /// Something is wrong only with springs: a fault of this crate.
     Ours(String),
 }
 
-/// Has panics kept, instead of printed.
+/// Installs a panic hook that keeps the message instead of printing it.
 fn listen() {
     static ONCE: Once = Once::new();
     ONCE.call_once(|| {
@@ -34,7 +34,7 @@ fn listen() {
     });
 }
 
-/// Runs a scene; what is wrong, if anything is.
+/// Runs a scene. Returns what is wrong, if anything is.
 fn run(plan: &Plan, with_springs: bool) -> Result<(), String> {
     listen();
     let played = catch_unwind(AssertUnwindSafe(|| play(plan, with_springs)));
@@ -44,13 +44,13 @@ fn run(plan: &Plan, with_springs: bool) -> Result<(), String> {
     })
 }
 
-/// Runs a scene, and if something is wrong, once more without springs.
+/// Runs a scene. If something is wrong, runs it once more without springs.
 pub fn judge(plan: &Plan) -> Verdict {
     match run(plan, true) {
         Ok(()) => Verdict::Sound,
         Err(wrong) => match run(plan, false) {
             Ok(()) => Verdict::Ours(wrong),
-            // A panic of ours stays ours, whatever else goes wrong.
+            // A panic in this crate's code is its fault, even if the engine fails as well.
             Err(_) if wrong.contains("panicked at src/") => Verdict::Ours(wrong),
             Err(engines) => Verdict::Engines(engines),
         },
@@ -80,7 +80,7 @@ fn play(plan: &Plan, with_springs: bool) -> Result<(), String> {
             }
         }
     }
-    // Without springs too: a paused engine goes on there, and may find its own faults only then.
+    // Done without springs as well: a paused engine continues here, and may show its own faults only then.
     nothing_is_left(&mut stage)
 }
 
@@ -91,18 +91,18 @@ fn keep(stage: &Stage) -> Kept {
     (RapierSnapshot::take(world), CoiloverSnapshot::take(world))
 }
 
-/// Puts a snapshot back where it fits. What was done meanwhile may forbid it; then nothing is changed.
+/// Restores a snapshot if it fits. Changes since it was taken may forbid that, and then nothing changes.
 fn go_back(stage: &mut Stage, kept: &Option<Kept>) {
     let Some((engine, springs)) = kept else {
         return;
     };
     let world = stage.app.world_mut();
-    // The springs' side may fit where the engine's does not: that is no worse than a jump by the game.
+    // The springs' side may fit where the engine's does not. That is no worse than a jump by the game.
     let _ = engine.restore(world);
     let _ = springs.restore(world);
 }
 
-/// Whether all that can be seen is a number.
+/// Returns an error unless all visible state is finite.
 fn is_finite(stage: &mut Stage) -> Result<(), String> {
     let world = stage.app.world_mut();
     let mut bodies = world.query::<(
@@ -135,7 +135,7 @@ fn is_finite(stage: &mut Stage) -> Result<(), String> {
     Ok(())
 }
 
-/// Takes all elements away: nothing of theirs may be left.
+/// Despawns all elements. Returns an error if loads, joints or solver iterations of theirs are left.
 fn nothing_is_left(stage: &mut Stage) -> Result<(), String> {
     let mut configurations = stage.app.world_mut().query::<&mut RapierConfiguration>();
     for mut configuration in configurations.iter_mut(stage.app.world_mut()) {

@@ -1,7 +1,7 @@
-//! Random scenes, and random deeds while they run.
+//! Random scenes, and random changes to them while they run.
 //!
-//! [`plan`] says what a scene can be made of and what can be done to it, [`stage`] makes and does it with Bevy and Rapier,
-//! [`judge`] watches. `tests/attack.rs` searches; a scene that fails is made as small as it can be, and printed.
+//! [`plan`] describes a scene and its changes, [`stage`] builds and changes it with Bevy and Rapier, and [`judge`] checks
+//! it. `tests/attack.rs` searches for faults. It shrinks a scene that fails and prints it.
 
 pub mod endurance;
 pub mod judge;

@@ -1,183 +1,183 @@
-//! What a scene can be made of, and what can be done to it.
+//! Descriptions of random scenes: bodies, elements, and what is done to them while the scene runs.
 
 use proptest::collection::vec;
 use proptest::prelude::*;
 use proptest::sample::select;
 
-/// Ticks that a scene runs.
+/// Number of ticks that a scene runs.
 pub const TICKS: u8 = 60;
 
-/// What an end stands on.
+/// Kind of body of an end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Kind {
-    /// Moved by physics.
+    /// A body that physics moves.
     Dynamic,
-    /// Never moves.
+    /// A body that never moves.
     Fixed,
-    /// The game says where it goes,
+    /// A kinematic body whose position the game sets.
     KinematicPlace,
-    /// or how fast.
+    /// A kinematic body whose velocity the game sets.
     KinematicSpeed,
-    /// No body.
+    /// An entity without a body.
     Point,
 }
 
-/// The shape that a body touches others with.
+/// Collider of a body.
 #[derive(Clone, Copy, Debug)]
 pub enum Shape {
-    /// Touches nothing.
+    /// No collider.
     None,
-    /// Radius, m.
+    /// A ball of this radius, m.
     Ball(f32),
-    /// Half of a side, m.
+    /// A cube of this half edge, m.
     Cube(f32),
 }
 
 /// One body.
 #[derive(Clone, Debug)]
 pub struct BodyPlan {
-    /// What moves it.
+    /// Kind of the body.
     pub kind: Kind,
-    /// kg.
+    /// Mass, kg.
     pub mass: f32,
-    /// m.
+    /// Position, m.
     pub place: [f32; 3],
-    /// m/s.
+    /// Velocity, m/s.
     pub speed: [f32; 3],
-    /// rad/s.
+    /// Angular velocity, rad/s.
     pub spin: [f32; 3],
-    /// What it touches with.
+    /// Collider.
     pub shape: Shape,
     /// Bits of `LockedAxes`.
     pub locks: u8,
-    /// Times the scene's.
+    /// Factor on the scene's gravity.
     pub gravity: f32,
-    /// More solver iterations than others.
+    /// Additional solver iterations.
     pub iterations: u8,
-    /// Index of the body that it stands below, if that comes before it.
+    /// Index of the parent body, which has to come before this one.
     pub below: Option<u8>,
 }
 
-/// One element. What kind it is, says `kind`: linear ones are 0 to 2, torsion ones 3 to 5.
+/// One element.
 #[derive(Clone, Debug)]
 pub struct ElementPlan {
-    /// Spring, damper, both; and the same for torsion.
+    /// 0 spring, 1 damper, 2 spring and damper; 3 to 5 are these for torsion.
     pub kind: u8,
     /// Indices of its bodies.
     pub ends: [u8; 2],
-    /// N/m or N m/rad.
+    /// Stiffness, N/m or N m/rad.
     pub stiffness: f32,
-    /// N s/m or N m s/rad.
+    /// Damping, N s/m or N m s/rad.
     pub damping: f32,
-    /// m or rad.
+    /// Rest length in m or rest angle in rad. `None` takes it from the pose.
     pub rest: Option<f32>,
-    /// In the frames of its bodies, m.
+    /// Anchors in the frames of the bodies, m.
     pub anchors: Option<[[f32; 3]; 2]>,
-    /// The axis of a torsion element.
+    /// Axis of a torsion element.
     pub axis: [f32; 3],
-    /// What stands beside it.
+    /// Companion component.
     pub companion: Companion,
 }
 
-/// What stands beside an element.
+/// Companion component of an element.
 #[derive(Clone, Debug)]
 pub enum Companion {
-    /// Nothing.
+    /// No companion.
     None,
-    /// It pulls only.
+    /// The element only pulls.
     Pull,
-    /// It pushes only.
+    /// The element only pushes.
     Push,
-    /// N.
+    /// Preload, N.
     Preload(f32),
-    /// N.
+    /// Force limit, N.
     MaxForce(f32),
-    /// Shortest, longest, and stiffness of the stops.
+    /// Minimum and maximum length in m, and stiffness of the stops in N/m.
     Travel(f32, f32, f32),
-    /// Along an axis of body A.
+    /// The element acts along an axis of body A.
     Axis([f32; 3]),
     /// Force at which it breaks, N.
     Breakable(f32),
-    /// Linear and cubic stiffness.
+    /// Polynomial law: linear stiffness in N/m and cubic stiffness in N/m³.
     Cubic(f32, f32),
-    /// Two points of a table of forces.
+    /// Table law: a point below and a point above zero, each of stretch in m and force in N.
     Table([f32; 2], [f32; 2]),
-    /// Bump and rebound.
+    /// Sided damper: bump and rebound damping, N s/m.
     Sided(f32, f32),
-    /// Frequency and damping ratio.
+    /// Tuning: frequency in Hz and damping ratio.
     Tuning(f32, f32),
-    /// Keeps its load where it is.
+    /// The element holds its load where it is.
     HoldPose,
 }
 
-/// What is done to a scene while it runs. Numbers are indices of bodies or elements.
+/// A change to a scene while it runs. Numbers of type `u8` are indices of bodies or elements.
 #[derive(Clone, Debug)]
 pub enum Deed {
-    /// A body goes, and what stands below it.
+    /// Despawns a body and its children.
     DespawnBody(u8),
-    /// An element goes.
+    /// Despawns an element.
     DespawnElement(u8),
-    /// Another element comes.
+    /// Spawns an element.
     SpawnElement(ElementPlan),
-    /// A body is disabled in the engine, or enabled.
+    /// Disables a body in the engine, or enables it.
     ToggleBody(u8),
-    /// An element is disabled, or enabled.
+    /// Disables an element, or enables it.
     ToggleElement(u8),
-    /// A body becomes another kind of body.
+    /// Changes the kind of a body.
     Become(u8, Kind),
-    /// It is somewhere else.
+    /// Moves a body to a position, m.
     Teleport(u8, [f32; 3]),
-    /// It is faster.
+    /// Adds to the velocity of a body, m/s.
     Kick(u8, [f32; 3]),
-    /// It gets another shape, or none.
+    /// Gives a body another collider, or none.
     Reshape(u8, Shape),
-    /// The game pushes it, N.
+    /// Sets the user's force on a body, N.
     Push(u8, [f32; 3]),
-    /// It stands below another one, or below none.
+    /// Makes a body the child of another one, or of none.
     Below(u8, Option<u8>),
-    /// It is larger.
+    /// Sets the scale of a body.
     Scale(u8, f32),
-    /// It is heavier.
+    /// Sets the mass of a body, kg.
     Weigh(u8, f32),
-    /// Another stiffness.
+    /// Sets the stiffness of an element.
     Stiffen(u8, f32),
-    /// Other ends.
+    /// Gives an element other ends.
     Retie(u8, [u8; 2]),
-    /// Another companion, or one more.
+    /// Replaces or adds a companion of an element.
     Accompany(u8, Companion),
-    /// Rapier's own joint between two bodies: 0 ball, 1 hinge, 2 slider, 3 fixed, 4 rope, 5 spring.
+    /// Adds one of Rapier's joints between two bodies: 0 ball, 1 hinge, 2 slider, 3 fixed, 4 rope, 5 spring.
     Join(u8, [u8; 2]),
-    /// Gravity, m/s².
+    /// Sets gravity, m/s².
     Gravity([f32; 3]),
-    /// Seconds of a tick, and how many steps it is made of.
+    /// Sets the length of a tick in s, and its number of substeps.
     Rate(f32, u8),
-    /// Physics stands still, or goes on.
+    /// Pauses physics (`true`) or continues it.
     Pause(bool),
-    /// Micro-steps, extrapolation, tolerance.
+    /// Sets micro-steps, extrapolation and tolerance.
     Settings(u8, bool, Option<f32>),
 }
 
-/// A scene, and what is done to it in which tick.
+/// A scene and its changes.
 #[derive(Clone, Debug)]
 pub struct Plan {
-    /// Its bodies.
+    /// Bodies of the scene.
     pub bodies: Vec<BodyPlan>,
-    /// Its elements.
+    /// Elements of the scene.
     pub elements: Vec<ElementPlan>,
-    /// Tick and deed, in any order.
+    /// Changes with their ticks, in any order.
     pub deeds: Vec<(u8, Deed)>,
-    /// There is a ground to fall on.
+    /// Whether the scene has a ground.
     pub ground: bool,
-    /// Ticks after which snapshots are taken, and ticks before which they are put back.
+    /// Pairs of ticks: a snapshot is taken after the first, and restored before the second.
     pub goes_back: Vec<[u8; 2]>,
 }
 
-/// Even in its logarithm.
+/// Random numbers with a uniform logarithm.
 fn spread(least: f32, most: f32) -> impl Strategy<Value = f32> + Clone {
     (least.ln()..most.ln()).prop_map(f32::exp)
 }
 
-/// Mostly sound numbers, and now and then what no element should get.
+/// Mostly valid numbers, and now and then a number that no element should get.
 fn number(least: f32, most: f32) -> impl Strategy<Value = f32> + Clone {
     prop_oneof![
         40 => spread(least, most),
@@ -326,14 +326,14 @@ fn deed() -> impl Strategy<Value = Deed> + Clone {
     ]
 }
 
-/// All scenes.
+/// Strategy for random scenes.
 pub fn plans() -> impl Strategy<Value = Plan> {
     (
         vec(body(), 1..8),
         vec(element(), 1..8),
         vec((0..TICKS, deed()), 0..8),
         any::<bool>(),
-        // Last, so that what comes before is as it was for each seed.
+        // This stays last, so that each seed keeps its bodies, elements and changes.
         prop_oneof![2 => Just(Vec::new()), 1 => vec([0..TICKS, 0..TICKS], 1..4)],
     )
         .prop_map(|(bodies, elements, deeds, ground, goes_back)| Plan {

@@ -1,4 +1,4 @@
-//! Makes a planned scene with Bevy and Rapier, and does to it what is planned.
+//! Builds a planned scene with Bevy and Rapier, and applies its changes.
 
 use crate::plan::{BodyPlan, Companion, Deed, ElementPlan, Kind, Plan, Shape};
 use bevy::ecs::schedule::Schedules;
@@ -9,20 +9,20 @@ use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
 use std::time::Duration;
 
-/// A scene that runs.
+/// A running scene.
 pub struct Stage {
-    /// Its app.
+    /// App of the scene.
     pub app: App,
-    /// Its bodies and points, in the order of the plan; gone ones too.
+    /// Bodies and points in the order of the plan, including despawned ones.
     pub bodies: Vec<Entity>,
-    /// Its elements likewise.
+    /// Elements in the order in which they were spawned, including despawned ones.
     pub elements: Vec<Entity>,
-    /// Joints of the game's own.
+    /// Joints that the game itself spawned.
     pub joints: Vec<Entity>,
 }
 
 impl Stage {
-    /// Builds a scene; without springs if they are not to be.
+    /// Builds a scene, with or without springs.
     pub fn new(plan: &Plan, with_springs: bool) -> Self {
         let mut app = App::new();
         app.add_plugins((MinimalPlugins, TransformPlugin))
@@ -39,7 +39,7 @@ impl Stage {
         stage.rate(1.0 / 60.0, 1);
         stage.app.finish();
         stage.app.cleanup();
-        // Threads would only be in the way of the other scenes'.
+        // Worker threads would only slow down other scenes that run at the same time.
         let mut schedules = stage.app.world_mut().resource_mut::<Schedules>();
         for (_, schedule) in schedules.iter_mut() {
             schedule.set_executor(SingleThreadedExecutor::new());
@@ -153,7 +153,7 @@ impl Stage {
         accompany(&mut element, &plan.companion);
     }
 
-    /// Does one deed.
+    /// Applies one change.
     pub fn act(&mut self, deed: &Deed, with_springs: bool) {
         match deed {
             Deed::DespawnBody(b) => self.on_body(*b, |body| body.despawn()),
@@ -262,7 +262,7 @@ impl Stage {
         }
     }
 
-    /// Puts a body below another one, where that makes no circle.
+    /// Makes a body the child of another one, unless that makes a cycle.
     fn below(&mut self, body: u8, below: Option<u8>) {
         let Some(body) = Self::of(&self.bodies, body) else {
             return;

@@ -1,8 +1,9 @@
-//! Random scenes: is there any in which ours panics, makes what is not a number, or leaves something behind?
+//! A search through random scenes for one in which this crate panics, makes a number that is not
+//! finite, or leaves something behind.
 //!
-//! `cargo test --workspace --test attack` runs a few; `cargo test --release --workspace --test attack -- --scenes 100000` is
-//! the long search, and `--seed N` gives others than those of 0. A program of its own, not a list of tests, so that it
-//! tells what it has found as it goes on.
+//! `cargo test --workspace --test attack` runs a few. `cargo test --release --workspace --test attack -- --scenes 100000`
+//! is the long search. `--seed N` starts at another seed than 0. This is a program of its own and not a list of tests, so
+//! that it prints its findings as it goes on.
 
 use attack::judge::{Verdict, judge};
 use attack::plan::plans;
@@ -12,15 +13,15 @@ use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 use std::collections::BTreeMap;
 use std::process::ExitCode;
 
-/// Scenes of a short search.
+/// Number of scenes of a short search.
 const SCENES: u64 = 200;
 
-/// Seeds whose scenes were wrong once; they are run first, always.
+/// Seeds whose scenes failed once. Every search runs them first.
 const ONCE_WRONG: [u64; 8] = [
     7, 503, 2738, 51_601, 505_511, 1_006_820, 1_045_674, 1_064_950,
 ];
 
-/// Smaller scenes that are tried for one that fails.
+/// Number of smaller scenes that are tried for a failing one.
 const SHRINKS: usize = 600;
 
 fn main() -> ExitCode {
@@ -34,7 +35,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// Says whether nothing of ours was found.
+/// Returns whether no fault of this crate was found.
 fn search() -> Result<bool, lexopt::Error> {
     let (mut scenes, mut seed) = (SCENES, 0_u64);
     let mut words = lexopt::Parser::from_env();
@@ -42,7 +43,7 @@ fn search() -> Result<bool, lexopt::Error> {
         match word {
             Long("scenes") => scenes = words.value()?.parse()?,
             Long("seed") => seed = words.value()?.parse()?,
-            // What is meant for lists of tests.
+            // Arguments that Cargo passes to every test program.
             Value(filter) if !"attack".contains(&*filter.to_string_lossy()) => return Ok(true),
             Value(_) | Long("nocapture" | "quiet") | Short('q') => {}
             other => return Err(other.unexpected()),
@@ -84,7 +85,7 @@ fn search() -> Result<bool, lexopt::Error> {
     Ok(ours.is_empty())
 }
 
-/// What is wrong without its numbers, to count by.
+/// A failure message without its numbers, to count failures by.
 fn kind(wrong: &str) -> String {
     match wrong.find("panicked at ") {
         Some(at) => wrong[at..].chars().take(100).collect(),
@@ -97,7 +98,7 @@ fn kind(wrong: &str) -> String {
     }
 }
 
-/// The smallest scene in which the same is wrong, and what is.
+/// Shrinks a scene while it fails in the same way. Returns the smallest failing scene that was tried, and its verdict.
 fn shrink(tree: &mut impl ValueTree<Value = attack::plan::Plan>, wanted: &str) -> String {
     let mut best = String::new();
     let mut fails = true;

@@ -1,8 +1,8 @@
-//! Days in a row: is memory flat, does what dampers took explain where energy went, and does all stand where it stood?
+//! Long runs: memory stays flat, dissipation explains the energy loss, and everything rests where it should.
 //!
-//! `cargo test --workspace --test soak` plays a minute of each scene; `cargo test --release --workspace --test soak --
-//! --hours 24` plays a day, `--scene car` one scene alone, and `--pause 60` hits it once a minute. Ticks are timed too, for whoever
-//! reads the times.
+//! `cargo test --workspace --test soak` plays a minute of each scene. `cargo test --release --workspace --test soak --
+//! --hours 24` plays a day. `--scene car` plays one scene alone, and `--pause 60` strikes it once a minute. The program
+//! also prints the time per tick, but asserts nothing about it.
 
 use attack::endurance::{Endurance, Interval, car, cloth, net};
 use lexopt::prelude::*;
@@ -17,11 +17,11 @@ static MEMORY: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
 /// Hours of a short run.
 const HOURS: f64 = 1.0 / 60.0;
 
-/// So often each scene tells how it is.
+/// Number of reports of each scene.
 const REPORTS: u64 = 12;
 
-/// Bytes by which what is in use may grow after the first report. Queues of Bevy's threads double now and then, when more waits in
-/// them than ever before: up to 108 KB came of it in three minutes of the car, other numbers in each run.
+/// Bytes by which the memory in use may grow after the first report. Queues of Bevy's threads double when they are fuller
+/// than ever before. This added up to 108 KB in three minutes of the car, a different amount in each run.
 const GROWTH: isize = 256 << 10;
 
 fn main() -> ExitCode {
@@ -35,7 +35,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// Says whether all scenes were sound.
+/// Returns whether all scenes were sound.
 fn soak() -> Result<bool, lexopt::Error> {
     let (mut hours, mut only, mut pause) = (HOURS, None::<String>, None);
     let mut words = lexopt::Parser::from_env();
@@ -44,7 +44,7 @@ fn soak() -> Result<bool, lexopt::Error> {
             Long("hours") => hours = words.value()?.parse()?,
             Long("pause") => pause = Some(words.value()?.parse()?),
             Long("scene") => only = Some(words.value()?.parse()?),
-            // What is meant for lists of tests.
+            // Arguments that Cargo passes to every test program.
             Value(filter) if !"soak".contains(&*filter.to_string_lossy()) => return Ok(true),
             Value(_) | Long("nocapture" | "quiet") | Short('q') => {}
             other => return Err(other.unexpected()),
@@ -66,7 +66,7 @@ fn in_use(region: &Region<System>) -> isize {
     change.bytes_allocated as isize - change.bytes_deallocated as isize
 }
 
-/// Its size; endless for what is no number, which `max` would pass over.
+/// Absolute value, and infinity for NaN, which `max` would ignore.
 fn size(number: f64) -> f64 {
     if number.is_finite() {
         number.abs()
@@ -75,12 +75,12 @@ fn size(number: f64) -> f64 {
     }
 }
 
-/// Plays it so long, and tells what is wrong.
+/// Plays a scene for a time and prints what is wrong. Returns whether nothing is.
 fn is_sound(mut scene: Endurance, hours: f64) -> bool {
     let intervals = ((3600.0 * hours / f64::from(scene.pause)).round() as u64).max(2);
     let every = (intervals / REPORTS).max(1);
     let region = Region::new(MEMORY);
-    // What grows once grows in the first of all.
+    // Memory that grows only once does so in this first interval.
     scene.interval();
     let (mut first, mut wrong) = (None, Vec::new());
     let (mut worst, mut began) = (Interval::default(), Instant::now());

@@ -1,2 +1,2 @@
-//! Tests of springs that come from files and editors; see `tests/`. A package of its own, so that who tests the crate
-//! alone need not build what reads them.
+//! Tests of springs that come from files and editors; see `tests/`. They are a separate package, so that tests of the
+//! crate alone do not build the file readers.

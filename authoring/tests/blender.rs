@@ -1,6 +1,6 @@
-//! Does a scene that was made in Blender, by the add-on in `blender/`, behave in Bevy as Blender's panel said?
+//! Tests that a scene made in Blender with the add-on in `blender/` behaves in Bevy as the add-on's panel predicts.
 //!
-//! `assets/blender_scene.glb` is checked against its script by the add-on's own tests.
+//! The add-on's own tests check `assets/blender_scene.glb` against the script that makes it.
 
 use crate::harness::*;
 use bevy::prelude::*;
@@ -14,12 +14,12 @@ fn scene() -> (Stage, Entity) {
     let assets = Path::new(env!("CARGO_MANIFEST_DIR")).join("../assets");
     let mut stage = Stage::new(&assets);
     let root = stage.load("blender_scene.glb");
-    // Bodies and joints come by the end of the frame in which the scene does.
+    // Bodies and joints are spawned by the end of the frame in which the scene is spawned.
     run(&mut stage.app, 2.0 * DT);
     (stage, root)
 }
 
-/// Lengths of an element for some seconds, m, a tick each.
+/// Length of an element at each tick for some seconds, m. For a torsion element the angle, rad.
 fn lengths(stage: &mut Stage, element: Entity, seconds: f32) -> Vec<f32> {
     (0..(seconds / DT).round() as usize)
         .map(|_| {
@@ -29,7 +29,7 @@ fn lengths(stage: &mut Stage, element: Entity, seconds: f32) -> Vec<f32> {
         .collect()
 }
 
-/// Hz, from the first and the last rise through the middle.
+/// Frequency, Hz, from the times of the first and the last rise through `middle`.
 fn frequency(series: &[f32], middle: f32) -> f32 {
     let rises: Vec<f32> = series
         .windows(2)
@@ -55,7 +55,7 @@ fn a_spring_from_blender_swings_at_the_frequency_and_about_the_sag_that_its_pane
     let (mut stage, root) = scene();
     let spring = stage.node(root, "Spring Beam Load spring");
     let series = lengths(&mut stage, spring, 8.0);
-    // 4 kg on 400 N/m, 0.9 m at rest.
+    // 4 kg on 400 N/m with a rest length of 0.9 m.
     let (wanted, sag) = (
         (400.0_f32 / 4.0).sqrt() / std::f32::consts::TAU,
         4.0 * G / 400.0,
@@ -104,7 +104,8 @@ fn a_torsion_spring_from_blender_swings_about_where_moment_and_weight_are_equal(
     let (low, high) = series
         .iter()
         .fold((f32::MAX, f32::MIN), |(l, h), x| (l.min(*x), h.max(*x)));
-    // Energy: from level at rest down to an angle where half k a² is what the weight has given, m g (L/2) sin a.
+    // Energy balance from rest at level to the lowest angle a: the spring stores k a²/2, which is the work of the
+    // weight, m g (L/2) sin a. Solved for a by Newton's method.
     let given = |a: f32| 2.0 * G * 0.35 * a.sin() - 12.5 * a * a;
     let mut lowest = 0.5;
     for _ in 0..40 {

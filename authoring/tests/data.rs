@@ -1,4 +1,5 @@
-//! Do elements with names for ends pass through text and back: reflection, serde, scene files, `bsn!`?
+//! Tests that components survive being written as text and read back: reflection, serde, scene files, `bsn!`. Elements
+//! name their ends.
 
 use crate::harness::*;
 use bevy::ecs::reflect::{AppTypeRegistry, ReflectComponent};
@@ -11,7 +12,7 @@ use bevy_world_serialization::{DynamicWorld, DynamicWorldBuilder, WorldAsset};
 use serde::de::DeserializeSeed;
 use serde_json::json;
 
-/// These scenes name no assets.
+/// Asset loader that panics: the scenes of these tests refer to no assets.
 struct NoAssets;
 
 impl bevy::asset::LoadFromPath for NoAssets {
@@ -24,7 +25,7 @@ impl bevy::asset::LoadFromPath for NoAssets {
     }
 }
 
-/// Every component that a designer writes, with numbers that are no defaults.
+/// Every component that a designer writes, with values that differ from the defaults.
 pub fn all() -> Vec<Box<dyn PartialReflect>> {
     let table = || ForceTable::new([(-1.0, -20.0), (0.0, 0.0), (0.5, 3.25)]);
     vec![
@@ -89,7 +90,7 @@ fn every_component_survives_a_round_trip_through_ron_and_json() {
         let text = ron::to_string(&writer).expect("RON");
         let mut ron = ron::Deserializer::from_str(&text).expect("RON");
         back(reader().deserialize(&mut ron).expect(&text), &text);
-        // JSON has no infinity; where a component has one, its writer must not be asked.
+        // JSON cannot hold infinity, so no number in `all` is infinite.
         let text = serde_json::to_string(&writer).expect("JSON");
         let mut json = serde_json::Deserializer::from_str(&text);
         back(reader().deserialize(&mut json).expect(&text), &text);
@@ -157,7 +158,7 @@ fn a_scene_file_ties_its_springs_in_another_world() {
     };
     assert!(text.contains("\"bevy_coilover::EndNames\""), "{text}");
     let mut app = game();
-    // Entities here have other numbers.
+    // Shifts the entity indices, so that they differ from those in the file.
     for _ in 0..7 {
         app.world_mut().spawn_empty();
     }
@@ -185,7 +186,7 @@ fn a_scene_file_ties_its_springs_in_another_world() {
     assert!(!fault && readout.force() > 2.0, "{readout:?}");
 }
 
-/// As Bevy spawns what it has loaded from a glTF file.
+/// Bevy spawns a loaded glTF scene in the same way.
 #[test]
 fn every_component_can_be_in_a_scene_that_is_spawned() {
     let mut app = app();
@@ -241,7 +242,7 @@ fn a_scene_file_written_by_hand_needs_names_only() {
     let fault = faults.single(app.world()).expect("it waits").to_string();
     assert!(fault.contains("'Weight'"), "{fault}");
     spawn_ends(&mut app);
-    // There are two hooks now.
+    // Now there are two hooks.
     run(&mut app, 0.1);
     let fault = faults.single(app.world()).expect("it waits").to_string();
     assert!(

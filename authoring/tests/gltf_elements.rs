@@ -1,4 +1,4 @@
-//! Do springs from glTF files have every number, and do page and schema say so?
+//! Tests that springs from glTF files keep every number, and that docs/gltf.md and its schema agree with the loader.
 
 use crate::harness::*;
 use bevy::ecs::entity_disabling::Disabled;
@@ -27,7 +27,7 @@ pub fn element(extension: Value) -> Value {
     json!({ "name": "Element", "extensions": { "BEVY_coilover": extension } })
 }
 
-/// A hook, a weight of 2 kg two metres below, and an element.
+/// A glTF file with a hook, a weight of 2 kg two metres below it, and an element.
 pub fn rig(extension: &Value) -> String {
     gltf(
         json!([hook(), weight(), element(extension.clone())]),
@@ -35,7 +35,7 @@ pub fn rig(extension: &Value) -> String {
     )
 }
 
-/// Everything that the extension can say, with what it is in Rust.
+/// Every companion that the extension offers, as JSON, with a check of the component in Rust.
 fn everything() -> Vec<(Value, Box<dyn Fn(EntityRef) -> bool>)> {
     fn has<C: Component + PartialEq>(wanted: C) -> Box<dyn Fn(EntityRef) -> bool> {
         Box::new(move |entity| entity.get::<C>() == Some(&wanted))
@@ -117,7 +117,7 @@ fn everything() -> Vec<(Value, Box<dyn Fn(EntityRef) -> bool>)> {
             has(SpringTravel::new(0.0, f32::INFINITY, 900.0)),
         ),
         (
-            // Along an axis a length has a sign, and no least one is zero.
+            // Along an axis the length has a sign, so the default minimum is −∞ instead of zero.
             beside(
                 json!({ "springTravel": { "stopStiffness": 900 }, "springAxis": { "World": [0, 1, 0] } }),
             ),
@@ -315,7 +315,7 @@ fn the_page_and_the_schema_agree_and_the_example_swings() {
     let root = stage.load("page.gltf");
     run(&mut stage.app, 5.0);
     assert!(stage.faults().is_empty(), "{:?}", stage.faults());
-    // Hook at 2 m, anchor 0.1 above it; 1200 N/m, 0.5 m, 10 N of preload, 2 kg.
+    // Hook at 2 m with its anchor 0.1 m above it; 1200 N/m, rest length 0.5 m, preload 10 N, 2 kg.
     let sag = (2.0 * 9.81 - 10.0) / 1200.0;
     let lamp = stage.node(root, "Lamp");
     let y = stage.place(lamp).translation.y;

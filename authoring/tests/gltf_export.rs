@@ -1,4 +1,4 @@
-//! Does a scene that goes out into glTF and comes in again keep every number?
+//! Tests that a scene keeps every number when it is exported to glTF and loaded again.
 
 use crate::harness::*;
 use bevy::prelude::*;
@@ -8,7 +8,7 @@ use bevy_rapier3d::prelude::*;
 use bevy_rapier3d::rapier::dynamics::MotorModel;
 use serde_json::{Value, json};
 
-/// Writes a scene, reads it, writes what was read; both texts.
+/// Exports a scene, loads it, and exports the loaded scene. Returns both exported files and the stage.
 pub fn round_trip(name: &str, build: impl FnOnce(&mut World) -> Entity) -> (Value, Value, Stage) {
     let folder = Folder::new(name);
     let mut stage = Stage::new(&folder.0);
@@ -36,7 +36,7 @@ pub fn root(world: &mut World) -> Entity {
         .id()
 }
 
-/// Numbers equal to single precision's last digits, where frames were turned there and back.
+/// Asserts equal values, with numbers equal up to rounding: rotating frames forth and back rounds in single precision.
 pub fn close(a: &Value, b: &Value, place: &str) {
     match (a, b) {
         (Value::Number(a), Value::Number(b)) => {
@@ -295,7 +295,7 @@ fn bodies_colliders_and_joints_go_out_and_in_again() {
         assert_eq!(shape.is_some(), name != "Ground");
     }
     assert_eq!(first["buffers"][0]["uri"], second["buffers"][0]["uri"]);
-    // The motor came in as an element, the rest of the joint as a joint.
+    // The motor is loaded as an element, the rest of the joint as a joint.
     assert_eq!(stage.count::<ImpulseJoint>(), 1);
     let mut drives = stage
         .app

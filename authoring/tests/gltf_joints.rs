@@ -1,4 +1,4 @@
-//! Does what `KHR_physics_rigid_bodies` says of joints hold: what is rigid in Rapier, what is soft in our elements?
+//! Tests the joints of `KHR_physics_rigid_bodies`: rigid limits become Rapier joints, soft limits and drives become elements.
 
 use crate::gltf_physics::{G, physics, play};
 use crate::harness::*;
@@ -8,7 +8,7 @@ use bevy_rapier3d::prelude::*;
 use serde_json::{Value, json};
 use std::f32::consts::TAU;
 
-/// A hook that stands, a body of 2 kg a metre below, and a joint between them.
+/// A fixed hook, a body of 2 kg one metre below it, and a joint between them.
 fn joint(name: &str, kind: Value) -> (Folder, Stage, Entity) {
     let nodes = json!([
         physics(
@@ -43,7 +43,7 @@ fn a_limit_of_equal_min_and_max_with_a_stiffness_is_a_spring_damper() {
         (80.0, 0.0, Some(1.0))
     );
     assert_eq!(pair.body_a, stage.node(root, "Hook"));
-    // Let go at rest length, it swings about its sag with the frequency of theory.
+    // Released at rest length, it swings about its sag with the frequency √(k/m)/2π.
     let body = stage.node(root, "Body");
     let mut lowest = (0.0_f32, 0.0);
     let period = TAU / (80.0_f32 / 2.0).sqrt();
@@ -91,7 +91,7 @@ fn a_soft_max_alone_is_a_rope_and_a_rigid_one_too() {
 
 #[test]
 fn one_axis_is_a_spring_axis_and_stops_are_travel() {
-    // A slide along Y: the rest rigid.
+    // A slide along Y: all other axes are rigid.
     let (_folder, mut stage, root) = joint(
         "slide",
         json!({ "limits": [
@@ -179,7 +179,7 @@ fn drives_reach_their_speed() {
 
 #[test]
 fn an_angular_spring_pulls_the_frames_together_not_the_bodies() {
-    // The connected node stands turned by 0.4 on its body, so the body rests at −0.4.
+    // The connected node is rotated by 0.4 rad on its body, so the body rests at −0.4 rad.
     let nodes = json!([
         physics("Hook", [0.0; 3], json!({ "joint": { "connectedNode": 2, "joint": 0 } })),
         { "name": "Body", "children": [2], "extensions": { "KHR_physics_rigid_bodies": { "motion": {
@@ -201,7 +201,7 @@ fn an_angular_spring_pulls_the_frames_together_not_the_bodies() {
     assert!(stage.faults().is_empty(), "{:?}", stage.faults());
 }
 
-/// A body of 2 kg a metre below a hook that it may touch: without a limit that holds, there is nothing for a joint to do.
+/// A body of 2 kg one metre below a hook. They may collide, so a joint is needed only if it can hold some limit.
 fn hanging(name: &str, limits: Value) -> (Folder, Stage, Entity) {
     let joint = json!({ "connectedNode": 1, "joint": 0, "enableCollision": true });
     let motion = json!({ "mass": 2, "inertiaDiagonal": [0.1, 0.1, 0.1] });

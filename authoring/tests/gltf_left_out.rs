@@ -1,4 +1,4 @@
-//! Is everything told that a glTF file cannot hold?
+//! Tests that the export reports everything that a glTF file cannot hold.
 
 use crate::gltf_export::root;
 use crate::harness::*;
@@ -91,7 +91,7 @@ fn what_the_format_has_not_is_said() {
             .collect();
         assert_eq!(lines.len(), 1, "{what}, of {name}, in {told}");
     }
-    // But the hinge is there.
+    // The hinge is written nevertheless.
     let file: Value = serde_json::from_str(&exported.text).expect("JSON");
     let joints = &file["extensions"]["KHR_physics_rigid_bodies"]["physicsJoints"];
     assert_eq!(joints.as_array().map(Vec::len), Some(1));

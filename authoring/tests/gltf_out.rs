@@ -1,4 +1,4 @@
-//! Does a scene that went through a glTF file play as it did before?
+//! Tests that a scene behaves the same after a round trip through a glTF file.
 
 use crate::gltf_export::{close, root, round_trip};
 use crate::harness::*;
@@ -14,7 +14,7 @@ fn json_of(world: &World, roots: impl IntoIterator<Item = Entity>) -> Value {
     serde_json::from_str(&export_gltf(world, roots).text).expect("JSON")
 }
 
-/// All nodes of that name.
+/// All nodes with this name.
 fn nodes<'a>(file: &'a Value, name: &str) -> Vec<&'a Value> {
     let nodes = file["nodes"].as_array().into_iter().flatten();
     nodes.filter(|node| node["name"] == name).collect()
@@ -41,7 +41,7 @@ fn the_same_bodies_fall_through_the_same_floors() {
                 ChildOf(root),
             )
         };
-        // A shelf of the first group above a floor without groups.
+        // A shelf in group 1 above a floor without collision groups.
         world.spawn(slab("Floor", Vec3::ZERO, Vec3::new(9.0, 0.5, 9.0)));
         let shelf = slab("Shelf", Vec3::Y * 2.0, Vec3::new(9.0, 0.1, 1.0));
         world.spawn((shelf, CollisionGroups::new(Group::GROUP_1, Group::GROUP_1)));
@@ -84,7 +84,7 @@ fn a_file_has_the_same_masses_before_the_first_step_as_after_it() {
         principal_inertia: Vec3::new(0.1, 0.2, 0.3),
         ..default()
     };
-    // One cubic metre at Rapier's density, 1 kg/m³; eight of them; with something added; with more colliders.
+    // Cubes of Rapier's density, 1 kg/m³: 1 m³, 8 m³, with additional mass, and with a second collider.
     world.spawn((body("Cube", 0.0), cube.clone()));
     let mut large = world.spawn((body("Large", 5.0), cube.clone()));
     large.insert(Transform::from_xyz(5.0, 0.0, 0.0).with_scale(Vec3::splat(2.0)));
@@ -117,7 +117,7 @@ fn a_file_has_the_same_masses_before_the_first_step_as_after_it() {
             node["extensions"]["KHR_physics_rigid_bodies"]["motion"].clone()
         };
         close(&motion(&before), &motion(&after), name);
-        // As heavy and as slow to turn as Rapier has it.
+        // Mass and moments of inertia are the same as in Rapier.
         let entity = named(&mut app, name);
         let world = app.world_mut();
         let handle = world
@@ -157,14 +157,14 @@ fn a_root_below_another_root_is_written_once() {
     let hand = world.spawn((Name::new("Hand"), hand, ChildOf(arm))).id();
     let file = json_of(world, [hand, root, hand]);
     assert_eq!(nodes(&file, "Hand").len(), 1);
-    // Where it is on the arm, not in the world.
+    // Its position is relative to the arm, not to the world.
     assert_eq!(
         nodes(&file, "Hand")[0]["translation"],
         json!([0.0, 0.5, 2.0])
     );
     let tops = &file["scenes"][0]["nodes"];
     assert_eq!(tops.as_array().map(Vec::len), Some(1), "{file}");
-    // Alone, it is where it is in the world.
+    // Exported alone, it has its world position.
     let file = json_of(world, [hand]);
     close(
         &nodes(&file, "Hand")[0]["translation"],

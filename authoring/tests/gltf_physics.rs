@@ -1,4 +1,4 @@
-//! Does what `KHR_physics_rigid_bodies` says of bodies and colliders hold in Rapier?
+//! Tests that bodies and colliders of `KHR_physics_rigid_bodies` behave as specified in Rapier.
 
 use crate::harness::*;
 use bevy::prelude::*;
@@ -38,7 +38,7 @@ fn a_motion_arrives_with_its_numbers() {
         "inertiaOrientation": [0.0, 0.70710677, 0.0, 0.70710677],
         "linearVelocity": [0.0, 0.0, 1.0], "angularVelocity": [2.0, 0.0, 0.0], "gravityFactor": 0.0,
     });
-    // Velocities are in the node's space, which stands turned.
+    // Velocities are in the local space of the node, which is rotated.
     let mut node = physics("Body", [0.0, 0.0, 0.0], json!({ "motion": motion }));
     node["rotation"] = json!([0.0, 0.70710677, 0.0, 0.70710677]);
     let (_folder, mut stage, root) = play("motion", json!([node]), json!({}));
@@ -66,7 +66,7 @@ fn a_motion_arrives_with_its_numbers() {
     );
     run(&mut stage.app, 1.0);
     let at = stage.place(body).translation;
-    // The centre of mass goes straight; the node turns about it.
+    // The centre of mass moves in a straight line, and the node rotates about it.
     let centre = stage
         .get::<GlobalTransform>(body)
         .transform_point(wanted.local_center_of_mass);
@@ -81,7 +81,7 @@ fn mass_comes_from_the_shapes_where_the_file_leaves_it_open() {
     let nodes = json!([
         physics("Water", [0.0; 3], json!({ "motion": {}, "collider": brick })),
         physics("Light", [9.0, 0.0, 0.0], json!({ "motion": { "mass": 3 }, "collider": brick })),
-        // Two bricks side by side, on nodes below, one of them scaled and mirrored.
+        // Two bricks side by side on child nodes, one of them scaled and mirrored.
         { "name": "Pair", "translation": [0, 9, 0], "children": [3, 4],
             "extensions": { "KHR_physics_rigid_bodies": { "motion": {} } } },
         physics("Left", [-2.0, 0.0, 0.0], json!({ "collider": brick })),
@@ -101,7 +101,7 @@ fn mass_comes_from_the_shapes_where_the_file_leaves_it_open() {
     assert!(close(water.mass, 6000.0), "{water:?}");
     let light = of(&stage, "Light");
     let frame = light.principal_inertia_local_frame;
-    // Whatever order the principal axes have.
+    // Independent of the order of the principal axes.
     let about = |axis: Vec3| {
         let local = frame.inverse() * axis;
         (light.principal_inertia * local * local).element_sum()
@@ -123,7 +123,7 @@ fn mass_comes_from_the_shapes_where_the_file_leaves_it_open() {
     run(&mut stage.app, 1.0);
     let infinite = stage.node(root, "Infinite");
     assert!(stage.place(infinite).translation.y.abs() < 1e-6);
-    // Rapier adds the colliders' own mass to none of them.
+    // Rapier does not add the mass of the collider.
     let water = stage.node(root, "Water");
     let mut sets = stage.app.world_mut().query::<&RapierRigidBodySet>();
     let handle = stage.get::<RapierRigidBodyHandle>(water).0;
@@ -167,7 +167,7 @@ fn every_shape_is_as_large_as_it_says() {
     ];
     let mut nodes = Vec::new();
     for (i, _) in all.iter().enumerate() {
-        // Mirrored and scaled nodes have the size of the scale without its sign.
+        // On a mirrored node the size follows the absolute value of the scale.
         let mut node = physics(
             &format!("S{i}"),
             [10.0 * i as f32, 0.0, 0.0],
@@ -181,7 +181,7 @@ fn every_shape_is_as_large_as_it_says() {
     run(&mut stage.app, 2.0 * DT);
     for (i, (shape, volume)) in all.iter().enumerate() {
         let found = mass(&stage, stage.node(root, &format!("S{i}"))).mass / 1000.0 / 8.0;
-        // Round rims that stand for a taper have 32 corners.
+        // A tapered shape becomes a hull whose round rims have 32 corners.
         assert!(
             (found / volume - 1.0).abs() < 0.02,
             "{shape}: {found} is not {volume}"
@@ -326,7 +326,7 @@ fn bodies_below_turned_nodes_and_turned_scenes_fall_down() {
     ] {
         let root = stage.load_at("a.gltf", place);
         let ball = stage.node(root, "Ball");
-        // (x, y, z) becomes (z, x, y) below the frame.
+        // The frame maps (x, y, z) to (z, x, y).
         let start = place.transform_point(Vec3::new(1.0 + 2.0, 0.0, 0.0));
         let velocity = place.rotation * Vec3::X;
         let (at, moving) = (stage.place(ball).translation, *stage.get::<Velocity>(ball));
@@ -368,10 +368,10 @@ fn a_body_below_a_turning_one_goes_its_own_way() {
     run(&mut stage.app, 1.0);
     let now = [top, ball].map(|body| stage.place(body).translation);
     let gone = [0, 1].map(|i| now[i] - start[i]);
-    // Its velocity is in its own frame, a quarter of a turn about Y.
+    // The ball's velocity is in its own frame, which is rotated by 90° about Y.
     assert!(gone[0].distance(Vec3::X) < 0.02, "{}", gone[0]);
     assert!(gone[1].distance(2.0 * Vec3::X) < 0.04, "{}", gone[1]);
-    // Found a quarter of a turn aside of where it hung: 2 m along the arm, a metre up.
+    // The ball starts 2 m along the rotated arm and 1 m above the top body.
     assert!((start[1].y - 3.0).abs() < 0.01, "{}", start[1]);
     stage.app.world_mut().despawn(root);
     run(&mut stage.app, 0.1);

@@ -1,4 +1,4 @@
-//! A glTF file that plays, asked by the indices of its nodes.
+//! A simulated glTF file whose nodes are looked up by index.
 
 use crate::harness::*;
 use bevy::prelude::*;
@@ -7,11 +7,11 @@ use serde_json::Value;
 use std::collections::HashMap;
 use std::path::Path;
 
-/// A file that plays.
+/// A loaded and simulated glTF file.
 pub struct Sample {
     pub stage: Stage,
     pub json: Value,
-    /// By index of the node. Names are no help: files give one to several nodes.
+    /// Entities by node index. Names do not identify nodes: several nodes of a file may share a name.
     pub nodes: HashMap<usize, Entity>,
 }
 
@@ -40,11 +40,11 @@ impl Sample {
         sample
     }
 
-    /// Finds the entities of nodes below one, which Bevy spawns in the file's order.
+    /// Finds the entities of the nodes below an entity. Bevy spawns them in the order of the file.
     pub fn find(&mut self, parent: Entity, nodes: &Value) {
         let children = self.stage.app.world().get::<Children>(parent);
         let mut children: Vec<_> = children.into_iter().flatten().copied().collect();
-        // What undoes a turning has no name, and a body of the file below it.
+        // The loader may put a nameless entity, which undoes the parent's transform, between a node and a body below it.
         let world = self.stage.app.world();
         let nameless = |child: &Entity| world.get::<Name>(*child).is_none();
         let deeper: Vec<_> = children
@@ -60,7 +60,7 @@ impl Sample {
             let name = self.name(node);
             let world = self.stage.app.world();
             let at = children.iter().position(|child| {
-                // A mesh may have its object's name.
+                // A mesh entity may have the same name as its object.
                 world
                     .get::<Name>(*child)
                     .is_some_and(|n| n.as_str() == name)
@@ -77,7 +77,7 @@ impl Sample {
         run(&mut self.stage.app, seconds);
     }
 
-    /// What the extension says of a node.
+    /// The physics extension of a node.
     pub fn physics(&self, node: usize) -> &Value {
         &self.json["nodes"][node]["extensions"]["KHR_physics_rigid_bodies"]
     }
@@ -95,7 +95,8 @@ impl Sample {
         self.place(node).translation
     }
 
-    /// Everything has its place, and as many bodies and joints are there as the file says.
+    /// Checks that all positions are finite, that there are as many moving bodies and colliders as in the file, and that no
+    /// spring has a fault.
     pub fn sound(&mut self) -> Result<(), String> {
         let world = self.stage.app.world_mut();
         let mut places = world.query::<&GlobalTransform>();
@@ -136,7 +137,7 @@ impl Sample {
         Ok(())
     }
 
-    /// Whether rigid limits hold, by the specification's own metrics.
+    /// Checks that rigid limits hold within a tolerance (m or rad), by the specification's metrics.
     pub fn limits_hold(&self, tolerance: f32) -> Result<(), String> {
         let nodes = self.json["nodes"].as_array().map_or(0, Vec::len);
         let kinds = &self.json["extensions"]["KHR_physics_rigid_bodies"]["physicsJoints"];
@@ -170,7 +171,7 @@ impl Sample {
     }
 }
 
-/// The specification's appendix: how far a joint is along a limit.
+/// Distance (m) or angle (rad) of a joint that a limit bounds, from the appendix of the specification.
 pub fn metric(limit: &Value, a: &Transform, b: &Transform) -> f32 {
     let axes = |key: &str| -> Vec<usize> {
         let list = limit[key].as_array();

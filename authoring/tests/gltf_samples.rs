@@ -1,8 +1,8 @@
-//! The samples and tests of `KHR_physics_rigid_bodies`' own repository, as outside judge.
+//! Runs the samples and tests of the `KHR_physics_rigid_bodies` repository as an independent check.
 //!
-//! They are not part of this repository: `COILOVER_GLTF_PHYSICS` names the folder with `samples/` and `tests/` of
-//! github.com/eoineoineoin/glTF_Physics. Without it this says so and is skipped. With `-- --nocapture` it prints the
-//! table of `docs/gltf.md`.
+//! These files are not part of this repository: the environment variable `COILOVER_GLTF_PHYSICS` names the folder with
+//! `samples/` and `tests/` of github.com/eoineoineoin/glTF_Physics. Without it the test prints so and is skipped. With
+//! `-- --nocapture` it prints the table of `docs/gltf.md`.
 
 use crate::gltf_sample::Sample;
 use crate::harness::*;
@@ -10,7 +10,7 @@ use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
 use std::path::{Path, PathBuf};
 
-/// Runs a file and says whether what its page expects has come true.
+/// Runs a file and checks the behaviour that its page describes. Returns what was found.
 fn judge(folder: &Path, file: &str) -> Result<String, String> {
     let mut sample = Sample::load(folder, file);
     let stem = Path::new(file)
@@ -29,7 +29,7 @@ fn judge(folder: &Path, file: &str) -> Result<String, String> {
             let before = sample.at(moving).y;
             sample.run(1.0);
             let y = sample.at(moving).y;
-            // Boxes stand half a metre deeper than the page says, and hulls have their origin below.
+            // Boxes rest half a metre lower than the page says, and the origin of a hull is at its lower end.
             let rests = (y - before).abs() < 0.02 && y > -0.51;
             check(rests, format!("the body rests at {y:.2} m"))
         }
@@ -46,14 +46,14 @@ fn judge(folder: &Path, file: &str) -> Result<String, String> {
             sample.run(4.0);
             sample.sound()?;
             let y = [0, 3].map(|node| sample.at(node).y);
-            // The lower box of each carries it or not; what passes is caught by the upper one.
+            // Each body has two boxes. It rests on its lower box if the filter lets that one collide, else on its upper box.
             check(
                 (y[0] - y[1]).abs() > 0.5,
                 format!("they rest at {:.2} m and {:.2} m", y[0], y[1]),
             )
         }
         ("RigidBodies_Joint", "09") => {
-            // Damping 1/s: it comes nearer by the factor e in each second.
+            // The damping rate is 1/s: the speed error falls by the factor e in each second.
             sample.run(8.0);
             sample.sound()?;
             sample.limits_hold(0.02)?;
@@ -124,7 +124,7 @@ fn judge(folder: &Path, file: &str) -> Result<String, String> {
             let after = sample.place(node);
             let moved = after.translation - before.translation;
             let turned = after.rotation.angle_between(before.rotation);
-            // A world step of 1/60 s, and the frame that the scene takes to spawn.
+            // Tolerance for one step of 1/60 s and for the frame in which the scene spawns.
             let near = |v: Vec3, to: Vec3| v.distance(to) < 0.04;
             match number {
                 "00" => check(

@@ -1,4 +1,5 @@
-//! Do springs from glTF files stand where their nodes stand, go without a trace, and break nothing when they are broken?
+//! Tests that springs from glTF files attach where their nodes are, leave nothing behind when they are despawned, and do
+//! no harm when they are invalid.
 
 use crate::gltf_elements::{element, hook, rig, weight};
 use crate::harness::*;
@@ -16,7 +17,7 @@ fn nested_scaled_and_mirrored_nodes_are_held_where_the_file_says() {
             "anchors": { "a": [0, 0.5, 0], "b": [0.25, 0, 0] },
         }))
     };
-    // The hook hangs below a frame that is turned, scaled and mirrored; the weight's node is scaled.
+    // The hook is a child of a frame that is rotated, scaled and mirrored. The node of the weight is scaled.
     let mut body = weight();
     body["scale"] = json!([2, 2, 2]);
     body["translation"] = json!([1, 0, 0]);
@@ -29,7 +30,7 @@ fn nested_scaled_and_mirrored_nodes_are_held_where_the_file_says() {
         gltf(json!([frame, hook, body, spring(1, 2)]), json!({})),
     );
     let mut stage = Stage::new(&folder.0);
-    // As one would do it by hand: frame · hook · anchor.
+    // World position computed by hand: frame · hook · anchor.
     let frame = Transform::from_xyz(0.0, 1.0, 0.0)
         .with_rotation(Quat::from_rotation_z(std::f32::consts::FRAC_PI_2))
         .with_scale(Vec3::new(2.0, -1.0, 3.0));
@@ -102,7 +103,7 @@ fn hot_reload_puts_the_new_spring_in_the_place_of_the_old() {
         |k: f32| rig(&json!({ "springDamper": { "a": 0, "b": 1, "stiffness": k, "damping": 2 } }));
     folder.write("a.gltf", file(100.0));
     let mut stage = Stage::new(&folder.0);
-    // Held, so that the server knows what to load again.
+    // Keeps the asset alive, so that the server can reload it.
     let server = stage.app.world().resource::<AssetServer>().clone();
     let _held: Handle<Gltf> = server.load("a.gltf");
     stage.load("a.gltf");
@@ -139,7 +140,7 @@ fn broken_springs_have_faults_and_their_neighbour_swings_on() {
         json!({ "torsionSpring": { "a": 0, "b": 1, "axis": [0, 0, 0] } }),
     ];
     nodes.extend(broken.iter().cloned().map(element));
-    // These are no elements at all.
+    // These spawn no elements.
     for nonsense in [json!([]), json!(null), json!({ "spring": 3 }), json!({})] {
         nodes.push(element(nonsense));
     }
@@ -191,7 +192,7 @@ fn broken_files_do_not_load_and_do_not_stop_the_game() {
 
 #[test]
 fn springs_by_the_hundred_thousand_load_in_seconds() {
-    // `COILOVER_SPRINGS=1000000` for a million.
+    // `COILOVER_SPRINGS=1000000` tests with a million.
     let many = std::env::var("COILOVER_SPRINGS").ok();
     let many = many.map_or(100_000, |many| many.parse().expect("a number"));
     let folder = Folder::new("many");

@@ -1,4 +1,4 @@
-//! An app with physics, springs and whatever reads files, stepped tick by tick.
+//! Builds apps with physics, springs and file loaders, and steps them tick by tick.
 
 use bevy::gltf::{GltfLoaderSettings, GltfPlugin};
 use bevy::prelude::*;
@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 
 pub const DT: f32 = 1.0 / 60.0;
 
-/// Physics and springs, no files.
+/// A headless app with Rapier, one tick per update. It has neither springs nor file loaders.
 pub fn app() -> App {
     let mut app = App::new();
     let tick = Duration::from_secs_f32(DT);
@@ -25,7 +25,7 @@ pub fn app() -> App {
     app
 }
 
-/// The same with the glTF loader, whose files lie in a folder.
+/// [`app`] with Bevy's glTF loader, which reads files from a folder.
 pub fn app_with_files(folder: &Path) -> App {
     let mut app = app();
     app.add_plugins((
@@ -48,7 +48,7 @@ pub fn app_with_files(folder: &Path) -> App {
     app
 }
 
-/// Ends the building of an app.
+/// Finishes an app's plugins and makes the first update.
 pub fn prime(app: &mut App) {
     app.finish();
     app.cleanup();
@@ -61,7 +61,8 @@ pub fn run(app: &mut App, seconds: f32) {
     }
 }
 
-/// Steps until something is there; what it says, if it never is. A file of a million springs takes more than a minute.
+/// Updates until `look` returns something, and returns that. Panics with `what` after five minutes: a file with a
+/// million springs takes more than one.
 pub fn until<T>(app: &mut App, what: &str, mut look: impl FnMut(&mut App) -> Option<T>) -> T {
     let started = Instant::now();
     while started.elapsed() < Duration::from_secs(300) {
@@ -74,7 +75,7 @@ pub fn until<T>(app: &mut App, what: &str, mut look: impl FnMut(&mut App) -> Opt
     panic!("waited five minutes for {what}");
 }
 
-/// The one entity of that name.
+/// The only entity with this name. Panics if there are none or several.
 pub fn named(app: &mut App, name: &str) -> Entity {
     let mut names = app.world_mut().query::<(Entity, &Name)>();
     let all: Vec<_> = names
@@ -86,7 +87,7 @@ pub fn named(app: &mut App, name: &str) -> Entity {
     all[0]
 }
 
-/// A hook at 2 m, and a body of 1 kg below it.
+/// Spawns a hook at a height of 2 m and a body of 1 kg at the origin.
 pub fn spawn_ends(app: &mut App) -> [Entity; 2] {
     let world = app.world_mut();
     let hook = world.spawn((Name::new("Hook"), Transform::from_xyz(0.0, 2.0, 0.0)));
@@ -100,7 +101,7 @@ pub fn spawn_ends(app: &mut App) -> [Entity; 2] {
     [hook, world.spawn(weight).id()]
 }
 
-/// Physics, springs and looks registered, as a game has them.
+/// A primed app with physics and springs.
 pub fn game() -> App {
     let mut app = app();
     app.add_plugins(CoiloverPlugin::default());
@@ -108,7 +109,7 @@ pub fn game() -> App {
     app
 }
 
-/// A folder of its own for a test's files, gone when dropped.
+/// A temporary folder for a test's files, removed on drop.
 pub struct Folder(pub std::path::PathBuf);
 
 impl Folder {
@@ -129,10 +130,10 @@ impl Drop for Folder {
     }
 }
 
-/// Plays glTF files from a folder, with weights or without.
+/// An app with springs that loads and simulates glTF files from a folder.
 pub struct Stage {
     pub app: App,
-    /// Files that require an extension are refused by Bevy's loader unless it is told not to look.
+    /// Whether Bevy's loader validates files. A validating loader refuses files that require an unknown extension.
     pub validate: bool,
 }
 
@@ -147,7 +148,7 @@ impl Stage {
         }
     }
 
-    /// Spawns the first scene of a file at a place, and waits for it; its root.
+    /// Spawns the first scene of a file at a place, waits until it is loaded, and returns its root.
     pub fn load_at(&mut self, file: &str, place: Transform) -> Entity {
         let root = self.spawn(file, place);
         until(&mut self.app, file, |app| {
@@ -160,7 +161,7 @@ impl Stage {
         self.load_at(file, Transform::default())
     }
 
-    /// Asks for the first scene of a file.
+    /// Spawns the first scene of a file, without waiting for it, and returns its root.
     pub fn spawn(&mut self, file: &str, place: Transform) -> Entity {
         let server = self.app.world().resource::<AssetServer>().clone();
         let validate = self.validate;
@@ -172,7 +173,7 @@ impl Stage {
         self.app.world_mut().spawn(root).id()
     }
 
-    /// The node of that name below a root.
+    /// The node with this name at or below a root.
     pub fn node(&self, root: Entity, name: &str) -> Entity {
         let world = self.app.world();
         let mut open = vec![root];
@@ -213,7 +214,7 @@ impl Stage {
     }
 }
 
-/// A glTF file of these nodes and root extensions.
+/// Text of a glTF file with these nodes and root extensions.
 pub fn gltf(nodes: serde_json::Value, extensions: serde_json::Value) -> String {
     let children: Vec<u64> = nodes
         .as_array()

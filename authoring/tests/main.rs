@@ -1,4 +1,4 @@
-//! Springs that designers place: in scene files, over Bevy's remote protocol, with Skein, in glTF.
+//! Tests of springs that designers place: in scene files, over Bevy's remote protocol, with Skein, and in glTF.
 
 mod harness;
 

@@ -1,4 +1,4 @@
-//! Can another program place springs in a running game, over Bevy's remote protocol and real HTTP?
+//! Tests that another program can place springs in a running game, over Bevy's remote protocol and real HTTP.
 
 use crate::harness::*;
 use bevy::prelude::*;
@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 use std::net::TcpListener;
 use std::sync::mpsc;
 
-/// A game that listens, and how to ask it.
+/// A game that listens for requests, and its address.
 struct Remote {
     app: App,
     address: String,
@@ -17,7 +17,7 @@ struct Remote {
 
 impl Remote {
     fn new() -> Self {
-        // A port that is free now; there are plenty, and the next is another.
+        // A port that is free now. Another program is unlikely to take it before the game does.
         let port = || {
             let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
             listener.local_addr().expect("its address").port()
@@ -36,7 +36,7 @@ impl Remote {
         }
     }
 
-    /// Asks from another thread, as another program would, while the game runs on.
+    /// Sends a request from another thread, as another program would, while the game keeps running. Returns the result.
     fn ask(&mut self, method: &str, params: Value) -> Value {
         let (answer, answers) = mpsc::channel();
         let address = self.address.clone();
@@ -49,7 +49,7 @@ impl Remote {
                 };
                 let text = sent.ok().and_then(read);
                 if text.is_none() {
-                    // The server may not listen yet.
+                    // Perhaps the server does not listen yet.
                     std::thread::sleep(std::time::Duration::from_millis(50));
                 }
                 text
@@ -87,7 +87,7 @@ fn a_spring_spawned_over_http_finds_its_ends_by_name() {
     );
     let reason = &told["components"]["bevy_coilover::SpringFault"]["reason"];
     assert_eq!(reason, "names 'Hook', which no entity has");
-    // Its ends come over the wire too.
+    // Its ends are also spawned over HTTP.
     for (name, height, body) in [("Hook", 2.0, "Fixed"), ("Weight", 0.0, "Dynamic")] {
         remote.ask(
             "world.spawn_entity",
@@ -116,7 +116,7 @@ fn a_spring_spawned_over_http_finds_its_ends_by_name() {
     );
     let force = told["components"]["bevy_coilover::SpringReadout"]["spring_force"].as_f64();
     assert!(force.is_some_and(|force| force > 3.0), "{told}");
-    // Other names, other ends.
+    // New names must give new ends.
     remote.ask(
         "world.insert_components",
         json!({ "entity": made["entity"], "components": {

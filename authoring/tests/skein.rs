@@ -1,5 +1,5 @@
-//! Can Skein, which puts components on Blender's objects, put a spring there? With its JSON format, read as Skein 0.6 reads
-//! it: each component by reflection, out of a node's extras.
+//! Tests springs from Skein, which puts components on Blender's objects. The test reads Skein's JSON format as Skein 0.6
+//! does: it reads each component by reflection from the extras of a node.
 
 use crate::harness::*;
 use bevy::ecs::reflect::{AppTypeRegistry, ReflectCommandExt};
@@ -10,7 +10,7 @@ use bevy_coilover::prelude::*;
 use serde::de::DeserializeSeed;
 use serde_json::{Value, json};
 
-/// A file as Skein exports it, with components in `extras`.
+/// A file as Skein exports it. `on_node` makes the node that holds some components.
 fn scene(on_node: impl Fn(Value) -> Value) -> Value {
     let with = |name: &str, at: [f32; 3], components: Value| {
         let mut node = on_node(components);
@@ -22,7 +22,7 @@ fn scene(on_node: impl Fn(Value) -> Value) -> Value {
         { "bevy_rapier3d::dynamics::rigid_body::RigidBody": "Dynamic" },
         { "bevy_rapier3d::dynamics::rigid_body::AdditionalMassProperties": { "Mass": 1.0 } },
     ]);
-    // What the default has there.
+    // The ends of a default element.
     let nobody = Entity::PLACEHOLDER.to_bits();
     let spring = json!([
         { "bevy_coilover::SpringDamper": {
@@ -44,7 +44,7 @@ fn scene(on_node: impl Fn(Value) -> Value) -> Value {
     })
 }
 
-/// What Skein's plugin does with the extras of a node.
+/// Inserts the components from a node's extras, as Skein's plugin does.
 fn read_extras(
     added: On<Add, GltfExtras>,
     extras: Query<&GltfExtras>,

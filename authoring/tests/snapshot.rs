@@ -1,11 +1,11 @@
-//! Is a snapshot that was written down and read again still the same?
+//! Tests that a snapshot is unchanged after it was written as text and read back.
 
 use crate::harness::*;
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
 
-/// A load over a foot on the ground, a wheel on a torsion spring that is wound up, and a chain.
+/// A load on a spring over a foot on the ground, and a spinning wheel that hangs on a spring and winds up a torsion spring.
 fn scene() -> (App, Vec<Entity>) {
     let mut app = app();
     app.add_plugins(CoiloverPlugin::default().with_tolerance(1e-4));

@@ -1,8 +1,8 @@
-//! Components with whatever serde, scenes and remote calls can carry: each number, list and name may be anything. It ends as a
-//! fault, or as something that moves; never as a panic, a hang, or as what is not a number.
+//! Fuzz test with components as serde, scenes and remote calls may deliver them: numbers, lists and names can be anything.
+//! Each must end as a fault or as a moving element, never as a panic, a hang or a NaN.
 //!
-//! `COILOVER_FUZZ_SECONDS=60 cargo test --workspace --test authoring untrusted` tries for a minute; without the variable it
-//! takes a few seconds.
+//! `COILOVER_FUZZ_SECONDS=60 cargo test --workspace --test authoring untrusted` runs for a minute. Without the variable it
+//! runs for a few seconds.
 
 use crate::data::all;
 use crate::harness::*;
@@ -13,7 +13,7 @@ use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
 use std::time::{Duration, Instant};
 
-/// Elements at one time.
+/// Number of elements that exist at the same time.
 const AT_ONCE: usize = 20;
 
 const NUMBERS: [f32; 16] = [
@@ -35,7 +35,7 @@ const NUMBERS: [f32; 16] = [
     0.5,
 ];
 
-/// Numbers that look random, the same for the same seed (SplitMix64).
+/// Pseudorandom numbers, reproducible from a seed (SplitMix64).
 struct Random(u64);
 
 impl Random {
@@ -73,7 +73,7 @@ impl Random {
     }
 }
 
-/// Changes some of all that a value is made of.
+/// Randomly changes numbers, names, flags and lists at any depth of a value.
 fn spoil(value: &mut dyn PartialReflect, random: &mut Random) {
     match value.reflect_mut() {
         ReflectMut::Struct(fields) => {
@@ -112,7 +112,7 @@ fn spoil(value: &mut dyn PartialReflect, random: &mut Random) {
             match random.below(8) {
                 0 => drop(list.drain()),
                 1 => {
-                    // Points of a table that are all different, and rise; then some are spoiled.
+                    // A valid table with rising points, of which the loop below spoils some.
                     let count = if random.one_in(20) { 1_000_000 } else { 1000 };
                     for i in 0..count {
                         let i = i as f32 + 10.0;
@@ -147,7 +147,7 @@ fn spoil(value: &mut dyn PartialReflect, random: &mut Random) {
     }
 }
 
-/// Whether it is an element; then it gets these ends.
+/// Sets the ends of an element. Returns false if the value is not an element.
 fn tie(value: &mut dyn PartialReflect, ends: [Entity; 2]) -> bool {
     let ReflectMut::Struct(fields) = value.reflect_mut() else {
         return false;
@@ -161,7 +161,7 @@ fn tie(value: &mut dyn PartialReflect, ends: [Entity; 2]) -> bool {
     true
 }
 
-/// Says which seed it was when a test ends in a panic.
+/// Prints the seed if the test panics.
 struct Seed(u64);
 
 impl Drop for Seed {
@@ -188,7 +188,7 @@ fn spawn(app: &mut App, registry: &TypeRegistry, random: &mut Random) -> Vec<Ent
         .into_iter()
         .map(|mut value| (tie(&mut *value, ends), value))
         .partition(|(element, _)| *element);
-    // One element, and what may stand beside it.
+    // One of the six elements, and a random choice of its companions.
     let element = elements.into_iter().nth(random.below(6));
     let mut chosen: Vec<_> = element.into_iter().collect();
     chosen.extend(others.into_iter().filter(|_| random.one_in(5)));
@@ -204,7 +204,7 @@ fn spawn(app: &mut App, registry: &TypeRegistry, random: &mut Random) -> Vec<Ent
     vec![ends[0], ends[1], entity]
 }
 
-/// Whether all that can be seen is a number.
+/// Checks that the transforms and velocities of all bodies, and all readouts, are finite.
 fn are_finite(world: &mut World) -> Result<(), String> {
     let mut bodies =
         world.query_filtered::<(Entity, &GlobalTransform, &Velocity), With<RigidBody>>();

@@ -12,25 +12,25 @@ use std::time::{Duration, Instant};
 /// What joins two bodies.
 #[derive(Clone, Copy, Debug)]
 pub enum Link {
-    /// Nothing: each flies on at a speed of its own.
+    /// Nothing: each body flies freely at its own velocity.
     Nothing,
     /// A spring of this crate.
     Ours,
-    /// Ours with force laws beside them.
+    /// A spring of this crate, with force laws.
     Laws,
-    /// Ours, held off the centres of the bodies, which they turn.
+    /// A spring of this crate, anchored off the centres of the bodies, so that it turns them.
     Turning,
     /// Rapier's `SpringJoint`.
     Joint,
-    /// Hooke's law as a force and no more: two bodies read, two written, straight in the engine.
+    /// Only Hooke's law as a force: reads two bodies and writes two bodies, directly in the engine.
     Bare,
 }
 
-/// What [`Link::Bare`] joins.
+/// Pairs of bodies that [`Link::Bare`] joins.
 #[derive(Resource, Default)]
 struct Bare(Vec<[Entity; 2]>);
 
-/// The least that any spring has to do.
+/// Does the least that any spring has to do.
 fn pull(
     pairs: Res<Bare>,
     handles: Query<&RapierRigidBodyHandle>,
@@ -40,7 +40,7 @@ fn pull(
         return;
     };
     if pairs.0.is_empty() {
-        // Not to touch the engine's bodies for nothing.
+        // Does not access the engine's bodies without need.
         return;
     }
     let set = &mut set.bodies;
@@ -64,30 +64,30 @@ fn pull(
     }
 }
 
-/// Which springs.
+/// The arrangement of springs.
 #[derive(Clone, Copy, Debug)]
 pub enum Scene {
-    /// Pairs of their own, swinging along their line and across it.
+    /// Separate pairs, oscillating along their line and across it.
     Isolated,
-    /// The same pairs at rest, asleep.
+    /// Separate pairs at rest, asleep.
     Asleep,
-    /// These, and one body that flies on.
+    /// Separate pairs asleep, and one body that keeps flying.
     AllButOne,
     /// One long chain, hung at both ends.
     Chain,
-    /// A cubic lattice with springs along its edges,
+    /// A cubic lattice with springs along its edges.
     Lattice,
-    /// and one that is square and flat, with fewer springs for each body.
+    /// A flat square lattice, with fewer springs for each body.
     Cloth,
-    /// Many chassis, each on four springs held at its corners, with a wheel below each.
+    /// Many chassis, each on four springs at its corners, with a wheel below each spring.
     Cars,
-    /// Cars of five bodies that roll on a road, one for each of `count`,
+    /// Cars of five bodies that roll on a road, `count` of them.
     Rolling,
-    /// or stand there, asleep.
+    /// Cars of five bodies that stand on a road, asleep, `count` of them.
     Parked,
 }
 
-/// What has come last and is the next to go.
+/// The entity spawned last, which is the next to be despawned.
 #[derive(Resource)]
 struct Last(Entity);
 
@@ -98,13 +98,13 @@ fn replace(world: &mut World, new: Entity) {
     world.insert_resource(Last(new));
 }
 
-/// A body comes, that of the last time goes.
+/// Spawns a body, and despawns the one of the last call.
 pub fn shoot(world: &mut World) {
     let new = body(world, Vec3::NEG_Y * 10.0, Vec3::NEG_Y);
     replace(world, new);
 }
 
-/// A spring comes between two points of the world, that of the last time goes.
+/// Spawns a spring between two points of the world, and despawns the one of the last call.
 pub fn respring(world: &mut World) {
     let [a, b] = [Vec3::NEG_Y, Vec3::NEG_Z].map(|at| {
         let place = Transform::from_translation(at);
@@ -130,7 +130,7 @@ fn stop(since: Res<Since>, mut own: ResMut<Own>) {
 }
 
 impl Scene {
-    /// How many springs [`Self::app`] makes of about `count`.
+    /// Returns the number of springs that [`Self::app`] makes for about `count`.
     pub fn springs(self, count: u32) -> u32 {
         match self {
             Self::Lattice | Self::Cloth => {
@@ -142,7 +142,8 @@ impl Scene {
         }
     }
 
-    /// Bodies along the long edges of a lattice, and along the third, whose springs number about `count`.
+    /// Returns the number of bodies along the two long edges of a lattice, and along the third, for about `count`
+    /// springs.
     fn bodies_along(self, count: u32) -> [u32; 2] {
         let count = f64::from(count);
         let along = |edge: f64| (edge.round() as u32 + 1).max(2);
@@ -152,13 +153,15 @@ impl Scene {
         }
     }
 
-    /// About `count` springs without gravity, on bodies without colliders; already under way, as in a game.
+    /// Returns an app with about `count` springs, without gravity, on bodies without colliders. The simulation has
+    /// already run for a while, as in a game.
     pub fn app(self, count: u32, link: Link, microsteps: u32) -> App {
         self.made(count, link, microsteps, false)
     }
 
-    /// The same with a clock around our own systems: one system after the other, or else waking threads for the next of nine
-    /// would be counted too, 0.15 ms on two cores. The springs themselves have all threads.
+    /// Returns the app of [`Self::app`] with a clock around our own systems. Systems run one after the other:
+    /// otherwise the clock would count the waking of threads for each of nine systems, 0.15 ms on two cores. The
+    /// springs themselves use all threads.
     pub fn clocked(self, count: u32, link: Link, microsteps: u32) -> App {
         self.made(count, link, microsteps, true)
     }
@@ -343,7 +346,7 @@ fn cars(world: &mut World, count: u32) {
     }
 }
 
-/// A lattice of `n` × `n` × `deep` bodies.
+/// Spawns a lattice of `n` × `n` × `deep` bodies.
 fn lattice(world: &mut World, [n, deep]: [u32; 2], link: Link) {
     let at = |x: u32, y: u32, z: u32| Vec3::new(x as f32, y as f32, z as f32) * 1.05;
     let all = || (0..n * n * deep).map(|i| (i / deep / n, i / deep % n, i % deep));

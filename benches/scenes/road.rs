@@ -1,4 +1,4 @@
-//! Cars on a road: what contacts and joints hold.
+//! Cars on a road, held by contacts and joints.
 
 use super::Link;
 use bevy::prelude::*;
@@ -8,7 +8,7 @@ use bevy_rapier3d::prelude::*;
 const RADIUS: f32 = 0.3;
 const REST: f32 = 0.5;
 
-/// So many cars of five bodies on four springs, which roll or stand.
+/// Spawns `count` cars of five bodies on four springs, which roll or stand.
 pub fn cars(world: &mut World, count: u32, link: Link, speed: f32) {
     let mut configurations = world.query::<&mut RapierConfiguration>();
     for mut configuration in configurations.iter_mut(world) {
@@ -25,7 +25,7 @@ pub fn cars(world: &mut World, count: u32, link: Link, speed: f32) {
 
 fn car(world: &mut World, at: Vec3, link: Link, speed: f32) {
     let velocity = Velocity::linear(Vec3::X * speed);
-    // At its height of rest.
+    // At ride height.
     let height = RADIUS + REST - 1200.0 * 9.81 / 4.0 / 40e3;
     let chassis = world.spawn((
         RigidBody::Dynamic,

@@ -1,4 +1,4 @@
-//! A picture with Bevy 0.20, without a window: a weight two seconds after it was let go, on a coilover.
+//! Renders a picture with Bevy 0.20, without a window: a weight on a coilover, two seconds after its release.
 //!
 //! `cargo run --example coilover -- FILE.png`
 
@@ -16,7 +16,7 @@ use bevy_rapier3d::prelude::*;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-/// Seconds of the scene before the picture.
+/// Duration of the scene before the picture, s.
 const BEFORE: f64 = 2.0;
 /// Longest wait for the picture, s.
 const PATIENCE: u64 = 240;
@@ -101,10 +101,10 @@ fn setup(
     ));
 }
 
-/// Updates until the picture lies on disk.
+/// Updates until the picture is on disk.
 fn take(app: &mut App, image: &Handle<Image>, file: &Path) -> AppExit {
     let _ = std::fs::remove_file(file);
-    // Shaders are compiled in the background: some frames first.
+    // Shaders are compiled in the background, so some frames pass first.
     for _ in 0..60 {
         app.update();
     }

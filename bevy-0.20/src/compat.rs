@@ -57,7 +57,7 @@ pub(crate) fn remove(
         multibody_joints,
         ..
     } = joints;
-    // Whoever calls this takes out what is no part of a soft body.
+    // Callers pass no body that is part of a soft body, so an empty set is enough.
     let soft = &mut SoftBodySet::new();
     bodies.remove(
         handle,

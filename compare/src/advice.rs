@@ -1,4 +1,4 @@
-//! Which micro-steps and tick rate for which spring.
+//! Writes the report's advice on which micro-steps and tick rate suit which spring.
 
 use crate::front::find;
 use crate::method::{Dial, Method, Setting};
@@ -11,7 +11,7 @@ use std::fmt::Write;
 const RATES: [u32; 5] = [30, 60, 120, 240, 480];
 const TOLERANCES: [f32; 4] = [1e-2, 1e-3, 1e-4, 1e-5];
 
-/// The section, its tables made by the crate's own function and from what was measured.
+/// The section "How to choose". Its tables come from the crate's `recommend` and from the measurements.
 pub fn section(scenes: &[(&Scene, Vec<Row>)]) -> String {
     let mut text = String::from(
         "## How to choose\n\n\
@@ -65,7 +65,7 @@ pub fn section(scenes: &[(&Scene, Vec<Row>)]) -> String {
     text
 }
 
-/// What a tolerance costs, beside the cheapest of our fixed settings that is no less exact.
+/// Table of what a tolerance costs, relative to the cheapest fixed bevy_coilover setting that is at least as exact.
 fn tolerance_prices(scenes: &[(&Scene, Vec<Row>)]) -> String {
     let mut text = String::from(
         "\nAt 60 steps a second: largest error with a tolerance, and its time as a multiple of that of the cheapest \
@@ -122,7 +122,8 @@ mod tests {
                     continue;
                 };
                 let dt = row.setting.dt() as f32;
-                // Elsewhere single precision decides; and a spring that is not resolved takes more anyway.
+                // Skips rows where single precision dominates the error, and springs that `n` micro-steps do
+                // not resolve: there the default takes more micro-steps by itself.
                 if error < 1e-4
                     || row.setting.rate > 120
                     || f32::sqrt(stiffness) * dt > 2.0 * n as f32

@@ -1,4 +1,4 @@
-//! Runs what is missing from the tables.
+//! Finds and runs the settings of a scene that are missing from its table.
 
 use crate::clock::race;
 use crate::follow::follow;
@@ -9,8 +9,8 @@ use crate::table::{Row, Table};
 use indicatif::ProgressBar;
 use std::io;
 
-/// Settings of a scene that are asked for and missing, one list per time step: those run against each
-/// other, and are written before the next begin.
+/// Requested settings of a scene that its table lacks, one list per tick rate. The settings of a list are timed
+/// in turns, and their rows are written before the next list starts.
 pub fn missing(options: &Options, scene: &Scene, table: &Table) -> Vec<Vec<Setting>> {
     let problem = (scene.make)();
     let damped = problem.links.iter().any(|l| l.damping > 0.0);
@@ -43,7 +43,7 @@ pub fn missing(options: &Options, scene: &Scene, table: &Table) -> Vec<Vec<Setti
     chunks
 }
 
-/// Follows and times them.
+/// Measures error and time of the missing settings and stores them in the table.
 pub fn run(
     options: &Options,
     scene: &Scene,

@@ -1,4 +1,4 @@
-//! The work–precision picture of a scene: error against computing time, both logarithmic.
+//! The work–precision chart of a scene: error against computing time, both logarithmic.
 
 use crate::front::front;
 use crate::method::{Dial, Method};
@@ -10,10 +10,10 @@ use std::path::Path;
 
 type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<LogCoord<f64>, LogCoord<f64>>>;
 
-/// Errors below this are the last digits of single precision, m.
+/// Errors below this are rounding errors of single precision, m. The chart draws them at this value.
 const FLOOR: f64 = 1e-7;
 
-/// One line: the points of a method as one dial turns.
+/// One line of the chart: the points of a method as one dial varies.
 struct Curve {
     label: String,
     paint: RGBColor,
@@ -82,7 +82,8 @@ fn point(row: &Row) -> (f64, f64) {
     (work(row), error(row))
 }
 
-/// Each method's own dial at 60 steps a second, and the time step with its dial at rest.
+/// Two kinds of curve per method: over its own dial at 60 steps per second, and over the time step at its default dial.
+/// bevy_coilover also has a curve over the time step with extrapolation.
 fn curves(rows: &[Row]) -> Vec<Curve> {
     let kept: Vec<&Row> = rows.iter().filter(|r| !r.strayed.diverged).collect();
     let mut curves = Vec::new();
@@ -144,7 +145,7 @@ fn line(chart: &mut Chart, curve: &Curve) -> Drawn {
     Ok(())
 }
 
-/// What the lines are, beside the chart.
+/// Explains the lines, to the right of the chart.
 fn legend(area: &Sheet, curves: &[Curve], lost: bool) -> Drawn {
     let mut y = 50;
     let text = |y: i32, words: &str| -> Drawn {

@@ -1,47 +1,50 @@
-//! Time per step, measured so that two methods can be compared.
+//! Measures the time per step so that methods can be compared.
 //!
-//! All methods of a race run in turns: what else the machine does meets them alike. Each turn is a batch of
-//! whole updates of the app; the median over the turns is told, with its quartiles. Whoever has been
-//! disturbed, so that its median is well above its shortest turn, gets more of them; a turn in which the
-//! thread had to wait for a core is taken again, where the system tells.
+//! All settings of a race run in turns, so that other load on the machine affects all of them alike. Each turn is a
+//! batch of whole updates of the app. The result is the median over the turns, with quartiles. A setting whose median
+//! is well above its shortest turn was disturbed and gets more turns. A turn in which the thread had to wait for a core
+//! is repeated, where the system reports such waits.
 
 use crate::method::Setting;
 use crate::problem::Problem;
 use crate::rig::Rig;
 use std::time::Instant;
 
-/// Updates before the clock runs.
+/// Number of updates before timing starts.
 const WARM_UP: u32 = 10;
-/// A turn takes about so long, s.
+/// Approximate length of a turn, s.
 const TURN: f64 = 1.5e-3;
-/// Most simulated seconds before a scene starts anew: a scene at rest says little.
+/// Simulated time after which a scene restarts, s: the time per step of a scene at rest says little.
 const LONGEST: f64 = 10.0;
 
 /// Time per step, s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Times {
     pub median: f64,
-    /// Quartiles.
+    /// First quartile.
     pub low: f64,
+    /// Third quartile.
     pub high: f64,
 }
 
-/// Ratio of median to shortest turn from which on more turns are taken, up to so many times as many.
+/// Ratio of the median to the shortest turn above which a setting gets more turns.
 const DISTURBED: f64 = 1.2;
+/// Most turns of a disturbed setting, as a multiple of the requested number.
 const MORE: usize = 4;
 
-/// Share of a turn that may pass waiting for a core, and how often it is tried to have it so.
+/// Share of a turn that the thread may spend waiting for a core. A turn with a larger share is repeated.
 const WAIT: f64 = 0.02;
+/// Most attempts per turn.
 const TRIES: u32 = 8;
 
-/// What the clock runs on, and how.
+/// What a race times, and how.
 pub struct Track<'a> {
     pub make: &'a dyn Fn(Setting) -> Rig,
-    /// Updates before the clock runs.
+    /// Number of updates before timing starts.
     pub warm_up: u32,
-    /// Updates from turn to turn at least, so that turns of one update each meet the whole scene.
+    /// Fewest updates from one turn to the next, so that even turns of one update each spread over the whole scene.
     pub apart: u32,
-    /// Most simulated seconds before it starts anew.
+    /// Simulated time after which the scene restarts, s.
     pub longest: f64,
 }
 
@@ -61,7 +64,7 @@ struct Runner {
     turns: Vec<f64>,
 }
 
-/// Times the settings against each other, in so many turns each.
+/// Times the settings of a problem in turns, at least `turns` for each.
 pub fn race(problem: &Problem, settings: &[Setting], turns: u32) -> Vec<Times> {
     let track = Track {
         make: &|setting| Rig::new(problem, setting),
@@ -72,7 +75,7 @@ pub fn race(problem: &Problem, settings: &[Setting], turns: u32) -> Vec<Times> {
     race_on(&track, settings, turns)
 }
 
-/// As [`race`], on anything.
+/// Times settings in turns, like [`race`], but on any [`Track`].
 pub fn race_on(track: &Track, settings: &[Setting], turns: u32) -> Vec<Times> {
     let longest = track.longest;
     let mut runners: Vec<Runner> = settings
@@ -94,7 +97,7 @@ pub fn race_on(track: &Track, settings: &[Setting], turns: u32) -> Vec<Times> {
         .collect();
     for turn in 0..MORE * turns as usize {
         let needed = |r: &Runner| turn < turns as usize || r.is_disturbed();
-        // Another one begins each time, so that nobody always follows the same one.
+        // The order rotates with each turn, so that no setting is always the first.
         let count = runners.len();
         for i in 0..count {
             let runner = &mut runners[(i + turn) % count];
@@ -128,7 +131,8 @@ impl Runner {
     }
 }
 
-/// Time of an update, s: of so many in a row, during which this thread had a core to itself if that can be had.
+/// Mean time of one update over a batch, s. Repeats a batch during which the thread waited for a core, up to
+/// [`TRIES`] times in all, and returns the batch with the smallest share of waiting.
 pub fn turn_of(updates: u32, mut update: impl FnMut()) -> f64 {
     let (mut best, mut least) = (f64::NAN, f64::INFINITY);
     for _ in 0..TRIES {
@@ -150,7 +154,7 @@ pub fn turn_of(updates: u32, mut update: impl FnMut()) -> f64 {
     best
 }
 
-/// How long this thread has waited for a core so far, s.
+/// Total time that this thread has waited for a core, s. `None` where the system does not report it.
 fn waiting() -> Option<f64> {
     let text = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
     let nanoseconds: f64 = text.split_whitespace().nth(1)?.parse().ok()?;
@@ -158,7 +162,7 @@ fn waiting() -> Option<f64> {
 }
 
 impl Times {
-    /// Of at least one turn.
+    /// Median and quartiles of at least one turn.
     pub fn of(mut turns: Vec<f64>) -> Self {
         turns.sort_by(f64::total_cmp);
         let at = |share: f64| {

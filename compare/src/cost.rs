@@ -1,4 +1,4 @@
-//! What truth costs: for each scene the cheapest setting of every method that keeps to an error.
+//! Table and chart of the cheapest setting of every method that stays within an error, for each scene.
 
 use crate::method::Method;
 use crate::paint::{Drawn, FAINT, INK, Sheet, colour, font};
@@ -8,13 +8,13 @@ use plotters::prelude::*;
 use std::fmt::Write;
 use std::path::Path;
 
-/// Errors that are asked for, m.
+/// Error limits, m.
 const WITHIN: [f64; 3] = [1e-2, 1e-3, 1e-4];
 
-/// Fewest steps per second: as a game draws.
+/// Fewest steps per second: the frame rate of a game.
 const SLOWEST: u32 = 60;
 
-/// One of the ways to make a spring, whichever variants of it there are.
+/// The columns of the table, each with the methods that count as variants of one method.
 const WAYS: [&[Method]; 4] = [
     &[Method::Ours],
     &[Method::Joint],
@@ -22,10 +22,10 @@ const WAYS: [&[Method]; 4] = [
     &[Method::Force],
 ];
 
-/// Scenes and what was measured in each.
+/// Scenes with their rows.
 type Measured<'a> = [(&'a Scene, Vec<Row>)];
 
-/// The cheapest row of a way that keeps to an error.
+/// The cheapest row, by computing time, of a column's methods with an error of at most `within` (m).
 fn cheapest(rows: &[Row], way: &[Method], within: f64) -> Option<Row> {
     rows.iter()
         .filter(|r| way.contains(&r.setting.method) && r.setting.rate >= SLOWEST)
@@ -34,12 +34,12 @@ fn cheapest(rows: &[Row], way: &[Method], within: f64) -> Option<Row> {
         .copied()
 }
 
-/// µs in 1/60 s of the scene.
+/// Computing time per 1/60 s of the scene, µs.
 fn price(row: &Row) -> f64 {
     1e6 * row.work() / 60.0
 }
 
-/// The table, and the words that go with it and its chart.
+/// The table with its introduction and the link to the chart.
 pub fn section(scenes: &Measured) -> String {
     let mut text = String::from(
         "## What truth costs\n\n\
@@ -71,7 +71,7 @@ pub fn section(scenes: &Measured) -> String {
     text + "\n"
 }
 
-/// Draws a panel for each error: a line for each scene, a dot for each method.
+/// Draws a panel for each error limit, with a line for each scene and a dot for each method.
 pub fn draw(path: &Path, scenes: &Measured) -> Drawn {
     let size = (1120, 130 + 34 * scenes.len() as u32);
     let sheet = SVGBackend::new(path, size).into_drawing_area();
@@ -96,7 +96,7 @@ pub fn draw(path: &Path, scenes: &Measured) -> Drawn {
     Ok(())
 }
 
-/// Of a scene's line, px.
+/// Vertical position of a scene's line, px.
 fn height(scene: usize) -> i32 {
     66 + 34 * scene as i32
 }
@@ -104,7 +104,7 @@ fn height(scene: usize) -> i32 {
 fn draw_panel(panel: &Sheet, scenes: &Measured, within: f64, dearest: f64) -> Drawn {
     const CHEAPEST: f64 = 7.0;
     let width = panel.dim_in_pixel().0 as i32;
-    // Right of that stands what no setting reaches.
+    // The space to the right of this holds the methods without a setting within the limit.
     let reach = f64::from(width - 64);
     let at = |price: f64| 10 + (reach * (price / CHEAPEST).ln() / (dearest / CHEAPEST).ln()) as i32;
     let title = format!("within {} mm", 1e3 * within);
@@ -124,7 +124,7 @@ fn draw_panel(panel: &Sheet, scenes: &Measured, within: f64, dearest: f64) -> Dr
         let y = height(i);
         panel.draw(&PathElement::new([(10, y), (width - 10, y)], FAINT))?;
         let mut missing = 0;
-        // Ours last, so that nothing hides it.
+        // bevy_coilover comes first in `WAYS` and is drawn last, so that nothing hides it.
         for way in WAYS.iter().rev() {
             let paint = colour(way[0]);
             if !rows.iter().any(|row| way.contains(&row.setting.method)) {

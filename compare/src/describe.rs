@@ -1,4 +1,4 @@
-//! Scenes of points as plain text, for peers that live outside of this process.
+//! Writes scenes of point masses as plain text, for engines that run outside this process (`compare/peers`).
 
 use crate::problem::{Kind, Problem};
 use crate::scenes::SCENES;
@@ -7,7 +7,7 @@ use std::fmt::Write;
 use std::path::Path;
 use std::{fs, io};
 
-/// Writes a file for every scene that points and springs alone can tell.
+/// Writes one file for every scene that consists of point masses and linear springs only.
 pub fn write_all(folder: &Path) -> io::Result<()> {
     fs::create_dir_all(folder)?;
     for scene in &SCENES {
@@ -18,8 +18,9 @@ pub fn write_all(folder: &Path) -> io::Result<()> {
     Ok(())
 }
 
-/// A line each: gravity; seconds; bodies (mass, 0 when fixed, place, velocity); links (ends, stiffness, damping,
-/// rest length); watched bodies; and where those are at a time, every 1/240 s.
+/// Returns the text of a scene, or `None` if it has more than points and linear springs. It has one line for each of:
+/// gravity; seconds; size; every body (mass or 0 if fixed, position, velocity); every link (ends, stiffness, damping,
+/// rest length); the watched bodies; and, every 1/240 s, the time and the true positions of the watched bodies.
 fn describe(problem: &Problem) -> Option<String> {
     if problem.is_nonlinear() {
         return None;

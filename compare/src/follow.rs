@@ -1,25 +1,25 @@
-//! How far a method strays from the truth.
+//! Runs a problem with a method and measures its error against the true motion.
 
 use crate::method::Setting;
 use crate::problem::{Kind, Problem};
 use crate::rig::{Rig, State};
 use bevy::math::{DMat3, DVec3};
 
-/// What a run showed.
+/// Errors of one run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Strayed {
-    /// Largest distance of a watched body from where it should have been, m.
+    /// Largest distance of a watched body from its true position, m.
     pub error: f64,
-    /// Largest change of energy, of the scene's own; `None` where it is not conserved.
+    /// Largest change of energy, divided by the scene's `energy`. `None` where energy is not conserved.
     pub energy: Option<f64>,
-    /// Largest change of linear and angular momentum, of the size of the latter; `None` where something
-    /// outside acts.
+    /// Largest change of linear or angular momentum, divided by the initial angular momentum. `None` where
+    /// gravity or a fixed body acts.
     pub momentum: Option<f64>,
-    /// It was ten times the motion's size away, or not a number.
+    /// Whether the error exceeded ten times the motion's size or was NaN.
     pub diverged: bool,
 }
 
-/// Runs a problem to its end, or until it has diverged.
+/// Runs a problem to its end, or until the method diverges.
 pub fn follow(problem: &Problem, setting: Setting) -> Strayed {
     let mut rig = Rig::new(problem, setting);
     let mut strayed = Strayed {
@@ -38,7 +38,7 @@ pub fn follow(problem: &Problem, setting: Setting) -> Strayed {
         if let Some(places) = (problem.truth.at)(time) {
             for (body, place) in problem.truth.watched.iter().zip(places) {
                 let off = rig.state(*body).position.distance(place);
-                // Not with `max`, which would drop what is not a number.
+                // Not `f64::max`, which would ignore a NaN.
                 if off > strayed.error || off.is_nan() {
                     strayed.error = off;
                 }
@@ -77,7 +77,7 @@ fn initial(problem: &Problem, body: usize) -> State {
     }
 }
 
-/// What is conserved.
+/// Conserved quantities: energy (J), linear momentum (kg m/s) and angular momentum (kg m²/s).
 struct Balance {
     energy: f64,
     linear: DVec3,

@@ -1,8 +1,8 @@
-//! What the times were taken on.
+//! Describes the machine that runs this program.
 
 use std::fs;
 
-/// Cores, model and system, without names.
+/// Number of cores, processor model, system and build, without host or user names.
 pub fn describe() -> String {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let model = field("/proc/cpuinfo", "model name", ':').unwrap_or_else(|| "unknown model".into());
@@ -20,7 +20,7 @@ pub fn describe() -> String {
     )
 }
 
-/// The first value of a key in a file of key and value lines.
+/// The value of the first line that starts with `key`, in a file of lines with key, `sign` and value.
 pub fn field(file: &str, key: &str, sign: char) -> Option<String> {
     let text = fs::read_to_string(file).ok()?;
     let line = text.lines().find(|l| l.starts_with(key))?;

@@ -1,7 +1,7 @@
-//! Speed against error: bevy_coilover beside everything that a game could use instead.
+//! Compares speed and error of bevy_coilover with everything that a game could use instead.
 //!
-//! `cargo run --release -p compare` runs every scene with every method and writes what it measured to
-//! `docs/speed_vs_error.md`, with tables as CSV and charts as SVG beside it; `--help` tells the options.
+//! `cargo run --release -p compare` runs every scene with every method and writes the report
+//! `docs/speed_vs_error.md`, with tables (CSV) and charts (SVG) in a folder beside it. `--help` lists the options.
 
 mod advice;
 mod campaign;
@@ -109,7 +109,7 @@ fn run(options: &Options) -> Result<(), Box<dyn Error>> {
     publish(options, &folder, &extras)
 }
 
-/// Writes charts and report from all tables that there are.
+/// Writes the charts and the report from all existing tables.
 fn publish(options: &Options, folder: &Path, extras: &str) -> Result<(), Box<dyn Error>> {
     let mut scenes = Vec::new();
     for scene in &SCENES {

@@ -6,19 +6,19 @@ use std::{fs, io};
 const BEGIN: &str = "<!-- speed_vs_error:begin -->";
 const END: &str = "<!-- speed_vs_error:end -->";
 
-/// A text between the markers.
+/// Puts a text between the markers.
 pub fn mark(text: &str) -> String {
     format!("{BEGIN}\n{}\n{END}", text.trim())
 }
 
-/// What stands between the markers, with them.
+/// The text between the markers, markers included.
 pub fn marked(text: &str) -> Option<&str> {
     let from = text.find(BEGIN)?;
     let length = text[from..].find(END)? + END.len();
     Some(&text[from..from + length])
 }
 
-/// Puts a marked text in place of the one in a file; leaves a file without markers, or no file, alone.
+/// Replaces the marked text of a file by `new`. Does nothing if there is no file or if it has no markers.
 pub fn copy(file: &Path, new: &str) -> io::Result<()> {
     let Ok(text) = fs::read_to_string(file) else {
         return Ok(());

@@ -1,15 +1,15 @@
-//! The ways to make a spring, each with its own dial, and the settings that are compared.
+//! The methods that make a spring, the accuracy dial of each method, and the settings that are compared.
 
 use std::fmt;
 
-/// Whose spring it is.
+/// Implementation of a spring.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Method {
     Ours,
     Force,
     Joint,
     Avian,
-    /// Avian's joint without its damping, which brakes across the line too.
+    /// Avian's joint without damping: that damping would also brake motion across the line of the spring.
     AvianBare,
 }
 
@@ -22,12 +22,12 @@ impl Method {
         Self::AvianBare,
     ];
 
-    /// Whether it runs in Avian instead of Rapier.
+    /// Whether the method runs in Avian instead of Rapier.
     pub fn is_avian(self) -> bool {
         matches!(self, Self::Avian | Self::AvianBare)
     }
 
-    /// As on the command line and in the tables' files.
+    /// Name on the command line and in the CSV files.
     pub fn name(self) -> &'static str {
         match self {
             Self::Ours => "ours",
@@ -52,7 +52,7 @@ impl Method {
         }
     }
 
-    /// The setting that a user gets without asking.
+    /// The dial that a user gets by default.
     pub fn default_dial(self) -> Dial {
         match self {
             Self::Ours => Dial::Microsteps(1),
@@ -62,7 +62,7 @@ impl Method {
         }
     }
 
-    /// Every position of the dial, or the few that a quick look takes.
+    /// All dial positions, or only a few for a quick run.
     pub fn dials(self, quick: bool) -> Vec<Dial> {
         let pick = |all: &[u32], few: &[u32]| if quick { few.to_vec() } else { all.to_vec() };
         match self {
@@ -88,13 +88,13 @@ impl Method {
     }
 }
 
-/// A position of a method's own accuracy dial.
+/// Position of a method's own accuracy dial.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Dial {
     None,
     Microsteps(u32),
     Extrapolated,
-    /// 10⁻ⁿ metres per second.
+    /// Tolerance of 10⁻ⁿ m/s.
     Tolerance(u32),
     Iterations(u32),
     Substeps(u32),
@@ -114,7 +114,7 @@ impl fmt::Display for Dial {
     }
 }
 
-/// A method as it is run.
+/// A method with its dial and tick rate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Setting {
     pub method: Method,
@@ -124,7 +124,7 @@ pub struct Setting {
 }
 
 impl Setting {
-    /// The method's defaults at so many steps per second.
+    /// The method with its default dial, at `rate` steps per second.
     pub fn default_of(method: Method, rate: u32) -> Self {
         Self {
             method,

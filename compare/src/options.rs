@@ -22,7 +22,7 @@ cargo run --release -p compare -- [OPTIONS]
 Writes docs/speed_vs_error.md, docs/speed_vs_error/*.csv and *.svg. Rows that the tables already hold are not
 measured again, so a run that was stopped goes on where it was.";
 
-/// What is asked for.
+/// Options of a measuring run.
 pub struct Options {
     scenes: Vec<String>,
     pub methods: Vec<Method>,
@@ -32,16 +32,17 @@ pub struct Options {
     pub out: PathBuf,
 }
 
-/// What to do.
+/// What the command line asks the program to do.
 pub enum Request {
     Run(Options),
     Help,
     List,
-    /// Of the scale sweep, in a process of its own: method and number of springs.
+    /// Measure one method with a number of springs for the scale study, which starts a process for each of these.
     Scale(Method, u32),
-    /// Write the scenes as text, into a folder.
+    /// Write the scenes as text into a folder.
     Describe(PathBuf),
-    /// For counting instructions: pairs of bodies, how many of them with one of our springs, and updates.
+    /// Run updates under an instruction counter: number of body pairs, number of pairs with a bevy_coilover spring, and
+    /// number of updates.
     Updates([u32; 3]),
 }
 
@@ -50,12 +51,12 @@ impl Options {
         !self.report && (self.scenes.is_empty() || self.scenes.iter().any(|s| s == scene))
     }
 
-    /// Turns that each setting is timed for.
+    /// Number of timed turns per setting.
     pub fn turns(&self) -> u32 {
         if self.quick { 5 } else { 15 }
     }
 
-    /// Reads the command line; `known` are the names of the scenes.
+    /// Reads the command line. `known` lists the valid scene names.
     pub fn parse(known: &[&str]) -> Result<Request, lexopt::Error> {
         let mut options = Self {
             scenes: Vec::new(),

@@ -1,19 +1,19 @@
-//! What the charts have in common.
+//! Colours, fonts and axis ranges shared by the charts.
 
 use crate::method::Method;
 use plotters::coord::Shift;
 use plotters::prelude::*;
 use std::error::Error;
 
-/// A drawing of an SVG file.
+/// Drawing area of an SVG file.
 pub type Sheet<'a> = DrawingArea<SVGBackend<'a>, Shift>;
-/// What drawing may end in.
+/// Result of drawing.
 pub type Drawn = Result<(), Box<dyn Error>>;
 
 pub const INK: RGBColor = RGBColor(40, 44, 52);
 pub const FAINT: RGBColor = RGBColor(225, 228, 232);
 
-/// Ours at fourth order, beside ours.
+/// Colour of bevy_coilover with extrapolation (fourth order).
 pub const EXTRAPOLATED: RGBColor = RGBColor(110, 60, 190);
 
 /// The colour of a method in every chart.
@@ -27,12 +27,12 @@ pub fn colour(method: Method) -> RGBColor {
     }
 }
 
-/// A font of the reader's, of a size.
+/// The default sans-serif font of the viewer's system, in a size in px.
 pub fn font(size: u32) -> TextStyle<'static> {
     ("sans-serif", size).into_font().color(&INK)
 }
 
-/// A range of a logarithmic axis that holds all of these, with room; whole decades if asked.
+/// Range of a logarithmic axis that holds all positive finite values: with a margin, or whole decades if `whole`.
 pub fn decades(values: impl Iterator<Item = f64>, whole: bool) -> std::ops::Range<f64> {
     let (mut low, mut high) = (f64::INFINITY, 0.0_f64);
     for v in values.filter(|v| v.is_finite() && *v > 0.0) {

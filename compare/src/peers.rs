@@ -1,4 +1,4 @@
-//! What the scripts in `compare/peers` have found out about engines outside of this process.
+//! Reports what the scripts in `compare/peers` have measured with engines that run outside this process.
 
 use crate::front::find;
 use crate::method::{Dial, Method, Setting};
@@ -10,13 +10,13 @@ use std::fmt::Write;
 use std::fs;
 use std::path::Path;
 
-/// A line of their file.
+/// One line of `peers.csv`.
 struct Peer {
-    /// Engine and setting.
+    /// Names of the engine and of its setting.
     name: [String; 2],
     scene: String,
     rate: u32,
-    /// m; none where it diverged.
+    /// Largest error, m. `None` if the engine diverged.
     error: Option<f64>,
 }
 
@@ -40,7 +40,8 @@ fn millimetres(error: Option<f64>) -> String {
     error.map_or("diverges".into(), |error| digits(1e3 * error))
 }
 
-/// Their errors at 60 and 240 steps a second beside ours, or nothing where they have not run.
+/// Tables with the errors of the other engines and of bevy_coilover at 60 and 240 steps per second. Empty if
+/// there is no `peers.csv`.
 pub fn section(folder: &Path, scenes: &[(&Scene, Vec<Row>)]) -> String {
     let Ok(csv) = fs::read_to_string(folder.join("peers.csv")) else {
         return String::new();

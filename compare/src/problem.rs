@@ -1,4 +1,4 @@
-//! What happens in a scene, said without any engine: bodies, springs, and where everything should be when.
+//! Describes a scene without reference to an engine: bodies, springs, and the true positions over time.
 
 use bevy::math::{DVec3, Vec3};
 
@@ -7,19 +7,19 @@ pub struct Problem {
     pub gravity: Vec3,
     pub bodies: Vec<Body>,
     pub links: Vec<Link>,
-    /// A plane y = 0 that carries wheels.
+    /// Whether there is a ground plane y = 0, on which wheels stand.
     pub ground: bool,
-    /// How long the motion is followed, s.
+    /// Simulated time, s.
     pub seconds: f64,
-    /// Size of the motion, m: whoever is off by ten times as much has diverged.
+    /// Size of the motion, m. A method has diverged once its error exceeds ten times this size.
     pub size: f64,
-    /// Energy against which its drift is measured, J; `None` where it is not conserved.
+    /// Energy by which the energy drift is divided, J. `None` where energy is not conserved.
     pub energy: Option<f64>,
     pub truth: Truth,
 }
 
 impl Problem {
-    /// Whether there is a spring that no joint can be.
+    /// Whether the scene has a nonlinear spring, which no joint offers.
     pub fn is_nonlinear(&self) -> bool {
         self.links.iter().any(|link| link.cubic > 0.0)
     }
@@ -34,20 +34,20 @@ pub struct Body {
     pub spin: Vec3,
 }
 
-/// How a body moves.
+/// What kind of body it is and how it may move.
 #[derive(Clone, Copy)]
 pub enum Kind {
     Fixed,
-    /// Mass (kg) and principal inertia (kg m²), without a shape.
+    /// Free body without a shape, with mass (kg) and principal moments of inertia (kg m²).
     Free {
         mass: f32,
         inertia: Vec3,
     },
-    /// As `Free`, up and down only.
+    /// Body of a mass (kg), without a shape, that moves up and down only.
     Upright {
         mass: f32,
     },
-    /// A ball that stands on the ground, up and down only.
+    /// Ball of a mass (kg) and a radius (m) that stands on the ground and moves up and down only.
     Wheel {
         mass: f32,
         radius: f32,
@@ -58,16 +58,16 @@ pub enum Kind {
 #[derive(Clone, Copy)]
 pub struct Link {
     pub ends: [usize; 2],
-    /// In the bodies' frames.
+    /// Anchors in the local frames of the two bodies, m.
     pub anchors: [Vec3; 2],
     pub stiffness: f32,
     pub damping: f32,
     pub rest: f32,
-    /// What the cube of the stretch adds, N/m³.
+    /// Stiffness of the cubic term of the tension, N/m³.
     pub cubic: f32,
 }
 
-/// Where the watched bodies are at a time; `None` where it is not known.
+/// True positions of the watched bodies at a time in s. `at` returns `None` for times without reference data.
 pub struct Truth {
     pub watched: Vec<usize>,
     pub at: Box<dyn Fn(f64) -> Option<Vec<DVec3>>>,
@@ -78,7 +78,7 @@ impl Body {
         Self::new(Kind::Fixed, at)
     }
 
-    /// A body whose inertia plays no part.
+    /// A free body in whose scene the moments of inertia do not matter.
     pub fn point(mass: f32, at: Vec3) -> Self {
         let inertia = Vec3::splat(0.4 * mass);
         Self::new(Kind::Free { mass, inertia }, at)
@@ -103,7 +103,7 @@ impl Body {
         self
     }
 
-    /// 0 for a fixed one.
+    /// Inverse mass, 1/kg. 0 for a fixed body.
     pub fn inverse_mass(&self) -> f32 {
         match self.kind {
             Kind::Fixed => 0.0,
@@ -115,7 +115,7 @@ impl Body {
 }
 
 impl Link {
-    /// Between the centres of two bodies.
+    /// A linear spring between the centres of two bodies.
     pub fn new(a: usize, b: usize, stiffness: f32, damping: f32, rest: f32) -> Self {
         Self {
             ends: [a, b],
@@ -127,13 +127,13 @@ impl Link {
         }
     }
 
-    /// Between these points of the bodies.
+    /// Attaches the spring at these points, in the local frames of the two bodies.
     pub fn anchored(mut self, anchors: [Vec3; 2]) -> Self {
         self.anchors = anchors;
         self
     }
 
-    /// With a cubic part, N/m³.
+    /// Adds a cubic term to the tension, N/m³.
     pub fn hardening(mut self, cubic: f32) -> Self {
         self.cubic = cubic;
         self
@@ -141,7 +141,7 @@ impl Link {
 }
 
 impl Truth {
-    /// Rows of a reference file, one every 1/240 s: t, then `width` coordinates of each watched body.
+    /// Reads a reference file with one row every 1/240 s: t, then `width` coordinates of each watched body.
     pub fn rows(text: &str, watched: &[usize], width: usize) -> Self {
         let rows: Vec<Vec<f64>> = text
             .lines()
@@ -164,7 +164,7 @@ impl Truth {
         }
     }
 
-    /// One body whose place is a formula.
+    /// One watched body, whose position is given by a formula.
     pub fn formula(body: usize, at: impl Fn(f64) -> DVec3 + 'static) -> Self {
         Self {
             watched: vec![body],

@@ -1,4 +1,4 @@
-//! docs/speed_vs_error.md: tables and words, written from the tables alone.
+//! Builds docs/speed_vs_error.md from the stored tables.
 
 use crate::front::{find, front};
 use crate::machine;
@@ -9,7 +9,7 @@ use crate::table::Row;
 use crate::words::{best_of, digits, length, time, verdict};
 use std::fmt::Write;
 
-/// Where the generated text begins and how it is to be read.
+/// Title of the report and an explanation of how to read it.
 pub fn opening() -> String {
     format!(
         "# Speed against error\n\n\
@@ -31,7 +31,7 @@ pub fn opening() -> String {
     )
 }
 
-/// The table that `docs/accuracy.md` shows too.
+/// The table of the section "In short", which is also copied into `docs/accuracy.md`.
 pub fn headline(scenes: &[(&Scene, Vec<Row>)]) -> String {
     let mut text = String::from(
         "Largest position error · time per step, at 60 steps a second (made by `cargo run --release -p compare`, \
@@ -74,7 +74,7 @@ pub fn headline(scenes: &[(&Scene, Vec<Row>)]) -> String {
     mark(&text)
 }
 
-/// Picture, words and tables of a scene.
+/// Chart, sentences and tables of a scene.
 pub fn section(scene: &Scene, rows: &[Row]) -> String {
     let mut text = format!(
         "## {}\n\n{}\n\n![{}: error against computing time](speed_vs_error/{}.svg)\n\n{}\n\n",

@@ -1,4 +1,4 @@
-//! Ten to a hundred thousand isolated springs: time of an update and memory, each in a process of its own.
+//! Study of 10 to 100 000 isolated springs: time of an update and memory. Each measurement runs in its own process.
 
 use crate::clock::{Times, turn_of};
 use crate::machine::field;
@@ -15,17 +15,17 @@ use std::fmt::Write;
 use std::path::Path;
 use std::process::Command;
 
-/// Processes per method and number of springs.
+/// Number of processes per method and number of springs.
 const ROUNDS: u32 = 3;
 
-/// What came of so many springs.
+/// Result of a method with a number of springs.
 #[derive(Clone, Copy)]
 pub struct Load {
     pub method: Method,
     pub springs: u32,
-    /// Of an update, s.
+    /// Time of an update, s.
     pub times: Times,
-    /// Most memory that the process has had, bytes; `None` where the system does not tell.
+    /// Peak memory of the process, bytes. `None` where the system does not report it.
     pub memory: Option<f64>,
 }
 
@@ -37,7 +37,7 @@ fn counts(quick: bool) -> &'static [u32] {
     }
 }
 
-/// Springs between bodies of their own.
+/// The study of isolated springs, each between two bodies of its own.
 pub struct Scale;
 
 impl Study for Scale {
@@ -51,7 +51,7 @@ impl Study for Scale {
         counts(quick).len()
     }
 
-    /// All methods in turns, and of every cell the least disturbed process.
+    /// Measures all methods in turns and keeps, for each method and number of springs, the process with the smallest median.
     fn measure(&self, methods: &[Method], quick: bool) -> Result<Vec<Load>, Box<dyn Error>> {
         let mut loads: Vec<Load> = Vec::new();
         for springs in counts(quick) {
@@ -117,7 +117,7 @@ impl Study for Scale {
     }
 }
 
-/// Measures in this process and prints it; `ask` reads that.
+/// Measures in this process and prints the result, which `ask` reads.
 pub fn tell(method: Method, springs: u32) {
     let problem = pairs(springs);
     let mut rig = Rig::new(&problem, Setting::default_of(method, 60));
@@ -133,7 +133,7 @@ pub fn tell(method: Method, springs: u32) {
     println!("{} {} {} {memory}", times.median, times.low, times.high);
 }
 
-/// Runs so many updates of so many pairs, of which so many have one of our springs.
+/// Runs updates of a number of body pairs, some of which have a bevy_coilover spring. For counting instructions.
 pub fn update([bodies, springs, updates]: [u32; 3]) {
     let mut problem = pairs(bodies);
     problem.links.truncate(springs as usize);
@@ -141,7 +141,7 @@ pub fn update([bodies, springs, updates]: [u32; 3]) {
     (0..updates).for_each(|_| rig.tick());
 }
 
-/// Has another process measure it.
+/// Starts another process that measures, and reads its result.
 fn ask(method: Method, springs: u32) -> Result<Load, Box<dyn Error>> {
     let output = Command::new(std::env::current_exe()?)
         .args(["--scale-of", method.name(), &springs.to_string()])
@@ -163,7 +163,7 @@ fn ask(method: Method, springs: u32) -> Result<Load, Box<dyn Error>> {
     })
 }
 
-/// Pairs of bodies of their own, swinging along their line and across it.
+/// Pairs of bodies, each joined by a spring and moving both along the spring and across it.
 fn pairs(count: u32) -> Problem {
     let mut bodies = Vec::new();
     let mut links = Vec::new();
@@ -191,7 +191,7 @@ fn pairs(count: u32) -> Problem {
 
 const MIB: f64 = 1024.0 * 1024.0;
 
-/// Time of an update over the number of springs.
+/// Draws the time of an update over the number of springs.
 fn draw(path: &Path, loads: &[Load]) -> Drawn {
     let sheet = SVGBackend::new(path, (700, 520)).into_drawing_area();
     sheet.fill(&WHITE)?;
@@ -267,7 +267,7 @@ fn section(loads: &[Load]) -> String {
     text
 }
 
-/// Our updates beside the others', in words.
+/// Ratios of bevy_coilover's time per update to that of the other methods, in words.
 fn ratios(loads: &[Load]) -> String {
     let mut text = String::new();
     for other in [Method::Joint, Method::Force, Method::Avian] {

@@ -1,4 +1,4 @@
-//! Where each method is stable: the error after five seconds over ω·dt and damping, and over ω·dt and mass ratio.
+//! Study of where each method is stable: largest error in 3 s, over ω·dt and damping, and over ω·dt and mass ratio.
 
 use crate::follow::follow;
 use crate::method::{Method, Setting};
@@ -15,20 +15,20 @@ use std::path::Path;
 const RATE: u32 = 60;
 const SECONDS: f64 = 3.0;
 
-/// What is varied beside ω·dt.
+/// The quantity that is varied besides ω·dt.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Map {
     Damping,
     MassRatio,
 }
 
-/// A field of a map.
+/// One cell of a map.
 pub struct Field {
     pub method: Method,
     pub phase: f64,
-    /// ζ, or the mass ratio.
+    /// Damping ratio ζ or mass ratio.
     pub other: f64,
-    /// Largest error, of the first stretch; infinite where it diverged.
+    /// Largest error divided by the initial stretch. Infinite if the method diverged.
     pub error: f64,
 }
 
@@ -125,7 +125,7 @@ impl Study for Map {
         })
     }
 
-    /// A panel per method, coloured by error.
+    /// Draws a panel per method, coloured by error.
     fn draw(&self, path: &Path, fields: &[Field]) -> Drawn {
         let sheet = SVGBackend::new(path, (1080, 660)).into_drawing_area();
         sheet.fill(&WHITE)?;
@@ -225,15 +225,15 @@ impl Study for Map {
 
 fn columns(quick: bool) -> Vec<f64> {
     let steps = if quick { 4 } else { 16 };
-    // 0.03 … 30
+    // From 0.03 to 30.
     (0..steps)
         .map(|i| 0.03 * 10.0_f64.powf(3.0 * f64::from(i) / f64::from(steps - 1)))
-        // As the table has it.
+        // Rounded as in the CSV file.
         .map(|phase| (1e4 * phase).round() / 1e4)
         .collect()
 }
 
-/// Upper limits of the colours.
+/// Upper error limit and label of each colour.
 const KEY: [(f64, &str); 7] = [
     (1e-5, "below 1e-5"),
     (1e-4, "1e-4"),
@@ -268,7 +268,7 @@ fn short(x: f64) -> String {
     }
 }
 
-/// Wall – 1 kg – heavy body, springs of 1 m; ω is that of the heavy one on one spring.
+/// Fixed point, body of 1 kg and heavy body, joined by two springs of 1 m. ω is that of the heavy body on one spring.
 fn two(omega: f64, ratio: f64) -> Problem {
     let k = (omega * omega * ratio) as f32;
     let heavy = ratio as f32;
@@ -276,7 +276,7 @@ fn two(omega: f64, ratio: f64) -> Problem {
     let first = f64::from(stretched) - 2.0;
     let (stiffness, mass) = (f64::from(k), f64::from(heavy));
     let truth = move |t: f64| {
-        // Normal modes of M⁻¹K = [[2k, −k], [−k/m, k/m]] by its two eigenvalues.
+        // Normal modes from the two eigenvalues λ of M⁻¹K = [[2k, −k], [−k/m, k/m]].
         let (half, det) = (
             0.5 * (2.0 * stiffness + stiffness / mass),
             stiffness * stiffness / mass,
@@ -284,7 +284,7 @@ fn two(omega: f64, ratio: f64) -> Problem {
         let root = (half * half - det).sqrt();
         let high = half + root;
         let squares = [det / high, high];
-        // Eigenvectors (k, 2k − λ); the start (0, first) is a sum of them.
+        // The eigenvectors are (k, 2k − λ). The initial displacement (0, first) is a combination of both.
         let [low, high] = squares.map(|s| 2.0 * stiffness - s);
         let share = first / (low - high);
         let wave = |i: usize| (squares[i].sqrt() * t).cos();
@@ -314,7 +314,7 @@ mod tests {
     fn equal_masses_move_in_the_two_modes_of_the_golden_ratio() {
         let problem = two(1.0, 1.0);
         let golden = 0.5 * (1.0 + 5.0_f64.sqrt());
-        // Both bodies of 1 kg on 1 N/m: ω = golden, 1/golden.
+        // Two bodies of 1 kg on springs of 1 N/m have the modes ω = golden and ω = 1/golden.
         let first = 0.1;
         let shares = [
             golden * golden / (1.0 + golden * golden),

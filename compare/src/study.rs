@@ -1,4 +1,4 @@
-//! What is measured beside the scenes, kept as CSV likewise.
+//! Runs the studies: measurements beyond the scenes, also stored as CSV.
 
 use crate::method::Method;
 use crate::options::Options;
@@ -8,12 +8,12 @@ use std::error::Error;
 use std::fs;
 use std::path::Path;
 
-/// A measurement of every method, with a table, a picture and a section of its own.
+/// A measurement of every method, with its own table, chart and report section.
 pub trait Study {
     type Item;
-    /// As on the command line, and of its files.
+    /// Name on the command line and of the study's files.
     fn name(&self) -> &'static str;
-    /// Items that a method has when all is measured.
+    /// Number of items of a method in a complete measurement.
     fn wanted(&self, method: Method, quick: bool) -> usize;
     fn measure(&self, methods: &[Method], quick: bool) -> Result<Vec<Self::Item>, Box<dyn Error>>;
     fn method(item: &Self::Item) -> Method;
@@ -24,7 +24,7 @@ pub trait Study {
     fn section(&self, items: &[Self::Item]) -> String;
 }
 
-/// Measures what is asked for and missing, draws what there is, and tells it.
+/// Measures the requested items that are missing, draws all items, and returns the report section.
 pub fn run<S: Study>(
     study: &S,
     options: &Options,
@@ -53,7 +53,7 @@ pub fn run<S: Study>(
     if !missing.is_empty() {
         let lines: Vec<String> = items.iter().map(S::line).collect();
         fs::write(&path, format!("{}\n{}\n", study.header(), lines.join("\n")))?;
-        // So that the next run draws the same from the file.
+        // The file holds rounded numbers: reading them back makes the next run draw the same.
         items = open::<S>(&path);
     }
     study.draw(&folder.join(format!("{}.svg", study.name())), &items)?;
@@ -66,7 +66,7 @@ fn open<S: Study>(path: &Path) -> Vec<S::Item> {
     text.lines().skip(1).filter_map(cells).collect()
 }
 
-/// Methods that a study is to measure. Avian's second one differs in damping alone, which no study needs.
+/// Methods that a study shall measure. Leaves out [`Method::AvianBare`], which differs from Avian only in its damping.
 pub fn asked<S: Study>(study: &S, options: &Options) -> Vec<Method> {
     if !options.wants(study.name()) {
         return Vec::new();
@@ -75,7 +75,7 @@ pub fn asked<S: Study>(study: &S, options: &Options) -> Vec<Method> {
     methods.filter(|m| *m != Method::AvianBare).collect()
 }
 
-/// A number, if it is one.
+/// Parses a number, or returns `None`.
 pub fn number(cell: &str) -> Option<f64> {
     cell.parse().ok()
 }

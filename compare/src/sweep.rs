@@ -1,4 +1,4 @@
-//! The single oscillator at every ω·dt: error, frequency and decay of each method's default.
+//! Study of the single oscillator over ω·dt: error, frequency and damping ratio of each method's default.
 
 use crate::follow::follow;
 use crate::method::{Method, Setting};
@@ -16,20 +16,21 @@ use std::path::Path;
 const RATE: u32 = 60;
 const ZETAS: [f64; 3] = [0.0, 0.1, 1.0];
 
-/// One oscillator with one method.
+/// Result of one method for one oscillator.
 pub struct Point {
     pub method: Method,
     pub zeta: f64,
-    /// Radians per step.
+    /// Phase ω·dt of one step, rad.
     pub phase: f64,
-    /// Largest error, of the first stretch; `None` where it diverged.
+    /// Largest error divided by the initial stretch. `None` if the method diverged.
     pub error: Option<f64>,
-    /// Relative error of the frequency, and error of the damping ratio; `None` where not resolved.
+    /// Relative error of the natural frequency, or `None` where it is not resolved.
     pub frequency: Option<f64>,
+    /// Error of the damping ratio, or `None` where it is not resolved.
     pub damping: Option<f64>,
 }
 
-/// All methods at all ω·dt and ζ.
+/// The study of all methods at all ω·dt and ζ.
 pub struct Sweep;
 
 impl Study for Sweep {
@@ -48,7 +49,7 @@ impl Study for Sweep {
         let last = steps(quick) - 1;
         for (method, zeta) in methods.iter().flat_map(|m| ZETAS.map(|zeta| (*m, zeta))) {
             for i in 0..=last {
-                // 0.01 … 10
+                // From 0.01 to 10.
                 let phase = 10.0_f64.powf(3.0 * i as f64 / last as f64 - 2.0);
                 points.push(point(method, zeta, phase));
             }
@@ -114,7 +115,7 @@ fn point(method: Method, zeta: f64, phase: f64) -> Point {
     };
     if zeta < 1.0 && phase < 3.0 && !strayed.diverged {
         let mut rig = Rig::new(&problem, setting);
-        // So far apart that one sample says something that the last two did not.
+        // About one radian between samples: the fit loses accuracy if neighbouring samples are almost equal.
         let stride = (1.0 / phase).round().max(1.0);
         let samples: Vec<f64> = (0..300)
             .map(|_| {
@@ -133,7 +134,7 @@ fn point(method: Method, zeta: f64, phase: f64) -> Point {
     point
 }
 
-/// Phase and decay per sample of the motion x₊ = T x − D x₋ that fits best.
+/// Phase and decay per sample, from the least-squares fit of the recurrence x₊ = T x − D x₋.
 fn poles(samples: &[f64]) -> Option<(f64, f64)> {
     let (mut aa, mut ab, mut bb, mut ay, mut by) = (0.0, 0.0, 0.0, 0.0, 0.0);
     for w in samples.windows(3) {
@@ -152,7 +153,7 @@ fn poles(samples: &[f64]) -> Option<(f64, f64)> {
     (samples.len() > 4 && cosine.abs() < 1.0 && decay.is_finite()).then(|| (cosine.acos(), decay))
 }
 
-/// Error over ω·dt, one panel per damping ratio.
+/// Draws the error over ω·dt, one panel per damping ratio.
 fn draw(path: &Path, points: &[Point]) -> Drawn {
     let sheet = SVGBackend::new(path, (1160, 460)).into_drawing_area();
     sheet.fill(&WHITE)?;
@@ -213,7 +214,7 @@ fn draw(path: &Path, points: &[Point]) -> Drawn {
     Ok(())
 }
 
-/// Picture and table.
+/// Chart, table and verdict.
 fn section(points: &[Point]) -> String {
     let mut text = String::from(
         "## One oscillator at every ω·dt\n\nThe single oscillator, released stretched and moving, 5 s at 60 steps a \
@@ -224,7 +225,7 @@ fn section(points: &[Point]) -> String {
     );
     let percent = |x: Option<f64>| x.map_or("–".into(), |x| format!("{:+.1e}", x));
     for p in points {
-        // Every fifth says enough.
+        // Every fifth value is enough for the table.
         let near = [0.01, 0.1, 1.0, 10.0]
             .iter()
             .any(|x| (p.phase / x - 1.0).abs() < 1e-3);
@@ -246,7 +247,7 @@ fn section(points: &[Point]) -> String {
     text
 }
 
-/// Where ours is nearest to the truth, and where it is not.
+/// Counts for each ζ at how many ω·dt bevy_coilover has the smallest error, and lists the others.
 fn verdict(points: &[Point]) -> String {
     let mut text = String::new();
     for zeta in ZETAS {

@@ -1,4 +1,4 @@
-//! The measurements of a scene, kept as CSV from run to run.
+//! The measurements of a scene, stored as CSV between runs.
 
 use crate::clock::Times;
 use crate::follow::Strayed;
@@ -6,13 +6,13 @@ use crate::method::{Method, Setting, rates};
 use std::path::{Path, PathBuf};
 use std::{fs, io};
 
-/// A setting and what came of it.
+/// A setting and its results.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Row {
     pub setting: Setting,
     pub strayed: Strayed,
     pub times: Times,
-    /// Turns that it was timed for.
+    /// Number of timed turns.
     pub turns: u32,
 }
 
@@ -26,7 +26,7 @@ const HEADER: &str = "method,setting,steps_per_second,largest_error_m,energy_dri
                       step_us,step_us_quartile_1,step_us_quartile_3,turns";
 
 impl Table {
-    /// What an earlier run left, or nothing.
+    /// Reads the table of an earlier run. Empty if there is none.
     pub fn open(folder: &Path, scene: &str) -> Self {
         let path = folder.join(format!("{scene}.csv"));
         let text = fs::read_to_string(&path).unwrap_or_default();
@@ -34,14 +34,14 @@ impl Table {
         Self { path, rows }
     }
 
-    /// Whether a setting has been timed for at least so many turns.
+    /// Whether the table has this setting with at least `turns` timed turns.
     pub fn has(&self, setting: Setting, turns: u32) -> bool {
         self.rows
             .iter()
             .any(|row| row.setting == setting && row.turns >= turns)
     }
 
-    /// Takes rows in, in place of older ones, and writes the file.
+    /// Adds rows, replaces older rows of the same settings, and writes the file.
     pub fn put(&mut self, rows: Vec<Row>) -> io::Result<()> {
         for row in rows {
             self.rows.retain(|old| old.setting != row.setting);
@@ -55,7 +55,7 @@ impl Table {
 }
 
 impl Row {
-    /// Computing time per second of the scene, s.
+    /// Computing time per simulated second, s.
     pub fn work(&self) -> f64 {
         self.times.median * f64::from(self.setting.rate)
     }

@@ -1,11 +1,11 @@
-//! Measurements as a reader wants them.
+//! Formats measurements for the report and writes sentences that compare the methods.
 
 use crate::front::{find, unbeaten, unbeaten_at_their_step};
 use crate::method::{Dial, Method, Setting};
 use crate::table::Row;
 use std::fmt::Write;
 
-/// Two significant digits, or three before a decimal point.
+/// Rounds to two significant digits, but keeps all three digits from 100 to 999 and only one digit below 0.001.
 pub fn digits(x: f64) -> String {
     if !x.is_finite() {
         return "–".into();
@@ -26,7 +26,7 @@ pub fn digits(x: f64) -> String {
     }
 }
 
-/// A length in mm, from m.
+/// Error of a row in mm, or "diverges".
 pub fn length(row: &Row) -> String {
     if row.strayed.diverged {
         "diverges".into()
@@ -48,7 +48,7 @@ fn name(setting: Setting) -> String {
     }
 }
 
-/// What a table says of a scene, whatever it is.
+/// Sentences that sum up a scene's table.
 pub fn verdict(rows: &[Row]) -> String {
     let peers: Vec<&Row> = rows
         .iter()
@@ -113,7 +113,7 @@ pub fn verdict(rows: &[Row]) -> String {
     text
 }
 
-/// Our default beside another's, at 60 steps a second.
+/// Compares the default of bevy_coilover with the default of another method, at 60 steps per second.
 fn against(rows: &[Row], method: Method) -> String {
     let ours = find(rows, Setting::default_of(Method::Ours, 60));
     let (Some(ours), Some(peer)) = (ours, best_of(rows, method)) else {
@@ -134,7 +134,7 @@ fn against(rows: &[Row], method: Method) -> String {
     )
 }
 
-/// A method's default at 60 steps a second; of Avian's two the one that strays less.
+/// The row of a method's default at 60 steps per second. For Avian, the variant with the smaller error.
 pub fn best_of(rows: &[Row], method: Method) -> Option<Row> {
     let one = find(rows, Setting::default_of(method, 60));
     if method != Method::Avian {

@@ -1,4 +1,4 @@
-//! Does the command work, and is what the repository tells no older than the methods?
+//! Tests that the command works, and that the repository's tables and reports are up to date.
 
 use std::collections::HashMap;
 use std::fs;
@@ -8,7 +8,7 @@ use std::process::Command;
 const BEGIN: &str = "<!-- speed_vs_error:begin -->";
 const END: &str = "<!-- speed_vs_error:end -->";
 
-/// Errors of single precision, m: below them two builds may differ.
+/// Rounding errors of single precision, m, by which two builds may differ.
 const FLOOR: f64 = 5e-5;
 
 fn repository() -> PathBuf {
@@ -19,13 +19,13 @@ fn read(path: &Path) -> String {
     fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
 
-/// What stands between the markers.
+/// The text between the markers.
 fn marked(text: &str) -> &str {
     let (_, rest) = text.split_once(BEGIN).expect("a first marker");
     rest.split_once(END).expect("a last marker").0.trim()
 }
 
-/// Largest error of every setting in a table; infinite where it diverged.
+/// Largest error of every setting in a table. Infinite if it diverged.
 fn errors(table: &str) -> HashMap<String, f64> {
     table
         .lines()
@@ -86,7 +86,7 @@ fn the_quick_command_works_and_finds_what_the_tables_tell() {
     }
 }
 
-/// Where contacts and joints hold, with the springs of this crate.
+/// Runs the quick scenes with contacts and joints, with the springs of this crate.
 #[test]
 fn on_the_ground_loads_stand_at_their_height_and_nothing_is_won() {
     let out = Path::new(env!("CARGO_TARGET_TMPDIR")).join("smoke-ground");

@@ -1,4 +1,4 @@
-//! The arm, the ropes that drive it, and the winch that pulls it down.
+//! The arm, the twisted ropes that drive it, and the winch that pulls it down.
 
 use super::frame::Frame;
 use super::{RELEASE, WIND};
@@ -7,48 +7,54 @@ use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
 use stage::{Paint, Rope, Shape};
 
-/// Where the arm turns, and how far the cup is from there, m.
+/// Position of the arm's hinge, m.
 pub const HINGE: Vec3 = Vec3::new(0.0, 0.62, 0.0);
+/// Distance of the cup from the hinge, m.
 pub const LENGTH: f32 = 1.7;
-/// Of the arm, kg and kg m² about its hinge: a beam whose middle is half of its way out.
+/// Mass of the arm, kg.
 pub const MASS: f32 = 6.0;
+/// Moment of inertia of the arm about its hinge, kg m²: a beam with its centre of mass at half its length.
 pub const INERTIA: f32 = MASS * LENGTH * LENGTH / 3.0;
-/// Angle at which it meets the padded beam, and down to which the winch pulls it, rad from upright, forward.
+/// Angle at which the arm meets the padded beam, rad from upright, positive forward.
 pub const PAD: f32 = -0.45;
+/// Angle to which the winch pulls the arm down, rad from upright, positive forward.
 pub const DOWN: f32 = -1.5;
-/// Of the twisted ropes, N m/rad, and the angle at which they would have no moment, rad.
+/// Torsional stiffness of the twisted ropes, N m/rad.
 pub const STIFFNESS: f32 = 160.0;
+/// Rest angle of the twisted ropes, rad.
 pub const REST: f32 = 0.5;
-/// What twisting takes, N m s/rad.
+/// Damping of the twisted ropes, N m s/rad.
 pub const DAMPING: f32 = 0.5;
-/// Of the pad, N m/rad and N m s/rad.
+/// Stiffness of the pad, N m/rad.
 const PAD_STIFFNESS: f32 = 2e4;
+/// Damping of the pad, N m s/rad.
 const PAD_DAMPING: f32 = 150.0;
-/// Of the winch's rope, N/m and N s/m.
+/// Stiffness of the winch's rope, N/m.
 const ROPE: f32 = 1e4;
+/// Damping of the winch's rope, N s/m.
 const ROPE_DAMPING: f32 = 5.0;
-/// Where the winch is, m.
+/// Position of the winch, m.
 const WINCH: Vec3 = Vec3::new(-1.4, 0.22, 0.0);
-/// Where on the arm its rope ends, m from the hinge.
+/// Distance from the hinge to the end of the winch's rope on the arm, m.
 const HOOK: f32 = 1.45;
 
 #[derive(Component)]
 pub struct Arm;
 
-/// On the torsion element of the ropes.
+/// Marks the torsion element of the twisted ropes.
 #[derive(Component)]
 pub struct Skein;
 
-/// On the element that is the winch's rope.
+/// Marks the element of the winch's rope.
 #[derive(Component)]
 pub struct Winch;
 
-/// Which way the arm points at an angle.
+/// Returns the direction of the arm at an angle.
 pub fn along(angle: f32) -> Vec3 {
     Vec3::new(angle.sin(), angle.cos(), 0.0)
 }
 
-/// From the winch to the hook at an angle, m.
+/// Returns the distance from the winch to the hook at an angle of the arm, m.
 fn reach(angle: f32) -> f32 {
     (HINGE + HOOK * along(angle)).distance(WINCH)
 }
@@ -56,7 +62,7 @@ fn reach(angle: f32) -> f32 {
 pub fn spawn(frame: Res<Frame>, mut commands: Commands) {
     let frame = frame.0;
     let joint = RevoluteJointBuilder::new(Vec3::NEG_Z).local_anchor1(HINGE);
-    // The cup: a floor, and rims before and behind, and beside.
+    // The cup: a floor with a rim on all four sides.
     let (floor, rim) = (0.02, 0.1);
     let cup = |at: Vec3, half: Vec3| (at, Quat::IDENTITY, Collider::cuboid(half.x, half.y, half.z));
     let inner = super::shot::RADIUS + 0.005;
@@ -112,7 +118,7 @@ pub fn spawn(frame: Res<Frame>, mut commands: Commands) {
         }
     });
     let arm = arm.id();
-    // Wound about the hinge, on both sides of the arm.
+    // The ropes are wound about the hinge on both sides of the arm.
     commands.spawn((
         TorsionSpringDamper::new(frame, arm, Vec3::NEG_Z)
             .with_stiffness(STIFFNESS)
@@ -140,7 +146,7 @@ pub fn spawn(frame: Res<Frame>, mut commands: Commands) {
     ));
 }
 
-/// The winch takes rope in; then the hook lets go.
+/// The winch shortens its rope until the hook releases the arm.
 pub fn wind(
     time: Res<Time>,
     mut ropes: Query<(Entity, &mut SpringDamper), With<Winch>>,

@@ -1,4 +1,4 @@
-//! The winch's work, the arm's speed, and the ball's way, against theory.
+//! Compares the winch's work, the arm's speed and the ball's flight with theory.
 
 use super::arm::{Arm, INERTIA, LENGTH, MASS, PAD, REST, STIFFNESS, Skein, Winch};
 use super::shot::{Ball, Brick, RADIUS, WALL, WEIGHT};
@@ -9,29 +9,34 @@ use bevy_rapier3d::prelude::*;
 use stage::{DT, Finding};
 
 const GRAVITY: f32 = 9.81;
-/// Of the ball's middle above the arm's line, m.
+/// Distance of the ball's centre from the arm's axis, m.
 const ABOVE: f32 = RADIUS + 0.02;
 
 #[derive(Resource, Default)]
 pub struct Seen {
-    /// Work, heat and stored energy of skein and rope, and the arm's height times its weight, J: before, and when it is wound.
+    /// Work of the winch's rope, heat and stored energy of both ropes, and potential energy of the arm, J: before and
+    /// after winding.
     wound: [Option<[f32; 4]>; 2],
-    /// Angle, rad from upright, in which the hook let go.
+    /// Angle of the arm at release, rad from upright.
     from: f32,
-    /// Angle and rate of the arm in the last tick before it met the pad, rad and rad/s, and heat of the skein until then, J.
+    /// Angle (rad) and rate (rad/s) of the arm in the last tick before the pad, and heat of the twisted ropes until
+    /// then (J).
     strikes: Option<[f32; 3]>,
-    /// Heat of the skein when the hook let go, J.
+    /// Heat of the twisted ropes until the release, J.
     heat: f32,
-    /// Time (s), place and velocity of the ball when the arm was at the pad, and when it came to the wall.
+    /// Time (s), position (m) and velocity (m/s) of the ball when the arm reached the pad.
     flies: Option<(f32, Vec3, Vec3)>,
+    /// Time (s) and position (m) of the ball when it reached the wall.
     hits: Option<(f32, Vec3)>,
+    /// Time (s) and position (m) of the ball in the last tick.
     last: Option<(f32, Vec3)>,
-    /// At the end: rate of the arm, and how many boxes have moved.
+    /// Rate of the arm at the end, rad/s.
     end: f32,
+    /// Number of boxes that have moved at the end.
     moved: usize,
 }
 
-/// Angle of the arm from upright, rad, forward.
+/// Returns the angle of the arm from upright, rad, positive forward.
 fn angle(at: &Transform) -> f32 {
     let along = at.rotation * Vec3::Y;
     along.x.atan2(along.y)
@@ -101,7 +106,7 @@ pub fn check(world: &mut World) -> Vec<Finding> {
         return missing();
     };
     let [work, heat, stored, height] = [0, 1, 2, 3].map(|i| after[i] - before[i]);
-    // Energy of the ropes, less what lifts the arm and the ball.
+    // Energy of the twisted ropes, less the energy that lifts arm and ball.
     let [angle, rate, heat_then] = strikes;
     let twist = |at: f32| 0.5 * STIFFNESS * (at - REST) * (at - REST);
     let lift = |at: f32| {

@@ -1,11 +1,11 @@
-//! What stands: beams of wood, which nothing collides with.
+//! The frame: wooden beams without colliders.
 
 use super::arm::{HINGE, LENGTH, PAD};
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
 use stage::{Paint, Shape, floor};
 
-/// The one body that the frame is.
+/// The rigid body of the frame.
 #[derive(Resource)]
 pub struct Frame(pub Entity);
 
@@ -30,7 +30,8 @@ pub fn spawn(mut commands: Commands) {
                 Shape::Cuboid(Vec3::new(along.length() + width, width, width), Paint::Wood),
             ));
         };
-        // Where the arm strikes: square to it, half of its way out.
+        // `struck` is where the arm meets the beam, 0.62 of its length from the hinge. `ahead` is perpendicular to
+        // the arm.
         let struck = HINGE + 0.62 * LENGTH * Vec3::new(PAD.sin(), PAD.cos(), 0.0);
         let ahead = Vec3::new(PAD.cos(), -PAD.sin(), 0.0);
         let top = struck + 0.13 * ahead;

@@ -1,4 +1,4 @@
-//! The catapult in its parts: the engine of war, what it throws and at what, and what is measured.
+//! Modules of the example: the catapult, the ball and the wall, and the measurements.
 
 mod arm;
 mod findings;
@@ -12,12 +12,14 @@ use stage::{Begin, fresh};
 
 pub use findings::check;
 
-/// When the winch begins and ends, and when the hook lets go, s.
+/// Times at which the winch begins and ends, s.
 const WIND: [f32; 2] = [0.5, 4.0];
+/// Time at which the ball is put into the cup, s.
 const LOAD: f32 = 4.2;
+/// Time at which the hook releases the arm, s.
 const RELEASE: f32 = 5.5;
 pub const SECONDS: f32 = 12.0;
-/// The ball is on its way.
+/// Time of the screenshot, s: the ball is in flight.
 pub const PICTURE: f32 = RELEASE + 0.62;
 
 pub fn setup(app: &mut App) {

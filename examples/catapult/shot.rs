@@ -1,4 +1,4 @@
-//! What it throws, and at what.
+//! The ball, and the wall of boxes that it hits.
 
 use super::LOAD;
 use super::arm::{Arm, LENGTH};
@@ -6,12 +6,15 @@ use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
 use stage::{Paint, Shape};
 
-/// kg and m
+/// Mass of the ball, kg.
 pub const WEIGHT: f32 = 2.0;
+/// Radius of the ball, m.
 pub const RADIUS: f32 = 0.12;
-/// Where the wall stands, m, and its boxes, m and kg.
+/// Position of the wall along x, m.
 pub const WALL: f32 = 8.0;
+/// Edge of a box, m.
 const BOX: f32 = 0.5;
+/// Mass of a box, kg.
 const BOX_MASS: f32 = 3.0;
 
 #[derive(Component)]
@@ -43,7 +46,7 @@ pub fn load(
     ));
 }
 
-/// Boxes on each other, three high.
+/// Spawns a wall of boxes, three high.
 pub fn spawn_wall(mut commands: Commands) {
     for level in 0..3 {
         for z in -1..=1 {

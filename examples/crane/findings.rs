@@ -1,4 +1,4 @@
-//! Forces against weights, the winch's work against the height that it gave, and the swing against theory.
+//! Compares forces with weights, the work of the winch with the potential energy, and the swing with theory.
 
 use super::load::*;
 use bevy::prelude::*;
@@ -7,11 +7,13 @@ use bevy_rapier3d::prelude::*;
 use stage::{DT, Finding};
 use std::f32::consts::TAU;
 
-/// When forces are taken, s: while it stands, while it hangs, and when it stands again.
+/// Time span in which forces are averaged while the crate stands at first, s.
 const STANDS: [f32; 2] = [1.5, 2.5];
+/// Time span in which forces are averaged while the crate hangs, s.
 const HANGS: [f32; 2] = [9.5, 10.8];
+/// Time span in which forces are averaged while the crate stands again, s.
 const DOWN: [f32; 2] = [38.5, 39.5];
-/// When the swing is watched, s.
+/// Time span in which the swing is recorded, s.
 const SWINGS: [f32; 2] = [CARRY[1] + 0.1, SET[0]];
 
 /// Energies, J.
@@ -23,28 +25,28 @@ struct Account {
     height: f32,
 }
 
-/// One way of the crate.
+/// Measurements of one way of the crate.
 #[derive(Clone, Default)]
 struct Way {
-    /// Mean forces of all cables, vertical, N.
+    /// Mean vertical force of all cables in `STANDS`, `HANGS` and `DOWN`, N.
     stands: f32,
     hangs: f32,
     down: f32,
-    /// Most force in a sling while it stands, N.
+    /// Greatest force in a sling while the crate stands, N.
     slack: f32,
-    /// Before it is lifted, and after.
+    /// Energies before and after the lift.
     lifted: [Account; 2],
-    /// Length of the cables while it swings, m.
+    /// Length of the cables during the swing, m.
     length: f32,
-    /// Time (s) and place of the crate in the swing (m).
+    /// Time (s) and position relative to the trolley (m) of the crate during the swing.
     swing: Vec<[f32; 2]>,
-    /// Of the crate at the end, m/s.
+    /// Speed of the crate at the end, m/s.
     speed: f32,
-    /// What the air has taken, J.
+    /// Energy taken by the linear drag of the air, J.
     air: f32,
 }
 
-/// The last way that was finished, and the one that is under way.
+/// The last finished way, and the current one.
 #[derive(Resource, Default)]
 pub struct Seen {
     whole: Way,
@@ -119,11 +121,12 @@ pub fn record(
     }
 }
 
-/// Period of the slow swing of a hook on a cable of this length (m) with a crate below it, s.
+/// Returns the period of the slow mode of a hook on a cable of this length (m) with a crate below it, s.
 fn period(length: f32) -> f32 {
     let below = SLING + 0.5 * SIZE.y;
     let inertia = CRATE * (SIZE.x * SIZE.x + SIZE.y * SIZE.y) / 12.0;
-    // Masses and weights of the hook's way to the side, and of the crate's angle times its distance from the hook.
+    // Mass and stiffness matrix. The coordinates are the hook's displacement, and the crate's angle times its
+    // distance from the hook.
     let mass = [HOOK + CRATE, CRATE, CRATE + inertia / (below * below)];
     let weight = [(HOOK + CRATE) * GRAVITY / length, CRATE * GRAVITY / below];
     // det(weights − ω² masses) = 0
@@ -131,11 +134,11 @@ fn period(length: f32) -> f32 {
     let b = mass[0] * weight[1] + mass[2] * weight[0];
     let c = weight[0] * weight[1];
     let slow = 2.0 * c / (b + (b * b - 4.0 * a * c).sqrt());
-    // The air slows it a little.
+    // Drag lowers the frequency a little.
     TAU / (slow - 0.25 * AIR * AIR).sqrt()
 }
 
-/// Times at which the crate passes the trolley on its way forward, s.
+/// Returns the times at which the crate passes the trolley on its way forward, s.
 fn passes(swing: &[[f32; 2]]) -> Vec<f32> {
     let pairs = swing.windows(2).filter(|w| w[0][1] < 0.0 && w[1][1] >= 0.0);
     pairs
@@ -143,7 +146,7 @@ fn passes(swing: &[[f32; 2]]) -> Vec<f32> {
         .collect()
 }
 
-/// Of each swing forward, m.
+/// Returns the amplitude of each swing forward, m.
 fn tops(swing: &[[f32; 2]]) -> Vec<f32> {
     let tops = swing
         .windows(3)

@@ -1,4 +1,4 @@
-//! What hangs: trolley, cables, hook block, slings and crate; and the programme that drives them.
+//! The moving parts: trolley, cables, hook block, slings and crate, and the programme that drives them.
 
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
@@ -6,38 +6,44 @@ use bevy_rapier3d::prelude::*;
 use stage::{Paint, Rope, Shape};
 
 pub const GRAVITY: f32 = 9.81;
-/// Of the jib above the ground, and of the places where the crate is set down from the middle, m.
+/// Height of the jib above the ground, m.
 pub const JIB: f32 = 7.6;
+/// Distance from the middle to the places where the crate is set down, m.
 pub const REACH: f32 = 3.0;
-/// Of the hook block and the crate, kg.
+/// Mass of the hook block, kg.
 pub const HOOK: f32 = 120.0;
+/// Mass of the crate, kg.
 pub const CRATE: f32 = 900.0;
-/// Of the crate, m.
+/// Size of the crate, m.
 pub const SIZE: Vec3 = Vec3::new(1.5, 1.1, 1.2);
-/// Of the hook below the cables' ends, and above the crate, m.
+/// Height of the cables' ends above the hook, m.
 pub const BLOCK: f32 = 0.5;
+/// Height of the hook above the crate, m.
 pub const SLING: f32 = 1.1;
-/// Half the distance of the two cables, m.
+/// Half the distance between the two cables, m.
 const FALLS: f32 = 0.16;
-/// Force at which a cable would be twice as long, N: its stiffness is this over its length.
+/// Axial stiffness of a cable, N: stiffness times length.
 const CABLE: f32 = 1.2e6;
-/// Of a sling, N/m.
+/// Stiffness of a sling, N/m.
 const STRAP: f32 = 2e5;
-/// What air takes of every speed, 1/s.
+/// Linear and angular damping by the air, 1/s.
 pub const AIR: f32 = 0.2;
-/// Length of the cables without force, m: down, with the slings slack, and up.
+/// Rest length of the cables with the crate down and the slings slack, and with the crate up, m.
 pub const LENGTHS: [f32; 2] = [LEVEL - SLING - BLOCK + SLACK, 2.2];
-/// From the jib down to the top of a crate on the ground, m.
+/// Height of the jib above the top of a crate on the ground, m.
 const LEVEL: f32 = JIB - SIZE.y;
+/// Extra cable length that makes the slings slack, m.
 const SLACK: f32 = 0.2;
-/// Seconds of one way.
+/// Duration of one way, s.
 pub const ROUND: f32 = 40.0;
-/// When it is lifted, carried and set down, s.
+/// Time span in which the crate is lifted, s.
 pub const LIFT: [f32; 2] = [3.0, 8.5];
+/// Time span in which the crate is carried, s.
 pub const CARRY: [f32; 2] = [11.0, 17.0];
+/// Time span in which the crate is set down, s.
 pub const SET: [f32; 2] = [30.5, 36.0];
 
-/// It runs along the jib; no body, for nothing moves it but its motor.
+/// The trolley, which runs along the jib. It has no rigid body, because only its motor moves it.
 #[derive(Component)]
 pub struct Trolley;
 
@@ -55,19 +61,19 @@ pub struct Cable;
 #[derive(Component)]
 pub struct Sling;
 
-/// From 0 to 1 between two moments, gently at both ends.
+/// Rises from 0 to 1 between two times, smoothly at both ends.
 fn gently(t: f32, [from, to]: [f32; 2]) -> f32 {
     EaseFunction::SmootherStep.sample_clamped((t - from) / (to - from))
 }
 
-/// Where the trolley is: there and back again.
+/// Returns the position of the trolley, there and back again, m.
 pub fn place(time: f32) -> f32 {
     let there = ((time / ROUND) as u32).is_multiple_of(2);
     let x = REACH * (2.0 * gently(time % ROUND, CARRY) - 1.0);
     if there { x } else { -x }
 }
 
-/// How long the cables are without force.
+/// Returns the rest length of the cables, m.
 pub fn length(time: f32) -> f32 {
     let up = gently(time % ROUND, LIFT) - gently(time % ROUND, SET);
     LENGTHS[0] + (LENGTHS[1] - LENGTHS[0]) * up
@@ -122,7 +128,7 @@ pub fn spawn(mut commands: Commands) {
     }
 }
 
-/// Two sheaves, and the hook below them.
+/// Spawns the hook block: two sheaves, and the hook below them.
 fn hook(commands: &mut Commands) -> Entity {
     let across = Quat::from_rotation_x(std::f32::consts::FRAC_PI_2);
     let sheave = |z| {
@@ -132,7 +138,7 @@ fn hook(commands: &mut Commands) -> Entity {
     let body = (
         RigidBody::Dynamic,
         AdditionalMassProperties::Mass(HOOK),
-        // Held upright by the two cables.
+        // The two cables hold it upright.
         LockedAxes::ROTATION_LOCKED,
         air(),
         Velocity::default(),
@@ -159,7 +165,7 @@ fn hook(commands: &mut Commands) -> Entity {
     commands.spawn(body).id()
 }
 
-/// Boards, and a frame about them.
+/// Spawns the crate: boards, and a frame around them.
 fn crate_(commands: &mut Commands) -> Entity {
     let body = (
         RigidBody::Dynamic,
@@ -198,13 +204,13 @@ fn air() -> Damping {
     }
 }
 
-/// Stiffness of a cable, and its length without force.
+/// Returns the stiffness (N/m) and the rest length (m) of a cable.
 fn cable(time: f32) -> (f32, f32) {
     let length = length(time);
     (CABLE / length, length)
 }
 
-/// The winch takes cable in and lets it out, and the motor moves the trolley.
+/// Changes the cables' rest length with the winch, and moves the trolley.
 pub fn drive(
     time: Res<Time>,
     mut trolleys: Query<&mut Transform, With<Trolley>>,
@@ -213,7 +219,7 @@ pub fn drive(
     let now = time.elapsed_secs();
     for mut trolley in &mut trolleys {
         let x = place(now);
-        // What is written wakes what sleeps.
+        // Writing the component wakes sleeping bodies, so write only changes.
         if trolley.translation.x != x {
             trolley.translation.x = x;
         }

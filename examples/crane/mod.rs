@@ -1,4 +1,4 @@
-//! The crane in its parts: what stands, what hangs and how it is driven, and what is measured.
+//! Modules of the example: the static parts, the moving parts with their drive, and the measurements.
 
 mod findings;
 mod load;
@@ -11,9 +11,9 @@ use stage::{self, Begin, Lasting};
 
 pub use findings::check;
 
-/// Seconds of one way, from the ground to the ground.
+/// Duration of one way, from the ground to the ground, s.
 pub const SECONDS: f32 = load::ROUND;
-/// Second of the picture: the crate hangs back behind the trolley.
+/// Time of the screenshot, s: the crate lags behind the trolley.
 pub const PICTURE: f32 = 13.3;
 
 pub fn setup(app: &mut App) {

@@ -1,17 +1,17 @@
-//! What stands: ground, mast and jib, of bars.
+//! The static parts: ground, mast, and a jib made of bars.
 
 use super::load::{JIB, REACH};
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
 use stage::{Paint, Shape};
 
-/// Of the mast from the middle of the picture, m.
+/// Position of the mast along x, m.
 const MAST: f32 = -5.6;
 /// Half the width of mast and jib, m.
 const HALF: f32 = 0.4;
-/// Of the jib's ends, m.
+/// Positions of the jib's ends along x, m.
 const ENDS: [f32; 2] = [-8.8, REACH + 1.0];
-/// Of the mast's top, m.
+/// Height of the mast's top, m.
 const TOP: f32 = JIB + 2.4;
 
 pub fn spawn(mut commands: Commands) {
@@ -24,15 +24,15 @@ pub fn spawn(mut commands: Commands) {
     ));
     mast(&mut commands);
     jib(&mut commands);
-    // Where the crate is set down.
+    // Pads where the crate is set down.
     for x in [-REACH, REACH] {
         let pad = Shape::Cuboid(Vec3::new(2.6, 0.02, 2.2), Paint::Asphalt);
-        // Above the floor by so little that nothing is seen of it.
+        // The pad is above the floor by an invisible height.
         commands.spawn((Transform::from_xyz(x, -0.005, 0.0), pad));
     }
 }
 
-/// A square bar from point to point.
+/// Spawns a square bar between two points.
 fn bar(commands: &mut Commands, from: Vec3, to: Vec3, width: f32, paint: Paint) {
     let along = to - from;
     let at = Transform::from_translation(0.5 * (from + to))
@@ -62,7 +62,7 @@ fn mast(commands: &mut Commands) {
         let top = Vec3::new(MAST, TOP, 0.0);
         bar(commands, corner(side, JIB), top, 0.09, paint);
     }
-    // The driver's cab, with a window to the front and to the side.
+    // The driver's cab, with windows to the front and to the side.
     let cab = Vec3::new(MAST + 0.95, JIB - 0.75, 0.75);
     for (at, size, paint) in [
         (Vec3::ZERO, Vec3::new(0.9, 1.0, 0.9), Paint::Red),
@@ -108,7 +108,7 @@ fn jib(commands: &mut Commands) {
         let across = [-HALF, HALF].map(|z| Vec3::new(at(i), low, z));
         bar(commands, across[0], across[1], 0.05, paint);
     }
-    // Stays, and the weight that holds against the load.
+    // Stays, and the counterweight.
     let top = Vec3::new(MAST, TOP, 0.0);
     for x in [at(6.0), at(11.0)] {
         bar(commands, top, Vec3::new(x, high, 0.0), 0.045, Paint::Iron);

@@ -6,27 +6,28 @@ use bevy_rapier3d::prelude::*;
 use stage::{Paint, Shape, Track, floor};
 use std::f32::consts::TAU;
 
-/// Of a door, kg and m.
+/// Mass of a door, kg.
 pub const MASS: f32 = 24.0;
+/// Size of a door, m.
 pub const SIZE: Vec3 = Vec3::new(0.95, 2.0, 0.05);
-/// Of the hinges from the middle of the wall, m.
+/// Distance of the hinges from the middle of the wall, m.
 const HINGE: f32 = 1.6;
-/// Of a handle from the hinge, m.
+/// Distance of a handle from the hinge, m.
 pub const HANDLE: f32 = 0.85;
 
-/// What holds a door.
+/// Spring and damper of a door.
 pub struct Closer {
-    /// N m/rad
+    /// Stiffness, N m/rad.
     pub stiffness: f32,
-    /// Share of critical damping.
+    /// Damping ratio.
     pub ratio: f32,
-    /// Angle at which the spring has no moment, rad.
+    /// Rest angle of the spring, rad.
     pub rest: f32,
-    /// On which side of the wall's middle.
+    /// Side of the wall's middle: -1 is left, 1 is right.
     pub side: f32,
 }
 
-/// The spring of the door closer is still wound up when the door is shut: it holds it there.
+/// The spring of the door closer is still wound when the door is shut, so it holds the door shut.
 pub const CLOSER: Closer = Closer {
     stiffness: 10.0,
     ratio: 1.0,
@@ -39,14 +40,15 @@ pub const SWING: Closer = Closer {
     rest: 0.0,
     side: 1.0,
 };
-/// Share of its damping that the door closer has while it opens.
+/// Damping of the door closer while it opens, as a share of its damping while it shuts.
 const EASY: f32 = 0.2;
-/// Of the frame that the first door meets, N m/rad and N m s/rad: so that it does not bounce.
+/// Stiffness of the frame that the left door meets, N m/rad.
 const STOP: f32 = 4e3;
+/// Damping of that frame, N m s/rad: enough that the door does not bounce.
 const STOP_DAMPING: f32 = 250.0;
 
 impl Closer {
-    /// Of its vibration without damping, rad/s.
+    /// Returns the undamped natural frequency, rad/s.
     pub fn omega(&self) -> f32 {
         (self.stiffness / inertia()).sqrt()
     }
@@ -56,18 +58,18 @@ impl Closer {
     }
 }
 
-/// Of a door about its hinge, kg m².
+/// Returns the moment of inertia of a door about its hinge, kg m².
 pub fn inertia() -> f32 {
     let middle = 0.5 * SIZE.x;
     MASS * ((SIZE.x * SIZE.x + SIZE.z * SIZE.z) / 12.0 + middle * middle)
 }
 
-/// Of a door in its own frame.
+/// Returns the middle of a door in the door's frame, m.
 pub fn middle(side: f32) -> Vec3 {
     Vec3::new(-0.5 * SIZE.x * side, 0.5 * SIZE.y + 0.02, 0.0)
 }
 
-/// A door, on which side of the wall's middle it is.
+/// A door, with its side of the wall's middle: -1 is left, 1 is right.
 #[derive(Component)]
 pub struct Door(pub f32);
 
@@ -76,7 +78,7 @@ pub fn spawn(mut commands: Commands) {
     let wall = wall(&mut commands);
     for closer in [&CLOSER, &SWING] {
         let door = door(&mut commands, wall, closer.side);
-        // An angle is positive where the door goes to the back on the left, and to the front on the right.
+        // A positive angle moves the left door to the back and the right door to the front.
         let mut element = commands.spawn((
             TorsionSpringDamper::new(wall, door, Vec3::Y)
                 .with_stiffness(closer.stiffness)
@@ -88,7 +90,7 @@ pub fn spawn(mut commands: Commands) {
             Track::default(),
         ));
         if closer.side < 0.0 {
-            // The frame on one side: a stop at an angle of 0. And easy to open: the damper acts on its way back.
+            // The frame is a stop at an angle of 0. The door opens easily: the damper acts mostly on the way back.
             element.insert((
                 SpringTravel::new(0.0, f32::INFINITY, STOP).with_stop_damping(STOP_DAMPING),
                 DampingLaw::sided(closer.damping(), EASY * closer.damping()),
@@ -97,7 +99,7 @@ pub fn spawn(mut commands: Commands) {
     }
 }
 
-/// The wall is one body, whose parts are there to be seen.
+/// Spawns the wall. It is one body; its parts are visual only.
 fn wall(commands: &mut Commands) -> Entity {
     let mut wall = commands.spawn((
         RigidBody::Fixed,
@@ -110,7 +112,7 @@ fn wall(commands: &mut Commands) -> Entity {
         };
         let (jamb, top) = (0.08, SIZE.y + 0.2);
         let inner = HINGE - SIZE.x - jamb;
-        // Between the doors, beside them, and their frames.
+        // The wall between and beside the doors, and the door frames.
         block(
             Vec3::new(0.0, 0.5 * top, 0.0),
             Vec3::new(2.0 * inner, top, 0.16),
@@ -133,7 +135,7 @@ fn wall(commands: &mut Commands) -> Entity {
     wall.id()
 }
 
-/// Hinged at its outer edge; its origin is there.
+/// Spawns a door, hinged at its outer edge. The body's origin is at the hinge.
 fn door(commands: &mut Commands, wall: Entity, side: f32) -> Entity {
     let hinge = Vec3::new(HINGE * side, 0.0, 0.0);
     let middle = middle(side);
@@ -160,7 +162,7 @@ fn door(commands: &mut Commands, wall: Entity, side: f32) -> Entity {
         Door(side),
     ));
     door.with_children(|parts| {
-        // The axle, which the spring is wound about.
+        // The axle that the spring is wound about.
         parts.spawn((
             Transform::from_xyz(0.0, 0.5 * SIZE.y + 0.2, 0.0),
             Shape::Cylinder(0.03, SIZE.y + 0.4, Paint::Iron),
@@ -170,7 +172,7 @@ fn door(commands: &mut Commands, wall: Entity, side: f32) -> Entity {
             Shape::Cuboid(SIZE - Vec3::new(0.02, 0.02, 0.0), color),
         ));
         for z in [-1.0, 1.0] {
-            // Panels, and the handle.
+            // Panels and handle.
             for (y, height) in [(-0.48, 0.7), (0.42, 0.8)] {
                 parts.spawn((
                     Transform::from_translation(middle + Vec3::new(0.0, y, 0.024 * z)),

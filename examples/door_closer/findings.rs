@@ -1,4 +1,4 @@
-//! Both doors against the damped oscillator, from where each of them turns round.
+//! Compares both doors with the damped oscillator, from the moment each of them turns back.
 
 use super::doors::{CLOSER, Closer, HANDLE, SIZE, SWING};
 use super::person::PUSHES;
@@ -7,23 +7,23 @@ use bevy_coilover::prelude::*;
 use stage::{Finding, tracks};
 use std::f32::consts::PI;
 
-/// Just before the door meets its frame, rad.
+/// Angle just before the door meets its frame, rad.
 const NEAR: f32 = 0.01;
 
-/// A time, s, and the read-out of then: angle, rad, and its rate, rad/s.
+/// A time, s, with the read-out at that time: angle, rad, and rate, rad/s.
 type Moment = (f32, SpringReadout);
 
-/// From where the door turns round after the push: nothing touches it any more.
+/// Returns the track from the moment the door turns back after the push. Nothing touches the door from then on.
 fn back(track: &[Moment], push: [f32; 2]) -> &[Moment] {
     let after = track.partition_point(|(t, _)| *t <= push[1]);
     let falls = track[after..].iter().position(|(_, r)| r.rate <= 0.0);
     &track[after + falls.unwrap_or(0)..]
 }
 
-/// Angle of a free door over the time since the first of these moments.
+/// Returns the angle of a free door as a function of the time since the first of these moments.
 fn free(closer: &Closer, door: &[Moment]) -> impl Fn(f32) -> f32 {
     let (x, v) = match door {
-        // A rate that is read is that of the step before; this one is of the moment.
+        // The rate of a read-out is that of the step before it. The mean of two is the rate at this moment.
         [(_, first), (_, next), ..] => (first.length - closer.rest, 0.5 * (first.rate + next.rate)),
         _ => (f32::NAN, f32::NAN),
     };
@@ -31,7 +31,7 @@ fn free(closer: &Closer, door: &[Moment]) -> impl Fn(f32) -> f32 {
     let decay = closer.ratio * omega;
     let turn = (omega * omega - decay * decay).max(0.0).sqrt();
     move |t| {
-        // sin(turn t)/turn, which is t where the damping is critical.
+        // sin(turn t)/turn, which tends to t at critical damping.
         let (cos, sin) = if turn > 1e-4 {
             ((turn * t).cos(), (turn * t).sin() / turn)
         } else {
@@ -41,7 +41,7 @@ fn free(closer: &Closer, door: &[Moment]) -> impl Fn(f32) -> f32 {
     }
 }
 
-/// When an angle over time falls to zero, s.
+/// Returns the time at which the angle falls to zero, s.
 fn shut(angle: impl Fn(f32) -> f32) -> f32 {
     let (mut open, mut shut) = (0.0, 30.0);
     for _ in 0..50 {
@@ -55,7 +55,7 @@ fn shut(angle: impl Fn(f32) -> f32) -> f32 {
     shut
 }
 
-/// Work of the hand, and heat and stored energy at the end, J.
+/// Returns the work of the hand, and the heat plus the change of stored energy until the end, J.
 fn account(track: &[Moment], ([from, to], newtons): ([f32; 2], f32)) -> [f32; 2] {
     let at = |moment: f32| {
         let i = track.partition_point(|(t, _)| *t <= moment);
@@ -90,7 +90,7 @@ fn closes(track: &[Moment]) -> Vec<Finding> {
     let errors = door[..until]
         .iter()
         .map(|(t, r)| (r.length - theory(t - begun)).abs());
-    // Between two ticks.
+    // Interpolates between two ticks.
     let (before, after) = (&door[until.max(1) - 1], &door[until.min(door.len() - 1)]);
     let share = (before.1.length - NEAR) / (before.1.length - after.1.length);
     let took = before.0 + share * (after.0 - before.0) - begun;
@@ -149,7 +149,7 @@ fn swings(track: &[Moment]) -> Vec<Finding> {
     let errors = door
         .iter()
         .map(|(t, r)| (r.length - theory(t - begun)).abs());
-    // From one side to the other and back.
+    // Amplitude on the far side, relative to the start.
     let far = door.iter().map(|(_, r)| r.length);
     let over = -far.fold(f32::INFINITY, f32::min) / start.length;
     let turn = (1.0 - SWING.ratio * SWING.ratio).sqrt();

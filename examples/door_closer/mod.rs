@@ -1,4 +1,4 @@
-//! The example in its parts: the doors, who goes through them, and what is measured.
+//! Modules of the example: the doors, the person who goes through them, and the measurements.
 
 mod doors;
 mod findings;
@@ -10,9 +10,9 @@ use stage::{self, Begin};
 
 pub use findings::check;
 
-/// Seconds of one way in and out.
+/// Duration of one way in and out, s.
 pub const SECONDS: f32 = 24.0;
-/// Second of the picture: the person is in the first door.
+/// Time of the screenshot, s: the person is in the first door.
 pub const PICTURE: f32 = 3.2;
 
 pub fn setup(app: &mut App) {

@@ -1,4 +1,4 @@
-//! Who goes through the doors: a figure without a body, and the force of its hand.
+//! The person who goes through the doors: a figure without a rigid body, and the force of its hand.
 
 use super::doors::{Door, HANDLE};
 use bevy::prelude::*;
@@ -6,11 +6,11 @@ use bevy_rapier3d::prelude::*;
 use stage::{Paint, Shape};
 use std::f32::consts::PI;
 
-/// Of a step, m.
+/// Length of a step, m.
 const STEP: f32 = 0.7;
-/// Of the figure's middle above the ground, m.
+/// Height of the figure's middle above the ground, m.
 const HALF: f32 = 0.85;
-/// Where it is at which second: time (s), to the right and to the front (m).
+/// Way of the person: time (s), position to the right and to the front (m).
 const WAY: [[f32; 3]; 8] = [
     [0.0, -1.05, 2.6],
     [0.3, -1.05, 2.6],
@@ -21,12 +21,12 @@ const WAY: [[f32; 3]; 8] = [
     [14.0, 1.05, 2.6],
     [24.0, 1.05, 2.6],
 ];
-/// When the hand pushes at which door, s, and how, N.
+/// When the hand pushes each door, from and to (s), and its force (N).
 pub const PUSHES: [([f32; 2], f32); 2] = [([2.2, 3.2], 22.5), ([10.7, 12.0], 18.5)];
 
 #[derive(Component, Default)]
 pub struct Person {
-    /// How far it has walked, m.
+    /// Distance walked, m.
     walked: f32,
 }
 
@@ -56,7 +56,7 @@ pub fn spawn(mut commands: Commands) {
     });
 }
 
-/// Along its way, with legs and arms that go to and fro as far as it does.
+/// Moves the person along its way. Legs and arms swing with the distance walked.
 pub fn walk(
     time: Res<Time>,
     mut people: Query<(&mut Transform, &mut Person)>,
@@ -74,7 +74,7 @@ pub fn walk(
         person.walked += step.length();
         at.translation = place;
         if step.length() > 1e-4 {
-            // It turns as it goes.
+            // The person turns gradually into its direction.
             let ahead = Quat::from_rotation_arc(Vec3::NEG_Z, step.normalize());
             at.rotation = at.rotation.slerp(ahead, 0.12);
         }
@@ -85,7 +85,7 @@ pub fn walk(
     }
 }
 
-/// The hand's force is square to the door, so its moment is the same at any angle.
+/// Applies the hand's force. It is perpendicular to the door, so its moment is the same at any angle.
 pub fn push(time: Res<Time>, mut doors: Query<(&Transform, &Door, &mut ExternalForce)>) {
     let now = time.elapsed_secs();
     for (door, Door(side), mut force) in &mut doors {
@@ -99,7 +99,7 @@ pub fn push(time: Res<Time>, mut doors: Query<(&Transform, &Door, &mut ExternalF
         } else {
             ExternalForce::default()
         };
-        // What is written wakes what sleeps.
+        // Writing the component wakes a sleeping body, so write only changes.
         if *force != next {
             *force = next;
         }

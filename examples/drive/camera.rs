@@ -1,13 +1,14 @@
-//! A camera that follows: beside the car while the script drives, behind it for who drives by hand.
+//! A camera that follows the car: beside it while the script drives, behind it while a player drives.
 
 use super::car::Chassis;
 use super::driver::Pedals;
 use bevy::prelude::*;
 
-/// From the car, m: ahead, up and to the right.
+/// Camera position relative to the car while the script drives, m: ahead, up and to the right.
 pub const EYE: Vec3 = Vec3::new(-5.4, 2.3, 4.9);
+/// Camera position relative to the car while a player drives, m: ahead, up and to the right.
 const BEHIND: Vec3 = Vec3::new(-8.5, 2.9, 0.0);
-/// How fast it turns after the car, 1/s.
+/// Rate at which the camera follows the car's heading, 1/s.
 const FOLLOWS: f32 = 3.0;
 
 pub fn follow(
@@ -21,7 +22,7 @@ pub fn follow(
         return;
     };
     let side = if pedals.by_hand { BEHIND } else { EYE };
-    // It stays level, however the car jumps about.
+    // The camera stays level when the car pitches or rolls.
     let forward = (car.rotation * Vec3::X).with_y(0.0).normalize_or(Vec3::X);
     let right = forward.cross(Vec3::Y);
     let wanted = side.x * forward + side.y * Vec3::Y + side.z * right;
@@ -29,7 +30,7 @@ pub fn follow(
         from.lerp(wanted, 1.0 - (-FOLLOWS * time.delta_secs()).exp())
     });
     *from = Some(eased);
-    // Half of the height of a jump.
+    // The target rises by half the height of a jump.
     let mut target = car.translation;
     target.y = 0.5 + 0.5 * (target.y - 0.55);
     for mut camera in &mut cameras {

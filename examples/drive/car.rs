@@ -1,6 +1,7 @@
-//! The car: a chassis, and at each corner a wheel on an arm that turns about a hinge of the chassis, leading in front and
-//! trailing behind. The coilover stands on the hub. The arms of an axle turn about one line, so the torsion spring between
-//! them is what a bar is that is fixed to both: it twists when one wheel is higher than the other.
+//! The car: a chassis with a wheel at each corner. Each wheel is on an arm hinged to the chassis: a leading arm in
+//! front, a trailing arm behind. The coilover stands on the hub. Both arms of an axle turn about the same line, so a
+//! torsion spring between them acts as an anti-roll bar fixed to both: it twists when one wheel is higher than the
+//! other.
 
 use super::tyre::Tyre;
 use bevy::prelude::*;
@@ -9,36 +10,43 @@ use bevy_rapier3d::prelude::*;
 use stage::{self, Paint, Shape};
 use std::f32::consts::TAU;
 
+/// Mass of the chassis, kg.
 pub const CHASSIS: f32 = 1_200.0;
-/// Of a wheel with its arm, kg.
+/// Mass of a wheel with its arm, kg.
 pub const WHEEL: f32 = 30.0;
+/// m/s²
 pub const GRAVITY: f32 = 9.81;
-/// m
+/// Radius of a wheel, m.
 pub const RADIUS: f32 = 0.33;
-/// Of the chassis' centre of mass over the road, m.
+/// Height of the chassis' centre of mass above the road, m.
 pub const HEIGHT: f32 = 0.55;
-/// Half the wheelbase and half the track, m.
+/// Half the wheelbase, m.
 pub const HALF_BASE: f32 = 1.3;
+/// Half the track width, m.
 pub const HALF_TRACK: f32 = 0.78;
-/// Of an arm, m.
+/// Length of an arm, m.
 pub const ARM: f32 = 0.6;
-/// Of the chassis about x, y and z, kg m²: as of saloons of its size.
+/// Moments of inertia of the chassis about x, y and z, kg m²: those of a saloon of this size.
 const INERTIA: Vec3 = Vec3::new(450.0, 1_600.0, 1_500.0);
-/// Of a coilover, N/m: the chassis bounces 1.7 times a second.
+/// Stiffness of a coilover, N/m: the chassis bounces at 1.7 Hz.
 pub const STIFFNESS: f32 = 35e3;
-/// Of the damper while it shrinks and while it grows, N s/m: 0.34 and 0.59 of critical.
+/// Damping while a coilover shortens, N s/m: 0.34 of critical.
 pub const BUMP: f32 = 2_200.0;
+/// Damping while a coilover lengthens, N s/m: 0.59 of critical.
 pub const REBOUND: f32 = 3_800.0;
-/// Length at ride height, m, and how far the wheel moves up and down from there to its stops.
+/// Length of a coilover at ride height, m.
 pub const LENGTH: f32 = 0.5;
+/// Travel of a wheel from ride height up and down to its stops, m.
 const TRAVEL: [f32; 2] = [0.10, 0.09];
-/// Of the stops, N/m, 1/m and N s/m: a drop of 2 m ends 5 cm before the chassis is on the road.
+/// Stiffness of the stops, N/m. After a drop of 2 m the chassis stops 5 cm above the road.
 const STOP: f32 = 150e3;
+/// Progression of the stops, 1/m.
 const PROGRESSION: f32 = 10.0;
+/// Damping of the stops, N s/m.
 const STOP_DAMPING: f32 = 1_500.0;
-/// Of the bars in front and behind, N m/rad: a third of the roll stiffness of the coilovers.
+/// Stiffness of the front and the rear anti-roll bar, N m/rad: a third of the roll stiffness of the coilovers.
 pub const BARS: [f32; 2] = [2_800.0, 1_400.0];
-/// Of a coilover from the middle of the car, m.
+/// Lateral distance of a coilover from the middle of the car, m.
 const COILOVER: f32 = 0.56;
 
 const CAR: CollisionGroups = CollisionGroups::new(Group::GROUP_2, Group::GROUP_1);
@@ -46,15 +54,15 @@ const CAR: CollisionGroups = CollisionGroups::new(Group::GROUP_2, Group::GROUP_1
 #[derive(Component)]
 pub struct Chassis;
 
-/// On a coilover: the wheel that it stands on.
+/// On a coilover: the wheel it stands on.
 #[derive(Component)]
 pub struct StandsOn(pub Entity);
 
-/// What turns with a wheel, for the eye.
+/// On a visible part: the wheel it turns with.
 #[derive(Component)]
 pub struct Spinning(Entity);
 
-/// Where the wheels are on the chassis: front left, front right, rear left, rear right.
+/// Returns the positions of the wheels on the chassis: front left, front right, rear left, rear right.
 pub fn corners() -> [Vec3; 4] {
     [(1.0, -1.0), (1.0, 1.0), (-1.0, -1.0), (-1.0, 1.0)]
         .map(|(x, z)| Vec3::new(x * HALF_BASE, RADIUS - HEIGHT, z * HALF_TRACK))
@@ -98,7 +106,7 @@ fn chassis() -> impl Bundle {
         CAR,
         Velocity::default(),
         ExternalForce::default(),
-        // Who drives need not wake it.
+        // Kept awake, so that the driver's forces need not wake it.
         Sleeping::disabled(),
         Transform::from_xyz(0.0, HEIGHT, 0.0),
         Visibility::default(),
@@ -120,7 +128,7 @@ fn body_work(commands: &mut Commands, chassis: Entity) {
             parts.spawn(box_at(-1.6, 0.24, z, v(0.2, 0.24, 0.03), Paint::Iron));
         }
         for (i, x) in [HALF_BASE, -HALF_BASE].into_iter().enumerate() {
-            // The bridge that the coilovers hang from, and the hinges with the bar.
+            // The cross member that the coilovers hang from, and the hinges with the bar.
             let y = RADIUS - HEIGHT + LENGTH;
             parts.spawn(box_at(x, y + 0.03, 0.0, v(0.16, 0.06, 1.26), Paint::Iron));
             parts.spawn(box_at(x, 0.2, 0.0, v(0.1, 0.2, 0.6), Paint::Iron));
@@ -134,7 +142,8 @@ fn body_work(commands: &mut Commands, chassis: Entity) {
     });
 }
 
-/// The hub, with its arm. Only the ball touches the road, and does not turn: what it does to the road is the tyre's.
+/// A hub with its arm. Only the ball touches the road. The ball does not turn and has no friction: the forces along
+/// the road come from [`Tyre`].
 fn wheel(chassis: Entity, corner: Vec3) -> impl Bundle {
     let forward = corner.x.signum();
     let hinge = RevoluteJointBuilder::new(Vec3::Z)
@@ -168,7 +177,7 @@ fn wheel_looks(commands: &mut Commands, wheel: Entity, corner: Vec3) {
             Transform::from_xyz(-0.5 * ARM * forward, 0.0, -0.3 * side),
             Shape::Cuboid(Vec3::new(ARM, 0.07, 0.05), Paint::Iron),
         ));
-        // The axle, on which the coilover stands.
+        // The axle that the coilover stands on.
         parts.spawn((
             Transform::from_xyz(0.0, 0.0, -0.18 * side).with_rotation(along_z),
             Shape::Cylinder(0.045, 0.3, Paint::Iron),
@@ -184,7 +193,7 @@ fn wheel_looks(commands: &mut Commands, wheel: Entity, corner: Vec3) {
                 Transform::from_rotation(along_z),
                 Shape::Cylinder(0.62 * RADIUS, 0.225, Paint::Ivory),
             ));
-            // Spokes, that it is seen to turn.
+            // Spokes make the rotation visible.
             for i in 0..3 {
                 parts.spawn((
                     Transform::from_rotation(Quat::from_rotation_z(TAU / 6.0 * i as f32)),
@@ -195,7 +204,7 @@ fn wheel_looks(commands: &mut Commands, wheel: Entity, corner: Vec3) {
     });
 }
 
-/// Both ends of a coilover: on the chassis, and on the wheel.
+/// Returns the anchors of a coilover: on the chassis, and on the wheel.
 pub fn ends(corner: Vec3) -> [Vec3; 2] {
     let inside = Vec3::Z * (COILOVER - HALF_TRACK) * corner.z.signum();
     [corner + inside + Vec3::Y * LENGTH, inside]
@@ -221,7 +230,7 @@ fn our_spring(commands: &mut Commands, chassis: Entity, wheel: Entity, corner: V
     ));
 }
 
-/// Rapier's has one damping, no stops, and no preload but its rest length.
+/// Rapier's spring joint has one damping for both directions, no stops, and no preload but its rest length.
 fn rapier_spring(commands: &mut Commands, chassis: Entity, wheel: Entity, corner: Vec3) {
     let [a, b] = ends(corner);
     let sag = 0.25 * CHASSIS * GRAVITY / STIFFNESS;
@@ -231,7 +240,7 @@ fn rapier_spring(commands: &mut Commands, chassis: Entity, wheel: Entity, corner
     commands.spawn((ImpulseJoint::new(chassis, joint), ChildOf(wheel)));
 }
 
-/// A joint that locks nothing, with a motor for a spring.
+/// A joint that locks no axis. Its motor is the spring.
 fn rapier_bar(commands: &mut Commands, pair: &[Entity], stiffness: f32) {
     let joint = GenericJointBuilder::new(JointAxesMask::empty())
         .motor_model(JointAxis::AngZ, MotorModel::ForceBased)

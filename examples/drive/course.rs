@@ -1,49 +1,57 @@
-//! The course, along x: a washboard, waves, kerbs, the washboard again, a field to turn on, a jump, and a slope.
+//! The course along x: a washboard, waves, kerbs, the washboard again, a field to turn on, a jump, and a slope.
 //!
-//! What is not level is made of few convex solids: nearly buried cylinders, and prisms whose feet are underground. Rapier
-//! stops a fast body in front of every edge that it comes near, also of an inner edge of a smooth road. A mesh of triangles
-//! or a row of small pieces stops this car, or throws it.
+//! Everything that is not level is made of few convex solids: nearly buried cylinders, and prisms with their feet
+//! underground. Rapier stops a fast body in front of every edge it comes near, even at an inner edge of a smooth
+//! road. A triangle mesh or a row of small pieces would stop or throw this car.
 
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
 use stage::{Paint, Shape};
 use std::f32::consts::TAU;
 
-/// What the road collides with is the car, and the car with the road.
+/// The road collides only with the car, and the car only with the road.
 pub const ROAD: CollisionGroups = CollisionGroups::new(Group::GROUP_1, Group::GROUP_2);
-/// Of the road, m.
+/// Width of the road, m.
 const WIDTH: f32 = 9.0;
-/// Where the road ends, m.
+/// Position of the road's end, m.
 const END: f32 = 640.0;
-/// Of the washboard, m: from crest to crest, its height and the whole.
+/// Distance from crest to crest of the washboard, m.
 const WASH: f32 = 2.0;
+/// Height of the washboard, m.
 const WASH_HEIGHT: f32 = 0.02;
+/// Length of the whole washboard, m.
 const WASH_LENGTH: f32 = 40.0;
-/// Where things begin, m.
+/// Start of each part along x, m.
 pub const SLOW_WASH: f32 = 30.0;
 pub const WAVES: f32 = 80.0;
 pub const KERBS: f32 = 135.0;
 pub const FAST_WASH: f32 = 250.0;
 pub const JUMP: f32 = 440.0;
 pub const SLOPE: f32 = 560.0;
-/// Of the waves, m: their length, height and number on each side.
+/// Length of one wave, m.
 const WAVE: f32 = 8.0;
+/// Height of the waves, m.
 const WAVE_HEIGHT: f32 = 0.16;
+/// Number of waves on each side of the road.
 const WAVE_COUNT: f32 = 5.0;
-/// Of the kerbs above the road, m.
+/// Height of the kerbs above the road, m.
 const KERB: f32 = 0.09;
-/// Rises of the jump, and where each ends, m.
+/// Gradients of the two parts of the jump.
 const RISES: [f32; 2] = [0.08, 0.16];
+/// Distances from the start of the jump at which its two parts end, m.
 const ENDS: [f32; 2] = [6.0, 13.5];
-/// Of the slope: how steep it is at its foot and above, how high that foot and the top are, m, and the whole, m.
+/// Gradient of the slope above its foot.
 pub const STEEP: f32 = 0.2;
+/// Gradient of the slope's foot, and the height at which the foot ends, m.
 const FOOT: [f32; 2] = [0.1, 0.3];
+/// Height of the slope's top, m.
 const TOP: f32 = 4.5;
+/// Length of the whole slope along x, m.
 const SLOPE_LENGTH: f32 = 54.0;
-/// How far below the road everything goes down, m.
+/// Height of the underground ends of all prisms, m.
 const DEPTH: f32 = -1.0;
 
-/// Height of a row of arcs, each from one foot to the next.
+/// Returns the height of a row of equal arcs, m.
 fn arcs(x: f32, length: f32, height: f32) -> f32 {
     let radius = radius(length, height);
     let from_crest = x.rem_euclid(length) - 0.5 * length;
@@ -70,7 +78,7 @@ fn jump(x: f32) -> f32 {
     }
 }
 
-/// Up and down again.
+/// Returns the height of the slope, which goes up and down again, m.
 fn slope(x: f32) -> f32 {
     let from_end = x.min(SLOPE_LENGTH - x);
     let above = FOOT[1] + STEEP * (from_end - FOOT[1] / FOOT[0]);
@@ -86,7 +94,7 @@ pub fn spawn(mut commands: Commands) {
         Transform::from_xyz(0.5 * END, -0.5 * size.y, 0.0),
         Shape::Cuboid(size, Paint::Grass),
     ));
-    // Paint and asphalt are looks alone.
+    // Paint and asphalt are visual only.
     let road = Vec3::new(END + 60.0, 0.02, WIDTH + 3.0);
     let middle = 0.5 * END - 10.0;
     commands.spawn((
@@ -123,7 +131,7 @@ pub fn spawn(mut commands: Commands) {
         solid(&mut commands, JUMP, 6.0, &corners);
     }
     strip(&mut commands, SLOPE, whole, SLOPE_LENGTH, slope);
-    // Where its foot ends, and where the slope above reaches the top.
+    // `foot` is where the foot of the slope ends, `top` where the slope reaches its top.
     let foot = FOOT[1] / FOOT[0];
     let top = foot + (TOP - FOOT[1]) / STEEP;
     for (rise, at, height) in [(FOOT[0], foot, FOOT[1]), (STEEP, top, TOP)] {
@@ -139,7 +147,7 @@ pub fn spawn(mut commands: Commands) {
     kerbs(&mut commands);
 }
 
-/// What something not level looks like.
+/// Spawns the visible surface of a part that is not level.
 fn strip(
     commands: &mut Commands,
     from: f32,
@@ -153,7 +161,7 @@ fn strip(
     ));
 }
 
-/// Arcs, as cylinders that are nearly buried.
+/// Spawns a row of arcs, as nearly buried cylinders.
 fn row(
     commands: &mut Commands,
     from: f32,
@@ -174,8 +182,8 @@ fn row(
     }
 }
 
-/// A convex outline over x and y, drawn across the road. Its feet are deep in the ground, so that a wheel meets planes and
-/// never the edge where they begin.
+/// Spawns a prism across the road from a convex outline in x and y. Its feet are deep in the ground, so a wheel meets
+/// planes and never the edge where they begin.
 fn solid(commands: &mut Commands, from: f32, width: f32, outline: &[(f32, f32)]) {
     let half = 0.5 * width;
     let sides = |(x, y): &(f32, f32)| [-half, half].map(|z| Vec3::new(*x, *y, z));
@@ -192,7 +200,7 @@ fn solid(commands: &mut Commands, from: f32, width: f32, outline: &[(f32, f32)])
     ));
 }
 
-/// First below the right wheels, then below the left ones.
+/// Spawns the kerbs, first below the right wheels, then below the left ones.
 fn kerbs(commands: &mut Commands) {
     for (from, z) in [(KERBS, 1.1), (KERBS + 16.0, -1.1)] {
         for i in 0..10 {

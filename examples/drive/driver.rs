@@ -1,4 +1,4 @@
-//! Who drives when nobody does: a script, leg by leg, that keeps to its line and its speed.
+//! The script that drives while nobody else does: it goes through the legs of the course and holds line and speed.
 
 use super::car::{Chassis, HALF_BASE};
 use super::course;
@@ -7,20 +7,20 @@ use bevy_rapier3d::prelude::*;
 use stage::DT;
 use std::f32::consts::TAU;
 
-/// What engine, brakes and front wheels are told.
+/// Input for engine, brakes and front wheels.
 #[derive(Resource, Default)]
 pub struct Pedals {
-    /// From -1, backwards, to 1.
+    /// Throttle, from -1 (backwards) to 1.
     pub throttle: f32,
-    /// From 0 to 1.
+    /// Brake pedal, from 0 to 1.
     pub brake: f32,
-    /// Of the front wheels to the left, rad.
+    /// Steering angle of the front wheels, positive to the left, rad.
     pub steer: f32,
-    /// Someone has taken the wheel.
+    /// Whether a player drives instead of the script.
     pub by_hand: bool,
 }
 
-/// A part of the course, in the order in which they are driven.
+/// A part of the course, in driving order.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Hash)]
 pub enum Leg {
     Stand,
@@ -35,28 +35,31 @@ pub enum Leg {
     Slope,
 }
 
-/// m/s
+/// Target speed on the slow washboard, m/s.
 pub const SLOW: f32 = 5.0;
+/// Target speed on the fast washboard, m/s.
 pub const FAST: f32 = 30.0;
+/// Target speed in the corner, m/s.
 pub const CORNER_SPEED: f32 = 10.0;
+/// Target speed at the jump, m/s.
 const JUMP_SPEED: f32 = 16.0;
-/// Of the circle, m.
+/// Radius of the circle in the corner, m.
 pub const CIRCLE: f32 = 25.0;
-/// Share of the brakes on the level.
+/// Brake pedal position in [`Leg::Brake`], from 0 to 1.
 const BRAKE: f32 = 0.42;
-/// Speed at which that ends, m/s.
+/// Speed at which [`Leg::Brake`] ends, m/s.
 const BRAKED: f32 = 10.0;
-/// On the slope before it stops, m.
+/// Distance driven along x on the slope before the car stops, m.
 const CLIMB: f32 = 12.0;
-/// Share of the throttle for each m/s that is missing.
+/// Throttle for each m/s below the target speed, s/m.
 const PEDAL: f32 = 0.5;
 
 #[derive(Resource)]
 pub struct Script {
     pub leg: Leg,
-    /// Since it began, s.
+    /// Time since the leg began, s.
     pub time: f32,
-    /// How far it has turned in this leg, rad.
+    /// Angle the car has turned in this leg, positive to the left, rad.
     turned: f32,
 }
 
@@ -71,7 +74,7 @@ impl Default for Script {
 }
 
 impl Leg {
-    /// The next one, once this is over.
+    /// Returns the next leg once this one is over.
     fn next(self, script: &Script, x: f32, speed: f32) -> Self {
         let over = |over, next| if over { next } else { self };
         match self {
@@ -88,7 +91,7 @@ impl Leg {
         }
     }
 
-    /// Wanted, m/s.
+    /// Target speed, m/s.
     fn speed(self) -> f32 {
         match self {
             Leg::Stand | Leg::Brake | Leg::Slope => 0.0,
@@ -134,12 +137,12 @@ pub fn read_script(
     if matches!(script.leg, Leg::Stand | Leg::Slope) {
         (pedals.throttle, pedals.brake) = (0.0, 1.0);
     }
-    // Positive angles turn to the left, which is -z.
+    // Positive angles turn to the left, towards -z.
     let heading = (-forward.z).atan2(forward.x);
     pedals.steer = if script.leg == Leg::Corner {
         2.0 * HALF_BASE / CIRCLE
     } else {
-        // Towards the middle of the road, looking ahead as far as it drives in a second.
+        // Steer towards the middle of the road, at the distance driven in one second.
         let ahead = speed.max(6.0);
         let aim = (at.translation.z / ahead).atan();
         (2.0 * HALF_BASE / ahead * 2.0 * (aim - heading)).clamp(-0.4, 0.4)

@@ -1,4 +1,4 @@
-//! What was measured on the way, against what statics and the theory of vibrations say.
+//! Compares the measurements with statics and vibration theory.
 
 use super::car::*;
 use super::course;
@@ -9,13 +9,13 @@ use bevy::prelude::*;
 use stage::{DT, Finding};
 use std::f32::consts::TAU;
 
-/// Mean of something; not a number of nothing.
+/// Returns the mean, or NaN without values.
 fn mean(values: impl Iterator<Item = f32>) -> f32 {
     let (sum, count) = values.fold((0.0, 0.0), |(sum, count), v| (sum + v, count + 1.0));
     sum / count
 }
 
-/// Standard deviation.
+/// Returns the standard deviation.
 fn spread(values: impl Iterator<Item = f32>) -> f32 {
     let values: Vec<f32> = values.collect();
     let middle = mean(values.iter().copied());
@@ -26,7 +26,7 @@ fn most(values: impl Iterator<Item = f32>) -> f32 {
     values.fold(f32::NEG_INFINITY, f32::max)
 }
 
-/// Mass times height over the road of all, kg m.
+/// Sum of mass times height above the road over chassis and wheels, kg m.
 const MOMENT: f32 = CHASSIS * HEIGHT + 4.0 * WHEEL * RADIUS;
 
 pub fn check(world: &mut World) -> Vec<Finding> {
@@ -50,8 +50,8 @@ fn standing(log: &Log) -> Option<Finding> {
     Some(Finding::close("ride height", last.at.y, HEIGHT, "m", 2e-3))
 }
 
-/// How the load of a wheel varies. The chassis is slow and stays where it is, so the hub goes up and down as the road does,
-/// and spring, damper and the wheel's mass say with what force.
+/// Variation of the wheel load on the slow washboard. The chassis bounces too slowly to follow the washboard and
+/// stays level, so each hub moves as the road does. Spring, damper and wheel mass then give the force.
 fn washboard(log: &Log) -> Vec<Finding> {
     let on = |s: &&Sample| (course::SLOW_WASH + 14.0..course::SLOW_WASH + 37.0).contains(&s.at.x);
     let samples: Vec<_> = log.of(Leg::SlowWash).filter(on).collect();
@@ -101,7 +101,8 @@ fn fast(log: &Log) -> Vec<Finding> {
     ]
 }
 
-/// The load moves forward by mass, deceleration and height over the wheelbase, and both ends of the car spring by it.
+/// Under braking, load moves from the rear to the front wheels: mass times deceleration times height over the
+/// wheelbase. Both ends of the car deflect by it.
 fn braking(log: &Log) -> Vec<Finding> {
     let steady: Vec<_> = log.of(Leg::Brake).filter(|s| s.time > 1.2).collect();
     let (Some(first), Some(last)) = (steady.first(), steady.last()) else {
@@ -110,7 +111,7 @@ fn braking(log: &Log) -> Vec<Finding> {
     let braked = (first.velocity.x - last.velocity.x) / (last.time - first.time);
     let dive = -mean(steady.iter().map(|s| s.pitch));
     let stiff = 4.0 * STIFFNESS * HALF_BASE.powi(2);
-    // The chassis' weight goes forward over the hubs with it.
+    // Pitching also moves the weight of the chassis forward relative to the hubs.
     let theory = MOMENT * braked / (stiff - CHASSIS * GRAVITY * (HEIGHT - RADIUS));
     vec![
         Finding::between("deceleration", braked, 3.0, 9.0, "m/s²"),
@@ -124,7 +125,8 @@ fn braking(log: &Log) -> Vec<Finding> {
     ]
 }
 
-/// Roll: coilovers and bars against mass, height and what pulls outwards.
+/// Compares the roll in the corner with statics: roll stiffness of coilovers and bars against the moment of the
+/// centrifugal force.
 fn corner(log: &Log) -> Vec<Finding> {
     let length = most(log.of(Leg::Corner).map(|s| s.time));
     let steady: Vec<_> = log
@@ -186,7 +188,7 @@ fn jump(log: &Log) -> Vec<Finding> {
         Finding::between("  shortest coilover", shortest, 0.2, 0.4, "m"),
         Finding::between("  longest coilover", longest, 0.5, 0.68, "m"),
         Finding::between("  greatest load over that at rest", load, 2.0, 25.0, ""),
-        // Its front leaves the ramp first, and so it dips its nose.
+        // The front wheels leave the ramp first, so the nose drops.
         Finding::between("  most lean", lean.to_degrees(), 0.0, 30.0, "degrees"),
         Finding::small("  off its ride height afterwards", settled, 1e-2, "m"),
     ]

@@ -1,4 +1,4 @@
-//! Keys and sticks. The first that is touched takes the car from the script.
+//! Input from keyboard and gamepad. The first input takes control of the car from the script.
 
 use super::car::Chassis;
 use super::driver::Pedals;
@@ -6,20 +6,21 @@ use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
 use stage::{Again, DT};
 
-/// How fast keys turn the front wheels, rad/s, and their greatest angle, rad.
+/// Rate at which keys turn the front wheels, rad/s.
 const TURN: f32 = 1.4;
+/// Greatest angle of the front wheels, rad.
 const LOCK: f32 = 0.5;
-/// No more than this is steered for, m/s² across the car: what tyres hold.
+/// Greatest lateral acceleration that is steered for, m/s²: what the tyres hold.
 const ACROSS: f32 = 9.0;
 /// Wheelbase, m.
 const BASE: f32 = 2.6;
-/// Slower than this, m/s, the brake key drives backwards.
+/// Speed below which the down key drives backwards instead of braking, m/s.
 const SLOW: f32 = 1.0;
-/// Of a stick or a trigger, below which it counts as left alone.
+/// Deflection of a stick or a trigger below which it counts as released.
 const DEAD: f32 = 0.1;
 
-/// Gas, brake and steering as asked for; `None` where nothing is touched. Sticks are there only where Bevy was built with
-/// its feature `bevy_gilrs`, which these examples do without: it needs a library of the system.
+/// Returns throttle, steering and brake as asked for, or `None` without input. Gamepads work only where Bevy is built
+/// with its feature `bevy_gilrs`. These examples leave it out, because it needs a system library.
 fn asked(keys: Option<&ButtonInput<KeyCode>>, pads: &Query<&Gamepad>) -> Option<(f32, f32, bool)> {
     let down = |any: &[KeyCode]| keys.is_some_and(|keys| keys.any_pressed(any.iter().copied()));
     let amount = |any: &[KeyCode]| f32::from(u8::from(down(any)));
@@ -64,7 +65,7 @@ pub fn read(
     pedals.brake = match (brake, against) {
         (true, _) => 1.0,
         (_, true) => gas.abs(),
-        // Left alone, it rolls out and stands.
+        // Without input, the car rolls to a stop.
         _ if gas == 0.0 => 0.06,
         _ => 0.0,
     };

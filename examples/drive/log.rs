@@ -1,4 +1,4 @@
-//! What happened, tick by tick.
+//! Records the state of the car in every tick.
 
 use super::car::{Chassis, ends};
 use super::driver::{Leg, Pedals, Script};
@@ -6,29 +6,33 @@ use super::tyre::{Tyre, place};
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
 
-/// One tick.
+/// State in one tick.
 pub struct Sample {
     pub leg: Leg,
-    /// Since the leg began, s.
+    /// Time since the leg began, s.
     pub time: f32,
+    /// Position of the chassis, m.
     pub at: Vec3,
+    /// Velocity of the chassis, m/s.
     pub velocity: Vec3,
-    /// Of the nose upwards, and of the right side downwards, rad.
+    /// Pitch, positive with the nose up, rad.
     pub pitch: f32,
+    /// Roll, positive with the right side down, rad.
     pub roll: f32,
-    /// Of the car's up against the world's, rad.
+    /// Angle between the car's up axis and the world's, rad.
     pub lean: f32,
-    /// Of the coilovers, m, and what the tyres carry, N: front left, front right, rear left, rear right.
+    /// Lengths of the coilovers, m: front left, front right, rear left, rear right.
     pub lengths: [f32; 4],
+    /// Loads of the tyres, N, in the order of `lengths`.
     pub loads: [f32; 4],
-    /// Of the hubs, m.
+    /// Positions of the hubs, m, in the order of `lengths`.
     pub hubs: [Vec3; 4],
 }
 
 #[derive(Resource, Default)]
 pub struct Log {
     pub samples: Vec<Sample>,
-    /// Someone has driven it, so nothing is as the script would have it.
+    /// Whether a player has driven the car: the measurements then do not follow the script.
     pub by_hand: bool,
 }
 

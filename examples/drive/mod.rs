@@ -1,4 +1,4 @@
-//! The rooms of the example: the course, the car with its tyres, who drives it, and what is measured.
+//! Modules of the example: the course, the car with its tyres, the driver, and the measurements.
 
 mod camera;
 mod car;
@@ -17,9 +17,9 @@ use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
 use stage::{self, Begin};
 
-/// Seconds that the script takes.
+/// Duration of the script, s.
 pub const SECONDS: f32 = 78.0;
-/// Second of the picture: in the air.
+/// Time of the screenshot, s: the car is in the air.
 pub const PICTURE: f32 = 57.0;
 
 pub fn setup(app: &mut App) {

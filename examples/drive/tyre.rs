@@ -1,13 +1,14 @@
-//! What a tyre does on the road.
+//! The force of a tyre on the road.
 //!
-//! Rapier's rolling contacts do not hold at the speed of this car. It turns no body by more than an eighth of a turn in a
-//! step, which is 15 m/s for these wheels: beyond that they slide. And a contact point stays on the wheel for a whole step
-//! and rises with it, by which a wheel sinks 27 mm at 12 m/s. So the wheel of this example is a ball without friction that
-//! does not turn, and holds the load as Rapier's contacts do; what is along the road is a tyre of slip.
+//! Rapier's rolling contacts do not hold at the speed of this car. Rapier turns no body by more than an eighth of a
+//! turn in a step, which is 15 m/s for these wheels: above that they slide. And a contact point stays on the wheel
+//! for a whole step and rises with it, so a wheel sinks by 27 mm at 12 m/s. The wheel of this example is therefore a
+//! ball without friction that does not turn. Rapier's contacts carry its load, and a slip model of the tyre gives the
+//! forces along the road.
 //!
-//! The tread is a spring along the road and across. It is carried away by what the road slides below the wheel, laid down
-//! anew as the wheel rolls, and lets go where friction ends. Rolling, its force is a stiffness times the slip; standing, it
-//! is a spring, and so a car with its brakes on does not creep.
+//! The tread is a spring along the road and across it. The sliding of the road below the wheel stretches it, rolling
+//! lays it down anew, and friction limits its force. While the wheel rolls, the force is a stiffness times the slip.
+//! At rest the tread is a spring, so a car with its brakes on does not creep.
 
 use super::car::*;
 use super::driver::Pedals;
@@ -16,46 +17,51 @@ use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
 use stage::DT;
 
-/// Of the tread against the road, N/m and N s/m.
+/// Stiffness of the tread against the road, N/m.
 const TREAD: f32 = 150e3;
+/// Damping of the tread against the road, N s/m.
 const TREAD_DAMPING: f32 = 4e3;
-/// On which half of the tread is laid down anew, m. With the stiffness: 60 kN for each unit of slip.
+/// Relaxation length of the tread, m. With the stiffness: 60 kN for each unit of slip.
 const RELAXATION: f32 = 0.4;
-/// Of rubber on asphalt.
+/// Coefficient of friction of rubber on asphalt.
 const FRICTION: f32 = 1.1;
-/// Of a wheel with its tyre about its axle, kg m².
+/// Moment of inertia of a wheel with its tyre about its axle, kg m².
 const INERTIA: f32 = 1.3;
-/// The wheel's spin is lighter than the car, and so is followed in finer steps.
+/// Substeps per tick for the wheel's spin: its small inertia needs a finer step than the car.
 const STEPS: u32 = 16;
-/// All of the engine, W, and of a wheel's share at most, N m: it drives all four.
+/// Power of the engine, W. It drives all four wheels.
 const POWER: f32 = 220e3;
+/// Greatest torque of the engine at one wheel, N m.
 const TORQUE: f32 = 700.0;
-/// Of a wheel's brake in front and behind, N m.
+/// Greatest brake torque of a front and of a rear wheel, N m.
 const BRAKES: [f32; 2] = [1_500.0, 1_000.0];
-/// A contact that is wider open than this, m, is none: so far ahead Rapier looks. Whether it presses, the load says.
+/// Gap from which a contact point counts as open, m: Rapier's contact prediction distance. Whether the wheel presses
+/// on the road follows from `Tyre::load`.
 const NEAR: f32 = 2e-2;
 
-/// The number of a corner: front left, front right, rear left, rear right.
+/// Returns the index of a corner: front left, front right, rear left, rear right.
 pub fn place(corner: Vec3) -> usize {
     usize::from(corner.x < 0.0) * 2 + usize::from(corner.z > 0.0)
 }
 
-/// On a wheel.
+/// State of the tyre of a wheel.
 #[derive(Component)]
 pub struct Tyre {
-    /// On the chassis.
+    /// Position of the wheel on the chassis, m.
     pub corner: Vec3,
-    /// To the left, rad.
+    /// Steering angle, positive to the left, rad.
     pub steer: f32,
-    /// Forwards, rad/s, and how far it has turned, rad.
+    /// Rate of rotation, positive forwards, rad/s.
     pub spin: f32,
+    /// Angle turned, rad.
     pub angle: f32,
-    /// How far the tread is pushed forwards and to the right, m.
+    /// Deflection of the tread forwards and to the right, m.
     tread: Vec2,
-    /// What presses it onto the road, N; 0 in the air.
+    /// Load on the road, N; 0 in the air.
     pub load: f32,
-    /// Of its coilover, m, and how fast the hub goes up, m/s, a tick ago.
+    /// Length of the coilover in the last tick, m.
     length: f32,
+    /// Vertical velocity of the hub in the last tick, m/s.
     rises: f32,
 }
 
@@ -73,8 +79,8 @@ impl Tyre {
         }
     }
 
-    /// Goes one tick on, the hub going over the road with this speed. Gives the force on the wheel, N, forwards and to the
-    /// right.
+    /// Advances the tyre by one tick. `speed` is the hub's velocity over the road, forwards and to the right. Returns
+    /// the force on the wheel in the same directions, N.
     fn roll(&mut self, speed: Vec2, [engine, brake]: [f32; 2]) -> Vec2 {
         let step = DT / STEPS as f32;
         let mut sum = Vec2::ZERO;
@@ -97,13 +103,13 @@ impl Tyre {
     }
 }
 
-/// Where a wheel touches the road: the normal there; `None` in the air.
+/// Returns the normal of the road where a wheel touches it, or `None` in the air.
 fn touches(context: &RapierContext, wheel: Entity) -> Option<Vec3> {
     let mut sum = Vec3::ZERO;
     for pair in context.contact_pairs_with(wheel) {
         let own = pair.collider1() == Some(wheel);
         for manifold in pair.manifolds() {
-            // What is deeper counts for more.
+            // A deeper contact counts for more.
             let nearest = manifold.find_deepest_contact().map_or(NEAR, |p| p.dist());
             let normal = if own {
                 -manifold.normal()
@@ -116,7 +122,7 @@ fn touches(context: &RapierContext, wheel: Entity) -> Option<Vec3> {
     sum.try_normalize()
 }
 
-/// What presses each wheel down, N: coilover, bar, weight, and that the hub goes up and down.
+/// Computes the load of each wheel, N, from coilover, bar, weight and vertical acceleration of the hub.
 pub fn weigh(
     chassis: Query<&Transform, With<Chassis>>,
     coilovers: Query<(&SpringReadout, &StandsOn)>,
@@ -125,7 +131,7 @@ pub fn weigh(
     let Ok(car) = chassis.single() else {
         return;
     };
-    // How high the hubs are on the chassis, in the order of `place`.
+    // Heights of the hubs in the chassis' frame, in the order of `place`.
     let mut heights = [0.0; 4];
     for (_, at, _, tyre) in &wheels {
         let on_car = car.rotation.inverse() * (at.translation - car.translation);
@@ -139,7 +145,7 @@ pub fn weigh(
         let ours = coilovers.iter().find(|(_, on)| on.0 == wheel);
         let pushes = match ours {
             Some((readout, _)) => -readout.force(),
-            // As Rapier's was made.
+            // The force of Rapier's spring joint, from the values that `rapier_spring` gave it.
             None => {
                 let sag = 0.25 * CHASSIS * GRAVITY;
                 sag + STIFFNESS * (LENGTH - length) - 0.5 * (BUMP + REBOUND) * rate
@@ -153,7 +159,7 @@ pub fn weigh(
     }
 }
 
-/// Pushes wheels and chassis.
+/// Applies the forces of the tyres to wheels and chassis.
 pub fn push(
     pedals: Res<Pedals>,
     context: ReadRapierContext,
@@ -178,21 +184,22 @@ pub fn push(
         let heading = car.rotation * Quat::from_rotation_y(tyre.steer) * Vec3::X;
         let forward = heading.reject_from(normal).normalize_or_zero();
         let right = forward.cross(normal);
-        // The hub with the roll of the car; its turning with the arm is not the tyre's.
+        // The velocity of the hub, plus that from the roll of the car. The rotation of the wheel body is that of the
+        // arm, not of the tyre.
         let roll = car.rotation * Vec3::X;
         let patch = velocity.linear + (moves.angular.dot(roll) * roll).cross(point - hub);
         let speed = Vec2::new(patch.dot(forward), patch.dot(right));
         let strongest = TORQUE.min(0.25 * POWER * RADIUS / speed.x.abs().max(1.0));
         let brakes = BRAKES[usize::from(!front)];
         let force = tyre.roll(speed, [pedals.throttle * strongest, pedals.brake * brakes]);
-        // Engine and brakes are at the chassis, as are a 2CV's: they turn the car, not the arm.
+        // Engine and brakes are mounted on the chassis, as in a Citroën 2CV: their torque turns the car, not the arm.
         on_chassis.torque += (point - hub).cross(force.x * forward);
         *on_wheel = ExternalForce::at_point(force.y * right, point, hub);
         on_wheel.force += force.x * forward;
     }
 }
 
-/// What the ground carries of one wheel at rest, N.
+/// Returns the load of one wheel at rest, N.
 pub fn load_at_rest(chassis: f32, gravity: f32) -> f32 {
     (0.25 * chassis + WHEEL) * gravity
 }

@@ -1,4 +1,4 @@
-//! Points and threads.
+//! The points and threads of the flag.
 
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
@@ -6,39 +6,42 @@ use bevy_rapier3d::prelude::*;
 use stage::{Paint, Shape, Skin, Vertex, floor};
 use std::collections::HashSet;
 
-/// Points along the flag and down it, and from point to point, m.
+/// Number of points along the flag and down it.
 pub const SIZE: [usize; 2] = [19, 13];
+/// Distance between neighbouring points, m.
 pub const PITCH: f32 = 0.08;
-/// kg/m²
+/// Mass of the cloth, kg/m².
 const CLOTH: f32 = 0.5;
-/// Of a point, kg.
+/// Mass of a point, kg.
 pub const MASS: f32 = CLOTH * PITCH * PITCH;
-/// Of the threads, N/m: along the edges of the cells, their diagonals, and over two of them.
+/// Stiffness of the threads along the edges of the cells, across their diagonals, and over two cells, N/m.
 const STIFFNESS: [f32; 3] = [1000.0, 150.0, 1.0];
 /// Damping over stiffness, s.
 const DAMPING: f32 = 6e-4;
-/// What a thread bears, N, give or take 15 %; twice that near the pole, where the cloth is doubled.
+/// Force at which a thread breaks, N, with a spread of ±15 %. It is twice that near the pole, where the cloth is
+/// doubled.
 const STRENGTH: f32 = 7.0;
-/// Columns of points that lie in the doubled cloth.
+/// Number of point columns in the doubled cloth.
 const DOUBLED: usize = 6;
-/// Where it hangs, m.
+/// Height of the pole, m.
 const POLE: f32 = 3.2;
 
-/// The flag as a whole.
+/// State of the flag.
 #[derive(Resource)]
 pub struct Flag {
+    /// Entities of all points, row by row.
     pub points: Vec<Entity>,
-    /// Points of the edges that have torn, lower first.
+    /// Torn edges, as the indices of their points, lower first.
     pub torn: HashSet<[usize; 2]>,
-    /// By the corner nearest to the pole's top; without those that have torn.
+    /// Intact cells, as the indices of their corners. The corner nearest to the pole's top comes first.
     pub cells: Vec<[usize; 4]>,
 }
 
-/// On a point: its number.
+/// On a point: its index.
 #[derive(Component)]
 pub struct Point(pub usize);
 
-/// On a thread: its ends, and the edges without which it goes too.
+/// On a thread: its points, and the edges it depends on. It is removed when one of those edges tears.
 #[derive(Component)]
 pub struct Thread {
     pub ends: [usize; 2],
@@ -141,7 +144,7 @@ pub fn triangles(cells: &[[usize; 4]]) -> Vec<[u32; 3]> {
     all.map(|triangle| triangle.map(|i| i as u32)).collect()
 }
 
-/// A number from 0 to 1 for a thread, always the same one.
+/// Returns a fixed pseudo-random number from 0 to 1 for a thread.
 fn uneven(a: usize, b: usize) -> f32 {
     let mixed = (a * 7919 + b * 104_729) % 1009;
     mixed as f32 / 1008.0

@@ -1,4 +1,4 @@
-//! What the pole carries, and how the cloth tears.
+//! Compares the force on the pole with theory, and records how the cloth tears.
 
 use super::cloth::{MASS, Point, Thread};
 use super::{GUST, SECONDS};
@@ -8,24 +8,24 @@ use bevy_rapier3d::prelude::*;
 use stage::{DT, Finding};
 
 const GRAVITY: f32 = 9.81;
-/// The mean is taken between these, s, before the gust and after it.
+/// Time spans of the means, s: before the gust and after it.
 const CALM: [[f32; 2]; 2] = [[4.0, GUST[0]], [GUST[1] + 5.0, SECONDS]];
 
 #[derive(Resource, Default)]
 pub struct Seen {
-    /// Of the wind, on what moves, in this tick, N.
+    /// Force of the wind on all free points in this tick, N.
     pub drag: Vec3,
-    /// Of all points, after the last tick, N s.
+    /// Momentum of all points after the last tick, N s.
     momentum: Vec3,
-    /// Forces at which threads broke, as shares of what they bear.
+    /// Forces at which threads broke, relative to their limits.
     pub broke: Vec<f32>,
-    /// In both calms: mean force on the pole, and what it should be, N.
+    /// Mean force on the pole, and the theory for it, N, in both time spans of `CALM`.
     pole: [[Vec3; 2]; 2],
-    /// How many threads had broken before the gust.
+    /// Number of threads that broke before the gust.
     early: usize,
-    /// The longest edge before the gust, as a share of its length without force.
+    /// Greatest length of an edge before the gust, relative to its rest length.
     longest: f32,
-    /// The fastest point in the last seconds, m/s.
+    /// Greatest speed of a point after the gust, m/s.
     fastest: f32,
 }
 

@@ -1,4 +1,4 @@
-//! The flag in its parts: threads, wind, tears, and what is measured.
+//! Modules of the example: threads, wind, tearing, and the measurements.
 
 mod cloth;
 mod findings;
@@ -12,7 +12,7 @@ use stage::{Begin, fresh};
 
 pub use findings::check;
 
-/// The gust, s.
+/// Time span of the gust, s.
 const GUST: [f32; 2] = [20.0, 23.0];
 pub const SECONDS: f32 = 40.0;
 pub const PICTURE: f32 = 3.0;

@@ -1,4 +1,5 @@
-//! What comes loose: cells without an edge, threads across them, and points that the wind has taken.
+//! Removes what has come loose: cells without an edge, threads across them, and points that the wind has carried
+//! away.
 
 use super::cloth::{Flag, Point, Thread, edges_of, triangles};
 use super::findings::Seen;
@@ -7,11 +8,12 @@ use bevy_coilover::prelude::*;
 use stage::Skin;
 use std::collections::HashSet;
 
-/// Further than this from the pole, or lower, m, nothing is kept.
+/// Distance from the pole beyond which points are removed, m.
 const FAR: f32 = 2.2;
+/// Height below which points are removed, m.
 const LOW: f32 = 0.6;
 
-/// A thread has broken.
+/// Records a broken thread.
 pub fn snap(
     broke: On<SpringBroke>,
     threads: Query<(&Thread, &Breakable)>,
@@ -24,7 +26,7 @@ pub fn snap(
     }
 }
 
-/// Takes away what is far from the pole.
+/// Removes points that are far from the pole.
 pub fn carry_off(
     points: Query<(Entity, &Point, &Transform)>,
     threads: Query<(Entity, &Thread)>,
@@ -52,7 +54,7 @@ pub fn carry_off(
         .retain(|cell| !cell.iter().any(|i| gone.contains(i)));
 }
 
-/// Takes away what was held by a torn edge.
+/// Removes cells and threads that depended on a torn edge.
 pub fn fray(
     mut flag: ResMut<Flag>,
     mut before: Local<usize>,

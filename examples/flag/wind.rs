@@ -1,4 +1,4 @@
-//! What the wind does to the cloth: it presses on each cell as on a plate, and drags along it.
+//! The force of the wind on the cloth: pressure on each cell as on a plate, and friction along it.
 
 use super::GUST;
 use super::cloth::{Flag, MASS, Point};
@@ -7,16 +7,18 @@ use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
 use stage::DT;
 
-/// kg/m³
+/// Density of the air, kg/m³.
 const AIR: f32 = 1.2;
-/// Of a plate across the wind, and of cloth along it.
+/// Drag coefficient of a plate across the wind.
 const ACROSS: f32 = 1.3;
+/// Friction coefficient of cloth along the wind.
 const ALONG: f32 = 0.06;
-/// m/s
+/// Speed of the wind before and after the gust, m/s.
 const BREEZE: f32 = 6.0;
+/// Speed of the wind in the gust, m/s.
 const STORM: f32 = 34.0;
 
-/// Speed of the air, m/s. Eddies go by with it.
+/// Returns the velocity of the air, m/s. Eddies travel with the air.
 fn wind(t: f32, at: Vec3) -> Vec3 {
     let rise = |from: f32| ((t - from) / 1.5).clamp(0.0, 1.0);
     let speed = BREEZE + (STORM - BREEZE) * (rise(GUST[0]) - rise(GUST[1]));
@@ -48,7 +50,7 @@ pub fn blow(
         let through = past.dot(normal);
         let pushes = 0.5 * AIR * area * ACROSS * through.abs();
         let drags = 0.5 * AIR * area * ALONG * past.length();
-        // As if the cloth had already given way in this step: so light a cloth would else be thrown to and fro.
+        // Implicit in the velocity of the cloth: with an explicit force, cloth this light would oscillate.
         let push = pushes / (1.0 + 2.0 * pushes * DT / MASS) * through * normal;
         let force = push + drags * (past - through * normal);
         for i in cell {

@@ -1,4 +1,4 @@
-//! The ball that falls on it.
+//! The ball that falls on the jelly.
 
 use super::BALL;
 use super::lattice::Point;
@@ -6,10 +6,11 @@ use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
 use stage::{Paint, Shape};
 
-/// kg and m
+/// Mass of the ball, kg.
 pub const WEIGHT: f32 = 3.0;
+/// Radius of the ball, m.
 pub const RADIUS: f32 = 0.14;
-/// From where it falls: from the middle of the jelly, m. Beside the middle, so that it does not stay.
+/// Start of the ball relative to the middle of the jelly, m. It is off-centre, so that the ball does not stay on top.
 const FROM: Vec3 = Vec3::new(0.1, 1.1, 0.07);
 
 #[derive(Component)]
@@ -30,7 +31,7 @@ pub fn drop_it(
         Collider::ball(RADIUS),
         ColliderMassProperties::Mass(WEIGHT),
         Friction::coefficient(0.5),
-        // A floor takes some of what rolls.
+        // Stands for the rolling resistance of the floor.
         Damping {
             linear_damping: 0.0,
             angular_damping: 1.0,

@@ -1,4 +1,4 @@
-//! The fall, the energy, and how it rests: against statics, before the ball and after it.
+//! Compares the free fall, the energy, and the shape at rest before and after the ball with theory and statics.
 
 use super::ball::{self, Ball, WEIGHT};
 use super::lattice::{Jelly, Link, MASS, Point, RADIUS};
@@ -11,30 +11,37 @@ use bevy_rapier3d::prelude::*;
 use stage::{DT, Finding};
 
 const GRAVITY: f32 = 9.81;
-/// The first free fall ends after this, s.
+/// Time at which the first free fall ends, s.
 const FALL: f32 = 0.1;
-/// When it has come to rest, s: before the ball, and at the end.
+/// Times at which the jelly is at rest, s: before the ball, and at the end.
 const RESTS: [f32; 2] = [BALL - 0.5, SECONDS - 0.5];
 
 #[derive(Resource, Default)]
 pub struct Seen {
-    /// Height of all points' middle at the beginning, m, and its largest error in free fall.
+    /// Mean height of all points at the start, m.
     from: Option<f32>,
+    /// Largest error of that height in free fall, m.
     fall: f32,
-    /// Energy of all: at the beginning, most since, and when the ball came, J.
+    /// Total energy at the start, J.
     begun: f32,
+    /// Largest increase of the energy until the ball comes, J.
     most: f32,
+    /// Total energy when the ball comes, J.
     ball: Option<f32>,
+    /// Largest increase of the energy since then, J.
     most_with_ball: f32,
-    /// Places of the points at rest, m, the fastest of them, m/s, and the springs' weight across the middle, N.
+    /// State at rest, before the ball and at the end.
     rests: [Option<Rest>; 2],
-    /// The deepest that the middle of the top has been, m.
+    /// Largest drop of the highest point since the rest before the ball, m.
     deepest: f32,
 }
 
 struct Rest {
+    /// Positions of the points, m.
     places: Vec<Vec3>,
+    /// Greatest speed of a point, m/s.
     fastest: f32,
+    /// Vertical force of the springs across a cut at half height, and the weight of the points above it, N.
     carried: [f32; 2],
 }
 
@@ -56,7 +63,7 @@ pub fn record(
         .map(|(_, r)| r.stored_energy + r.dissipated_energy)
         .sum::<f32>();
     if let Ok(ball) = balls.single() {
-        // Its turning too: 2/5 m r² ω² of a ball that rolls is 2/5 m v².
+        // Includes the rotation: 2/5 m r² ω² of a rolling ball is 2/5 m v².
         let turning = 0.2 * WEIGHT * (ball::RADIUS * ball.1.angular.length()).powi(2);
         all += energy(WEIGHT, ball) + turning;
         let begun = *seen.ball.get_or_insert(all);
@@ -88,7 +95,7 @@ pub fn record(
     }
 }
 
-/// At rest: where, how fast, and what springs carry across a cut in the middle.
+/// Returns positions, greatest speed, and the force across a cut at half height.
 fn look(
     jelly: &Jelly,
     points: &Query<(&Transform, &Velocity), With<Point>>,
@@ -117,7 +124,8 @@ fn look(
     })
 }
 
-/// Largest difference from where statics has the points that do not touch the ground, and how far these have sagged, m.
+/// Returns the largest difference from statics of the points that do not touch the ground, and the sag of the top in
+/// statics, m.
 fn against_statics(places: &[Vec3]) -> [f32; 2] {
     let stays: Vec<bool> = places.iter().map(|p| p.y < RADIUS + 0.01).collect();
     let exact: Vec<DVec3> = places.iter().map(|p| p.as_dvec3()).collect();

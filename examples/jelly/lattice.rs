@@ -1,4 +1,4 @@
-//! Points and springs.
+//! The points of the jelly and the springs between them.
 
 use super::skin::skin;
 use bevy::prelude::*;
@@ -7,31 +7,32 @@ use bevy_rapier3d::prelude::*;
 use stage::{Paint, Shape};
 use std::f32::consts::FRAC_PI_4;
 
-/// Points along an edge, and from point to point, m.
+/// Number of points along an edge.
 pub const SIDE: usize = 4;
+/// Distance between neighbouring points, m.
 pub const PITCH: f32 = 0.15;
-/// Of the ball that each point is to what it touches, m.
+/// Radius of the ball collider of a point, m.
 pub const RADIUS: f32 = 0.05;
-/// Of a point, kg.
+/// Mass of a point, kg.
 pub const MASS: f32 = 0.25;
-/// N/m: along the edges of the cells, and across their faces and through them.
+/// Stiffness of the springs along the edges of a cell, across its faces, and through its middle, N/m.
 const STIFFNESS: [f32; 3] = [400.0, 200.0, 200.0];
 /// Damping over stiffness, s.
 const DAMPING: f32 = 0.014;
-/// Of the middle above the ground, m.
+/// Height of the jelly's middle above the ground at the start, m.
 const DROP: f32 = 0.75;
 
-/// What points touch: the ground and the ball, not each other.
+/// Group of the points. They collide with the ground and the ball, not with each other.
 const POINTS: Group = Group::GROUP_1;
 
-/// Points by their place in the lattice.
+/// Entities of the points, in the order of [`index`].
 #[derive(Resource)]
 pub struct Jelly(pub Vec<Entity>);
 
 #[derive(Component)]
 pub struct Point;
 
-/// On a spring: numbers of its ends.
+/// On a spring: indices of its two points.
 #[derive(Component, Clone, Copy)]
 pub struct Link(pub [usize; 2]);
 
@@ -39,7 +40,7 @@ pub fn index([x, y, z]: [usize; 3]) -> usize {
     (z * SIDE + y) * SIDE + x
 }
 
-/// Of a point in the lattice, m from its middle.
+/// Returns the position of a point relative to the middle of the lattice, m.
 pub fn place([x, y, z]: [usize; 3]) -> Vec3 {
     PITCH * (Vec3::new(x as f32, y as f32, z as f32) - 0.5 * (SIDE - 1) as f32)
 }
@@ -49,7 +50,7 @@ pub fn all() -> impl Iterator<Item = [usize; 3]> {
     (0..n).flat_map(move |z| (0..n).flat_map(move |y| (0..n).map(move |x| [x, y, z])))
 }
 
-/// Pairs of points that a spring links, and its stiffness (N/m) and length without force (m).
+/// Returns each pair of points that a spring links, with the spring's stiffness (N/m) and rest length (m).
 pub fn links() -> Vec<([usize; 2], f32, f32)> {
     let mut links = Vec::new();
     for a in all() {
@@ -68,7 +69,7 @@ pub fn links() -> Vec<([usize; 2], f32, f32)> {
 
 pub fn spawn(mut commands: Commands) {
     ground(&mut commands);
-    // On an edge, and a little aside.
+    // The cube stands on an edge, slightly tilted.
     let turned = Quat::from_euler(EulerRot::YXZ, 0.5, -0.25, 0.8 * FRAC_PI_4);
     let points: Vec<Entity> = all()
         .map(|at| {
@@ -107,7 +108,7 @@ pub fn spawn(mut commands: Commands) {
     commands.insert_resource(Jelly(points));
 }
 
-/// A tray: what rolls stays on it.
+/// Spawns a tray with a rim, so that nothing rolls off.
 fn ground(commands: &mut Commands) {
     let (half, rim) = (Vec3::new(1.1, 0.05, 0.9), 0.06);
     commands.spawn((

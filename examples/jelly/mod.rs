@@ -1,4 +1,4 @@
-//! The jelly in its parts: lattice, skin, the ball, what is measured, and statics to measure against.
+//! Modules of the example: lattice, skin, ball, measurements, and the statics to compare with.
 
 mod ball;
 mod findings;
@@ -13,10 +13,10 @@ use stage::{Begin, fresh};
 
 pub use findings::check;
 
-/// When the ball falls, s: the cube has come to rest.
+/// Time at which the ball falls, s: the cube is at rest by then.
 const BALL: f32 = 8.0;
 pub const SECONDS: f32 = 18.0;
-/// The ball is in the jelly.
+/// Time of the screenshot, s: the ball is in the jelly.
 pub const PICTURE: f32 = BALL + 0.52;
 
 pub fn setup(app: &mut App) {

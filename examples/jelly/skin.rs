@@ -1,14 +1,15 @@
-//! A surface about the lattice: as far from the points' hull as the balls reach that they are to what they touch.
+//! The surface of the jelly, outside the hull of the points by the radius of their ball colliders.
 
 use super::lattice::{PITCH, RADIUS, SIDE, all, index};
 use bevy::prelude::*;
 use stage::{Paint, Skin, Vertex};
 use std::collections::HashMap;
 
-/// Parts of a cell's edge.
+/// Number of parts that a cell's edge is divided into.
 const PARTS: usize = 4;
-/// Last place in the lattice, and how far the surface is outside, in cells.
+/// Last index of the lattice along an axis.
 const LAST: f32 = (SIDE - 1) as f32;
+/// Distance of the surface from the points' hull, in cells.
 const OUT: f32 = RADIUS / PITCH;
 
 pub fn skin(points: &[Entity]) -> Skin {
@@ -56,13 +57,13 @@ pub fn skin(points: &[Entity]) -> Skin {
     }
 }
 
-/// The nearest place that is just so far from the points' hull.
+/// Returns the nearest position at that distance from the points' hull.
 fn rounded(at: Vec3) -> Vec3 {
     let inner = at.clamp(Vec3::ZERO, Vec3::splat(LAST));
     inner + OUT * (at - inner).normalize_or_zero()
 }
 
-/// Weights of the points whose weighted mean is at a place in the lattice.
+/// Returns the points to follow, with the weights whose weighted mean gives this position in the lattice.
 fn follows(at: Vec3, points: &[Entity]) -> Vec<(Entity, f32)> {
     let weights = at.to_array().map(weights);
     let each = all().map(|p| {
@@ -72,13 +73,13 @@ fn follows(at: Vec3, points: &[Entity]) -> Vec<(Entity, f32)> {
     each.filter(|(_, weight)| *weight != 0.0).collect()
 }
 
-/// Catmull and Rom's curve through the points of a row, and straight on beyond its ends.
+/// Returns the weights of a Catmull-Rom curve through a row of points, extended straight beyond its ends.
 fn weights(t: f32) -> [f32; SIDE] {
     let mut weights = [0.0; SIDE];
     let cell = (t.floor().max(0.0) as usize).min(SIDE - 2);
     let s = t - cell as f32;
     let mut add = |place: usize, weight: f32| {
-        // Before the first and after the last, straight on.
+        // Extrapolates straight before the first and after the last point.
         if place == 0 {
             weights[0] += 2.0 * weight;
             weights[1] -= weight;

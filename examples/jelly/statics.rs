@@ -1,15 +1,16 @@
-//! Where the points of a jelly must rest that stands on some of them: least energy, found by going down its slope.
+//! The shape of the jelly at rest on some of its points: minimum energy, by gradient descent.
 
 use super::lattice::{MASS, links};
 use bevy::math::DVec3;
 
 const GRAVITY: f64 = 9.81;
-/// Of a step down the slope, m²/J; and what a step keeps of the one before.
+/// Step of the gradient descent, m²/J.
 const STEP: f64 = 1e-4;
+/// Share of the last step that the next one keeps (momentum).
 const KEEP: f64 = 0.98;
 const STEPS: usize = 6000;
 
-/// From these places, of which some stay, to those of least energy.
+/// Returns the positions of minimum energy, starting from `places`. Points with `stays` do not move.
 pub fn rest(mut places: Vec<DVec3>, stays: &[bool]) -> Vec<DVec3> {
     let links = links();
     let mut moves = vec![DVec3::ZERO; places.len()];

@@ -1,4 +1,4 @@
-//! The bridge: planks on two ropes that are tied to their corners, and a rope for each hand, which hangs above them.
+//! The bridge: planks tied by their corners to two ropes, and a rope for each hand above them.
 
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
@@ -7,56 +7,59 @@ use stage::{Paint, Rope, Shape};
 
 pub const GRAVITY: f32 = 9.81;
 pub const PLANKS: usize = 20;
-/// From plank to plank, m.
+/// Distance between neighbouring planks, m.
 pub const PITCH: f32 = 0.5;
-/// Of a plank, m and kg.
+/// Size of a plank, m.
 pub const SIZE: Vec3 = Vec3::new(0.4, 0.04, 1.1);
+/// Mass of a plank, kg.
 pub const PLANK: f32 = 6.0;
-/// Of a hand rope between two planks, kg.
+/// Mass of a hand rope between two planks, kg.
 pub const ROPE: f32 = 0.4;
-/// Of the banks from the middle, m.
+/// Distance of the banks from the middle, m.
 pub const EDGE: f32 = 0.5 * PITCH * PLANKS as f32 + 0.05;
-/// How far the middle is below the banks, m.
+/// Sag of the middle below the banks, m.
 pub const SAG: f32 = 0.75;
-/// Of the hand ropes above the planks' ropes, m.
+/// Height of the hand ropes above the planks' ropes, m.
 pub const RAIL: f32 = 0.95;
-/// Of the ropes from the middle of the bridge, m.
+/// Lateral distance of the ropes from the middle of the bridge, m.
 const SIDE: f32 = 0.5;
-/// Of the planks' ropes and the hand ropes from plank to plank, and of the hangers, N/m.
+/// Stiffness of the planks' ropes from plank to plank, N/m.
 const FOOT: f32 = 3e5;
+/// Stiffness of the hand ropes from plank to plank, N/m.
 const HAND: f32 = 1e5;
+/// Stiffness of the hangers, N/m.
 const HANGER: f32 = 2e4;
-/// Of the gorge, m.
+/// Depth of the gorge, m.
 pub const DEPTH: f32 = 3.2;
 
-/// What the walker may stand on.
+/// Colliders that the walker can stand on.
 pub const GROUND: CollisionGroups = CollisionGroups::new(Group::GROUP_1, Group::GROUP_1);
 
-/// Its place in the row.
+/// Marks a plank.
 #[derive(Component)]
 pub struct Plank;
 
-/// On an element that is tied to the bank on this side: -1 or 1.
+/// On an element that is tied to a bank: the bank's side, -1 or 1.
 #[derive(Component)]
 pub struct AtBank(pub f32);
 
-/// On an element over the middle of the bridge.
+/// Marks an element over the middle of the bridge.
 #[derive(Component)]
 pub struct InTheMiddle;
 
-/// A parabola: how far the bridge hangs down.
+/// Returns the height of the planks' ropes relative to the banks, m: a parabola.
 fn height(x: f32) -> f32 {
     SAG * ((x / EDGE).powi(2) - 1.0)
 }
 
-/// Where a plank is, and how it lies.
+/// Returns position and orientation of a plank.
 fn place(i: usize) -> Transform {
     let x = PITCH * (i as f32 - 0.5 * (PLANKS - 1) as f32);
     let slope = 2.0 * SAG * x / (EDGE * EDGE);
     Transform::from_xyz(x, height(x), 0.0).with_rotation(Quat::from_rotation_z(slope.atan()))
 }
 
-/// Tension of a rope whose sections weigh so much, N.
+/// Returns the horizontal tension of a rope with this mass in each section (kg), N.
 fn tension(section: f32) -> f32 {
     section * GRAVITY / PITCH * EDGE * EDGE / (2.0 * SAG)
 }
@@ -72,7 +75,7 @@ pub fn spawn(mut commands: Commands) {
             Transform::from_xyz(side * (EDGE + half.x), -half.y, 0.0),
             Shape::Cuboid(2.0 * half, Paint::Sand),
         ));
-        // Posts, and turf.
+        // Posts and turf.
         bank.with_children(|parts| {
             for z in [-SIDE - 0.05, SIDE + 0.05] {
                 parts.spawn((
@@ -108,7 +111,7 @@ fn plank(commands: &mut Commands, i: usize) -> Entity {
         Collider::cuboid(0.5 * SIZE.x, 0.5 * SIZE.y, 0.5 * SIZE.z),
         ColliderMassProperties::Mass(PLANK),
         GROUND,
-        // Air, and ropes that rub.
+        // Drag of the air and friction in the ropes.
         Damping {
             linear_damping: 1.0,
             angular_damping: 1.0,
@@ -120,12 +123,12 @@ fn plank(commands: &mut Commands, i: usize) -> Entity {
     commands.spawn((body, place(i), look, Plank)).id()
 }
 
-/// Where a point of the bank lies in its frame.
+/// Converts a point at the edge of a bank to the frame of the bank.
 fn on_bank(side: f32, height: f32, z: f32) -> Vec3 {
     Vec3::new(-3.0 * side, 0.5 * DEPTH + height, z)
 }
 
-/// From corner to corner, at rest under the weight of the planks.
+/// Spawns a rope from plank corner to plank corner, in equilibrium with the weight of the planks.
 fn foot_rope(commands: &mut Commands, banks: [Entity; 2], planks: &[Entity], z: f32) {
     let force = tension(0.5 * PLANK);
     let corner = |side: f32| Vec3::new(0.5 * side * SIZE.x, 0.0, z);
@@ -167,7 +170,7 @@ fn foot_rope(commands: &mut Commands, banks: [Entity; 2], planks: &[Entity], z: 
     }
 }
 
-/// From point to point above the planks, tied to their edges.
+/// Spawns a rope from point to point above the planks, tied to their edges.
 fn hand_rope(commands: &mut Commands, banks: [Entity; 2], planks: &[Entity], z: f32) {
     let force = tension(ROPE);
     let at = |i: usize| place(i).translation + Vec3::new(0.0, RAIL, z);

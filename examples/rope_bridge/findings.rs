@@ -1,4 +1,4 @@
-//! What is measured while the walker stands, against statics.
+//! Compares the measurements while the walker stands with statics.
 
 use super::bridge::*;
 use super::walker::{FOOT, HALF, MASS, QUARTER, ROUND, Walker};
@@ -7,34 +7,36 @@ use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
 use stage::{DT, Finding};
 
-/// Where the walker stands, with the seconds over which means are taken.
+/// Time span of the means while the walker stands in the middle, s.
 const MIDDLE: [f32; 2] = [20.0, 22.0];
+/// Time span of the means while the walker stands at a quarter of the bridge, s.
 const ASIDE: [f32; 2] = [36.0, 38.0];
+/// Time span of the means after the walker has left the bridge, s.
 const GONE: [f32; 2] = [57.0, 59.0];
 
-/// Means of a stand.
+/// Means over one of these time spans.
 #[derive(Clone, Copy, Default, Debug)]
 struct Stand {
-    /// Force on the left and the right bank, downwards, N.
+    /// Downward force on the first and on the second bank in walking direction, N.
     banks: [f32; 2],
-    /// Horizontal tension in the middle, of all ropes, N.
+    /// Horizontal tension of all ropes in the middle, N.
     pull: f32,
-    /// The same times how far each is below its ends, N m.
+    /// Sum over these ropes of horizontal tension times depth below the rope's ends, N m.
     moment: f32,
-    /// Of the planks' ropes in the middle, m.
+    /// Sag of the planks' ropes in the middle, m.
     sag: f32,
-    /// Fastest plank, m/s.
+    /// Greatest speed of a plank, m/s.
     speed: f32,
 }
 
-/// The latest of each.
+/// The latest means for each time span.
 #[derive(Resource, Default)]
 pub struct Seen {
     middle: Stand,
     aside: Stand,
     gone: Stand,
     now: Stand,
-    /// Least and most of the walker's feet over the rope's line, m.
+    /// Least and greatest height of the walker's feet above the plank's upper side, m.
     feet: Option<[f32; 2]>,
     faults: usize,
 }
@@ -59,7 +61,7 @@ pub fn record(
         let from = |at: &Transform| (at.translation.x - walker.translation.x).abs();
         let below = planks.iter().min_by(|a, b| from(a.0).total_cmp(&from(b.0)));
         if let Some((plank, _)) = below.filter(|(plank, _)| from(plank) < 0.5 * SIZE.x) {
-            // Over the plank's upper side, along its own up.
+            // Height above the plank's upper side, along the plank's own up axis.
             let foot = walker.translation - HALF * Vec3::Y;
             let gap = plank.rotation.inverse() * (foot - plank.translation);
             let gap = gap.y - 0.5 * SIZE.y;
@@ -83,7 +85,7 @@ pub fn record(
             };
             let force = readout.force() * (b - a).normalize() / ticks;
             if let Some(AtBank(side)) = bank {
-                // On the way back, left is right.
+                // On the way back, left and right are swapped.
                 let first = (*side < 0.0) == there;
                 now.banks[usize::from(!first)] += side * force.y;
             }
@@ -100,7 +102,7 @@ pub fn record(
         let speeds = planks.iter().map(|(_, v)| v.linear.length());
         now.speed = speeds.fold(now.speed, f32::max);
         seen.now = now;
-        // The last tick of it.
+        // The last tick of the time span.
         if t > to - 0.5 * DT {
             let now = std::mem::take(&mut seen.now);
             *match which {
@@ -112,12 +114,12 @@ pub fn record(
     }
 }
 
-/// Weight of all that hangs between the banks, N: the planks' ropes weigh nothing.
+/// Returns the weight of everything between the banks, N. The planks' ropes have no mass.
 fn weight() -> f32 {
     (PLANK + 2.0 * ROPE) * GRAVITY * PLANKS as f32
 }
 
-/// Moment in the middle of a beam with that weight and a walker in its middle, N m.
+/// Returns the moment in the middle of a beam with that weight and a walker in its middle, N m.
 fn moment(walker: f32) -> f32 {
     let planks = (0..PLANKS / 2).map(|i| (i as f32 + 0.5) * PITCH);
     let hanging: f32 = planks.map(|x| (PLANK + 2.0 * ROPE) * GRAVITY * x).sum();
@@ -132,7 +134,7 @@ pub fn check(world: &mut World) -> Vec<Finding> {
     let Stand { sag, speed, .. } = seen.gone;
     let [least, most] = seen.feet.unwrap_or([f32::NAN; 2]);
     let sag_of = |what, stand: &Stand, walker| {
-        // All ropes hang as far down, in the mean.
+        // On average all ropes have the same sag.
         let measured = stand.moment / stand.pull;
         Finding::close(what, measured, moment(walker) / stand.pull, "m", 0.01)
     };

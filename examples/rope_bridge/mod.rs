@@ -1,4 +1,4 @@
-//! The rooms of the example: the bridge, who walks over it, and what is measured.
+//! Modules of the example: the bridge, the walker, and the measurements.
 
 mod bridge;
 mod findings;
@@ -11,9 +11,9 @@ use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
 use stage::{self, Begin, Lasting};
 
-/// Seconds of one way over the bridge, with all its stops.
+/// Duration of one way over the bridge with all stops, s.
 pub const SECONDS: f32 = walker::ROUND;
-/// Second of the picture: in the middle.
+/// Time of the screenshot, s: the walker is in the middle.
 pub const PICTURE: f32 = 12.0;
 
 pub fn setup(app: &mut App) {

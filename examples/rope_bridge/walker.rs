@@ -1,5 +1,5 @@
-//! Who walks: a character controller, which goes where it is told and stays on what is below it. It moves nothing by itself,
-//! so its weight is given to the planks as a force at its feet.
+//! The walker: a character controller that moves as told and stays on the ground below it. It applies no force by
+//! itself, so its weight is applied to the planks as a force at its feet.
 
 use super::bridge::{EDGE, GRAVITY, GROUND, Plank, SIZE};
 use bevy::prelude::*;
@@ -8,22 +8,23 @@ use bevy_rapier3d::prelude::*;
 use stage::{DT, Paint, Shape};
 use std::f32::consts::PI;
 
-/// kg
+/// Mass of the walker, kg.
 pub const MASS: f32 = 75.0;
-/// Of the capsule, m.
+/// Radius of the capsule, m.
 const RADIUS: f32 = 0.22;
+/// Half the height of the capsule, m.
 pub const HALF: f32 = 0.85;
-/// m/s
+/// Walking speed, m/s.
 const SPEED: f32 = 1.3;
-/// As fast as it falls where nothing is below it, m/s.
+/// Falling speed where nothing is below the walker, m/s.
 const FALL: f32 = 2.0;
-/// Of the feet before and behind the middle, m.
+/// Distance of each foot from the middle, forward and backward, m.
 pub const FOOT: f32 = 0.12;
-/// Of a step, m.
+/// Length of a step, m.
 const STEP: f32 = 0.7;
-/// Seconds of one way over, and of there and back.
+/// Duration of one way over the bridge, s.
 pub const ROUND: f32 = 60.0;
-/// When the walker sets out for where, on the way to the right.
+/// Times (s) at which the walker sets out, with the destinations (m), on the way to the right.
 const STOPS: [(f32, f32); 4] = [
     (0.0, -EDGE - 0.5),
     (2.0, 0.0),
@@ -34,16 +35,16 @@ pub const QUARTER: f32 = 0.5 * EDGE;
 
 #[derive(Component, Default)]
 pub struct Walker {
-    /// How far it has walked, m.
+    /// Distance walked, m.
     walked: f32,
-    /// Someone has taken over.
+    /// Whether a player has taken over.
     by_hand: bool,
 }
 
 #[derive(Component)]
 pub struct Leg(f32);
 
-/// Where the walker is to be: there and back again.
+/// Returns the destination of the walker, there and back again, m.
 fn goal(time: f32) -> f32 {
     let (there, t) = (((time / ROUND) as u32).is_multiple_of(2), time % ROUND);
     let last = STOPS.iter().rev().find(|stop| stop.0 <= t);
@@ -54,7 +55,7 @@ pub fn spawn(mut commands: Commands) {
     let body = (
         RigidBody::KinematicPositionBased,
         Collider::capsule_y(HALF - RADIUS, RADIUS),
-        // Nothing collides with it: it would push as if it weighed endlessly much.
+        // No body collides with it: it would push with unlimited force.
         CollisionGroups::new(Group::GROUP_1, Group::NONE),
         KinematicCharacterController {
             filter_groups: Some(GROUND),
@@ -104,7 +105,7 @@ pub fn walk(
     }
 }
 
-/// Half the weight on each foot, on the plank that is nearest to it.
+/// Applies half the weight at each foot, to the plank nearest to that foot.
 pub fn tread(
     walkers: Query<&Transform, With<Walker>>,
     mut planks: Query<(&Transform, &mut ExternalForce), With<Plank>>,
@@ -133,7 +134,7 @@ pub fn tread(
     }
 }
 
-/// Feet go to and fro, as far as the walker does.
+/// Swings the legs with the distance walked.
 pub fn swing_legs(walkers: Query<&Walker>, mut legs: Query<(&mut Transform, &Leg)>) {
     for walker in &walkers {
         for (mut leg, side) in &mut legs {

@@ -1,43 +1,43 @@
-//! Scenes that start again: by themselves when they have shown what there is, or when asked to.
+//! Restarts a scene: automatically after its time, or on request.
 
 use super::DT;
 use bevy::ecs::schedule::ScheduleLabel;
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 
-/// Spawns a scene: at the start, and every time it starts again.
+/// Schedule that spawns a scene, at the start and at every restart.
 #[derive(ScheduleLabel, Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Begin;
 
-/// On what stays when a scene starts again: camera and light.
+/// Marks entities that survive a restart: camera and light.
 #[derive(Component)]
 pub struct Stays;
 
-/// When the scene starts again.
+/// When the scene restarts.
 #[derive(Resource)]
 pub struct Again {
-    /// At this second of its own time.
+    /// Time of the scene at which it restarts, s.
     after: f32,
-    /// But not before this one: someone has it in hand.
+    /// Earliest time of the restart, s: later while a player interacts with the scene.
     not_before: f32,
     pub asked: bool,
-    /// How often it has.
+    /// Number of restarts so far.
     pub times: u32,
 }
 
 impl Again {
-    /// Leaves whoever plays with the scene at `now` some time more.
+    /// Delays the restart, because a player interacts with the scene at `now`, s.
     pub fn leave_time(&mut self, now: f32) {
         self.not_before = now + 8.0;
     }
 }
 
-/// Makes a resource new at each start; the scene's other systems have it from the first tick.
+/// Resets a resource at each start. The scene's other systems have it from the first tick.
 pub fn fresh<R: Resource + Default>(mut commands: Commands) {
     commands.insert_resource(R::default());
 }
 
-/// Ticks since the scene began; 1 in the first.
+/// Returns the number of ticks since the scene began; 1 in the first.
 pub fn tick(time: &Time) -> u32 {
     (time.elapsed_secs() / DT).round() as u32
 }
@@ -48,7 +48,7 @@ pub(super) fn begin(app: &mut App) {
         .add_systems(Startup, |world: &mut World| world.run_schedule(Begin));
 }
 
-/// Starts the scene again after so many seconds, over and over.
+/// Restarts the scene every `after` seconds.
 pub(super) fn repeat(app: &mut App, after: f32) {
     app.insert_resource(Again {
         after,
@@ -56,7 +56,7 @@ pub(super) fn repeat(app: &mut App, after: f32) {
         asked: false,
         times: 0,
     })
-    // Within the tick: the engine hears of what is gone in the same one, however many frames there are.
+    // Within the tick, so that Rapier sees removed entities in the same tick, however many frames there are.
     .add_systems(FixedFirst, start_again);
 }
 
@@ -75,7 +75,7 @@ fn start_again(world: &mut World) {
     )>();
     let gone: Vec<Entity> = scene.iter(world).collect();
     for entity in gone {
-        // Children went with their parents.
+        // Children were despawned with their parents.
         if let Ok(entity) = world.get_entity_mut(entity) {
             entity.despawn();
         }

@@ -1,10 +1,10 @@
-//! What an example measures, and whether it is as theory says.
+//! The measurements of an example, and whether they agree with theory.
 
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use std::fmt;
 
-/// A figure against its theory.
+/// A measured value compared with theory.
 pub struct Finding {
     text: String,
     pub good: bool,
@@ -22,7 +22,7 @@ impl fmt::Display for Finding {
 }
 
 impl Finding {
-    /// Good where measured and theory differ by less than this share of the theory.
+    /// Good if measured and theory differ by less than this share of the theory.
     pub fn close(what: &str, measured: f32, theory: f32, unit: &str, share: f32) -> Self {
         let error = measured / theory - 1.0;
         Self {
@@ -34,7 +34,7 @@ impl Finding {
         }
     }
 
-    /// Good where a figure that should be zero is smaller than this.
+    /// Good if a value that should be zero is below this limit.
     pub fn small(what: &str, measured: f32, limit: f32, unit: &str) -> Self {
         Self {
             text: format!("{what}: {measured:.2e} {unit}, at most {limit:.0e} {unit}"),
@@ -42,7 +42,7 @@ impl Finding {
         }
     }
 
-    /// Good where a figure lies between two.
+    /// Good if a value lies between two limits.
     pub fn between(what: &str, measured: f32, least: f32, most: f32, unit: &str) -> Self {
         Self {
             text: format!("{what}: {measured:.3} {unit}, between {least} and {most} {unit}"),
@@ -51,12 +51,12 @@ impl Finding {
     }
 }
 
-/// On an element: its read-outs, tick by tick, with the time in seconds.
+/// On an element: its read-outs in each tick, with the time in seconds.
 #[derive(Component, Default)]
 pub struct Track(pub Vec<(f32, SpringReadout)>);
 
 impl Track {
-    /// How often a second the length passes this one on its way up, Hz; not a number if hardly ever.
+    /// Returns how often a second the length rises through this value, Hz, or NaN with fewer than two crossings.
     pub fn frequency(&self, middle: f32) -> f32 {
         let crossings: Vec<f32> = self
             .0
@@ -73,10 +73,10 @@ impl Track {
         }
     }
 
-    /// The largest difference of the length from a function of time (s), m.
+    /// Returns the largest difference of the length from a function of time (s), m.
     pub fn error(&self, theory: impl Fn(f32) -> f32) -> f32 {
         let errors = self.0.iter().map(|(t, r)| (r.length - theory(*t)).abs());
-        // Unlike `f32::max`, it lets no NaN pass.
+        // Unlike `f32::max`, this keeps a NaN.
         errors.fold(
             0.0,
             |most, e| {
@@ -85,13 +85,13 @@ impl Track {
         )
     }
 
-    /// The last read-out.
+    /// Returns the last read-out.
     pub fn last(&self) -> SpringReadout {
         self.0.last().map(|l| l.1).unwrap_or_default()
     }
 }
 
-/// All that was tracked, in the order of spawning.
+/// Returns all tracks, in the order of spawning.
 pub fn tracks(world: &mut World) -> Vec<&Track> {
     let mut query = world.query::<(Entity, &Track)>();
     let mut all: Vec<_> = query.iter(world).collect();

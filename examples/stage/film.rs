@@ -1,4 +1,4 @@
-//! Frames without a window.
+//! Renders frames without a window.
 
 use super::means::Film;
 use super::progress::Progress;
@@ -7,15 +7,17 @@ use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use std::path::{Path, PathBuf};
 
-/// Width and height, pixels; `--small` halves them, for a processor draws a quarter of the pixels in less than half the time.
+/// Width and height, pixels. `--small` halves them: a processor draws a quarter of the pixels in less than half the
+/// time.
 const SIZE: (u32, u32) = (1280, 720);
-/// Frames of a film.
+/// Number of frames of a film.
 const FRAMES: u32 = 48;
-/// Pictures a second of the last seconds, and how many seconds these are; `pictures` makes an animation of them.
+/// Pictures a second for a film of the last seconds. `pictures` makes an animation of them.
 const RATE: u32 = 20;
+/// Duration of a film of the last seconds, s.
 const LENGTH: u32 = 3;
 
-/// Writes the pictures; whether the check holds is for the exit code too.
+/// Writes the pictures. The exit code also tells whether the check holds.
 pub fn shoot(stage: &Stage, film: Film) -> AppExit {
     let ticks = (stage.seconds / DT).round() as u32;
     let (frames, folder) = match &film {
@@ -45,9 +47,9 @@ pub fn shoot(stage: &Stage, film: Film) -> AppExit {
     );
     app.finish();
     app.cleanup();
-    // Everything is spawned, and no time passes yet.
+    // Spawns everything before time passes.
     pass(&mut app, 0);
-    // A single picture may be of an earlier moment than the check.
+    // A single picture may show an earlier time than the check.
     let shown = match (&film, app.world().get_resource::<PictureAt>()) {
         (Film::Still(_), Some(at)) => (at.0 / DT).round() as u32,
         _ => ticks,
@@ -63,7 +65,7 @@ pub fn shoot(stage: &Stage, film: Film) -> AppExit {
     offscreen::settle(&mut app);
     let mut taken = 0;
     for frame in 0..frames {
-        // All the ticks up to this frame in one update, then one picture of where they led.
+        // All ticks up to this frame in one update, then one picture of the result.
         let upto = |f: u32| begun + (shown - begun) * f / frames;
         let mut ticks = upto(frame + 1) - upto(frame);
         if app.world().contains_resource::<TickByTick>() && ticks > 1 {
@@ -101,14 +103,15 @@ pub fn shoot(stage: &Stage, film: Film) -> AppExit {
 
 fn save(picture: Image, path: &Path) -> Result<(), String> {
     let picture = picture.try_into_dynamic().map_err(|e| e.to_string())?;
-    // Under its name only when it is whole: whoever stops the program finds no half of one.
+    // The file gets its name only when it is complete, so a stopped program leaves no partial picture under that
+    // name.
     let unfinished = path.with_extension("part.png");
     let saved = picture.to_rgb8().save(&unfinished);
     saved.map_err(|e| e.to_string())?;
     std::fs::rename(unfinished, path).map_err(|e| e.to_string())
 }
 
-/// So many fixed ticks, in one update if they can be.
+/// Advances by a number of fixed ticks, in one update if possible.
 fn pass(app: &mut App, ticks: u32) {
     let at_once = match app.world().contains_resource::<TickByTick>() {
         true => 1,
@@ -121,10 +124,10 @@ fn pass(app: &mut App, ticks: u32) {
     set_ticks(app, 0);
 }
 
-/// The clock of the next updates: so many fixed ticks each.
+/// Sets the number of fixed ticks in each of the next updates.
 fn set_ticks(app: &mut App, ticks: u32) {
     let tick = app.world().resource::<Time<Fixed>>().timestep();
-    // Virtual time would cut a long frame short; a film has no such frames to hurry over.
+    // By default virtual time would shorten a long frame. A film needs every tick.
     app.world_mut()
         .resource_mut::<Time<Virtual>>()
         .set_max_delta(std::time::Duration::from_secs(3600));

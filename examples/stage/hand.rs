@@ -1,4 +1,4 @@
-//! A hand that pulls bodies: the pointer picks one, and a `MouseSpring` pulls it.
+//! Lets the pointer pick a body and pull it with a `MouseSpring`.
 
 use super::{Again, Shape};
 use bevy::prelude::*;
@@ -8,11 +8,11 @@ use bevy_rapier3d::prelude::*;
 
 const COLOR: Color = Color::srgb(1.0, 0.55, 0.1);
 
-/// What the pointer has hold of.
+/// What the pointer holds.
 #[derive(Resource, Default)]
 pub struct Hand {
     grip: Option<Grip>,
-    /// The [`MouseSpring`] that pulls it.
+    /// The [`MouseSpring`] that pulls the body.
     spring: Option<Entity>,
 }
 
@@ -22,25 +22,25 @@ impl Hand {
     }
 }
 
-/// Where a body is held.
+/// The point at which a body is held.
 struct Grip {
     body: Entity,
-    /// In the body's frame.
+    /// Held point in the body's frame, m.
     anchor: Vec3,
-    /// From the eye, m.
+    /// Distance from the camera, m.
     distance: f32,
-    /// Where the pointer is at that distance.
+    /// Position of the pointer at that distance, m.
     pointer: Vec3,
 }
 
 pub fn add(app: &mut App) {
     app.init_resource::<Hand>()
         .add_systems(Update, (grab, draw).chain())
-        // Within the tick, as the engine wants to hear of all that is spawned and despawned.
+        // Within the tick, where Rapier's plugin expects entities to be spawned and despawned.
         .add_systems(FixedPreUpdate, pull);
 }
 
-/// Takes the body below the pointer when the button goes down, follows it, and lets go.
+/// Picks the body below the pointer when the button goes down, follows the pointer, and releases the body.
 pub fn grab(
     mut hand: ResMut<Hand>,
     buttons: Res<ButtonInput<MouseButton>>,
@@ -89,7 +89,7 @@ pub fn grab(
     }
 }
 
-/// How far along a ray a box about a transform's origin begins.
+/// Returns the distance along a ray to a box about a transform's origin.
 fn distance_to(ray: Ray3d, half: Vec3, at: &GlobalTransform) -> Option<f32> {
     let inverse = at.affine().inverse();
     let from = inverse.transform_point3(ray.origin);
@@ -99,7 +99,7 @@ fn distance_to(ray: Ray3d, half: Vec3, at: &GlobalTransform) -> Option<f32> {
     (enter <= leave && enter > 0.0).then_some(enter)
 }
 
-/// Keeps the spring between pointer and body, as long as both are there.
+/// Keeps the spring between pointer and body while both exist.
 fn pull(
     mut hand: ResMut<Hand>,
     mut again: ResMut<Again>,
@@ -109,7 +109,7 @@ fn pull(
     mut commands: Commands,
 ) {
     let Hand { grip, spring } = &mut *hand;
-    // Where there is none any more, the scene has started again.
+    // If the body no longer exists, the scene has restarted.
     if let Some(grip) = grip.take_if(|grip| bodies.contains(grip.body)) {
         again.leave_time(time.elapsed_secs());
         let new = MouseSpring::new(grip.body, grip.anchor, grip.pointer);
@@ -126,7 +126,7 @@ fn pull(
     }
 }
 
-/// A line from the pointer to where the body is held.
+/// Draws a line from the pointer to the held point.
 fn draw(hand: Res<Hand>, bodies: Query<&GlobalTransform>, mut gizmos: Gizmos) {
     if let Some(grip) = &hand.grip
         && let Ok(body) = bodies.get(grip.body)

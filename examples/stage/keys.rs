@@ -1,4 +1,4 @@
-//! Keys of every window: start again, pause, one tick, faster and slower.
+//! Keys of every window: restart, pause, single tick, faster and slower.
 
 use super::{Again, Stage};
 use bevy::prelude::*;
@@ -6,10 +6,10 @@ use bevy::prelude::*;
 /// What mouse and keys do, in one sentence.
 pub const SENTENCE: &str = "drag a body to pull it, drag beside it to look around, wheel to zoom; \
     R restarts, space pauses, full stop steps one tick, [ and ] change the speed";
-/// Least and greatest speed of the clock.
+/// Least and greatest speed of the clock, relative to real time.
 const SPEEDS: (f32, f32) = (1.0 / 32.0, 4.0);
 
-/// Inserted by a scene in which the space bar does something else; P pauses there.
+/// Inserted by a scene that uses the space bar for something else. There, P pauses.
 #[derive(Resource)]
 pub struct SpaceIsTaken;
 
@@ -35,7 +35,7 @@ fn press(
 ) {
     if keys.just_pressed(KeyCode::KeyR) {
         again.asked = true;
-        // Seen at once, even while the clock stands.
+        // Visible at once, even while the clock is paused.
         step(&clock, &mut fixed);
     }
     let pause = if taken.is_some() {
@@ -59,7 +59,7 @@ fn press(
     }
 }
 
-/// One tick more in the next frame, where the clock stands.
+/// Runs one more tick in the next frame if the clock is paused.
 fn step(clock: &Time<Virtual>, fixed: &mut Time<Fixed>) {
     if clock.is_paused() {
         let missing = fixed.timestep().saturating_sub(fixed.overstep());
@@ -67,7 +67,7 @@ fn step(clock: &Time<Virtual>, fixed: &mut Time<Fixed>) {
     }
 }
 
-/// The sentence, and how fast the clock runs, in the window's title.
+/// Shows [`SENTENCE`] and the speed of the clock in the window's title.
 fn show(title: &str, clock: Res<Time<Virtual>>, mut windows: Query<&mut Window>) {
     let speed = match (clock.is_paused(), clock.relative_speed()) {
         (true, _) => " (paused)".into(),

@@ -1,4 +1,4 @@
-//! Does a scene still look as it should after many minutes? Watched without drawing anything.
+//! Checks over many minutes, without drawing, that a scene still looks as it should.
 
 use super::{Again, DT, Finding, Stage, again, headless_app};
 use bevy::ecs::schedule::SingleThreadedExecutor;
@@ -6,25 +6,26 @@ use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
 use std::collections::HashMap;
 
-/// On a body that lies askew when it is turned further than this from the world's axes, rad.
+/// On a body that must stay upright: largest rotation from the world's axes, rad.
 #[derive(Component)]
 pub struct Upright(pub f32);
 
-/// Inserted by a `setup`: what must hold after every minute, however many there have been.
+/// Inserted by a `setup`: a check that must hold after every minute, however many have passed.
 #[derive(Resource, Clone, Copy)]
 pub struct Lasting(pub fn(&mut World) -> Vec<Finding>);
 
-/// What drives through the picture may be outside it for so long, s.
+/// Longest time that a body may be outside the picture, s: bodies drive through it.
 const OUTSIDE: f32 = 3.0;
-/// Height of the picture over its distance, halved, and its width over its height.
+/// Half the height of the picture over its distance.
 const HALF: f32 = 0.309_336;
+/// Width of the picture over its height.
 const ASPECT: f32 = 16.0 / 9.0;
 
-/// Runs the scene for so long; fails as soon as a body has left the picture or lies askew.
+/// Runs the scene for this time. Fails as soon as a body has left the picture or is no longer upright.
 pub fn watch(stage: &Stage, minutes: f32) -> AppExit {
     let mut app = headless_app(stage);
     again::repeat(&mut app, stage.again);
-    // For so little in each system, threads cost more than they gain.
+    // Each system does so little that threads cost more than they gain.
     for (_, schedule) in app.world_mut().resource_mut::<Schedules>().iter_mut() {
         schedule.set_executor(SingleThreadedExecutor::new());
     }
@@ -59,7 +60,7 @@ pub fn watch(stage: &Stage, minutes: f32) -> AppExit {
     AppExit::Success
 }
 
-/// Whether all is still as it should be after so many minutes; says what is not.
+/// Returns whether the check holds after this number of minutes, and prints what does not.
 fn lasts(world: &mut World, minutes: u32) -> bool {
     let Some(Lasting(check)) = world.get_resource().copied() else {
         return true;
@@ -75,7 +76,8 @@ fn lasts(world: &mut World, minutes: u32) -> bool {
     findings.iter().all(|finding| finding.good)
 }
 
-/// Notes how long each body has been outside the picture, and keeps the most of that (s) and of all angles (rad).
+/// Records how long each body has been outside the picture. Keeps the largest of these times (s) and of all angles
+/// (rad).
 fn look(
     stage: &Stage,
     world: &mut World,

@@ -8,7 +8,7 @@ use bevy::light::CascadeShadowConfigBuilder;
 use bevy::prelude::*;
 use bevy::render::render_resource::Face;
 
-/// What a body looks like; ignored where nothing is drawn.
+/// The look of a body. Ignored where nothing is drawn.
 #[derive(Component, Clone, Copy)]
 #[require(Visibility)]
 pub enum Shape {
@@ -18,19 +18,19 @@ pub enum Shape {
     Cylinder(f32, f32, Paint),
     /// Radius, and height without the round ends, about Y.
     Capsule(f32, f32, Paint),
-    /// Height over x, length along x, and width, as [`super::strip`] has it.
+    /// Height over x, length along x, and width, as in [`super::strip`].
     Strip(fn(f32) -> f32, f32, f32, Paint),
 }
 
 impl Shape {
-    /// Of the box around it.
+    /// Returns half the size of the bounding box, m.
     pub fn half_size(&self) -> Vec3 {
         match *self {
             Shape::Cuboid(size, _) => 0.5 * size,
             Shape::Ball(radius, _) => Vec3::splat(radius),
             Shape::Cylinder(radius, height, _) => Vec3::new(radius, 0.5 * height, radius),
             Shape::Capsule(radius, height, _) => Vec3::new(radius, 0.5 * height + radius, radius),
-            // Nothing that a hand could take.
+            // A hand cannot pick it.
             Shape::Strip(..) => Vec3::ZERO,
         }
     }
@@ -49,9 +49,9 @@ pub enum Paint {
     Wood,
     Hemp,
     Water,
-    /// Seen from both sides.
+    /// Visible from both sides.
     Cloth,
-    /// Light goes through it.
+    /// Translucent.
     Jelly,
 }
 
@@ -89,7 +89,7 @@ impl Paint {
     }
 }
 
-/// A wide floor whose top is at y = 0, to look at; add a collider if it is to hold anything.
+/// Returns a wide visible floor with its top at y = 0. Add a collider if it must carry anything.
 pub fn floor() -> impl Bundle {
     (
         Transform::from_xyz(0.0, -0.05, 0.0),
@@ -97,7 +97,7 @@ pub fn floor() -> impl Bundle {
     )
 }
 
-/// Adds what makes a scene visible, seen from `eye`, into a window or an image.
+/// Adds what makes a scene visible from `eye`, in a window or an image.
 pub fn dress(app: &mut App, eye: Vec3, target: Vec3, image: Option<RenderTarget>) {
     super::skin::add(app);
     app.insert_resource(ClearColor(Color::srgb(0.62, 0.67, 0.72)))
@@ -137,7 +137,7 @@ pub fn dress(app: &mut App, eye: Vec3, target: Vec3, image: Option<RenderTarget>
                 }
                 .build(),
             ));
-            // A second light from the other side lifts the shadows off black.
+            // A second light from the other side brightens the shadows.
             commands.spawn((
                 Stays,
                 DirectionalLight {

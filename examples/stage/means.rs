@@ -1,4 +1,4 @@
-//! What the machine can show.
+//! Finds out how the machine can show an example: in a window, as frames, or as read-outs.
 
 use super::offscreen::adapter;
 use std::fmt;
@@ -6,11 +6,11 @@ use std::path::PathBuf;
 
 /// Which frames to keep.
 pub enum Film {
-    /// Several through the whole time, numbered, in a folder.
+    /// Several over the whole time, numbered, in a folder.
     Frames(PathBuf),
-    /// All of its last seconds, numbered, in a folder.
+    /// All of the last seconds, numbered, in a folder.
     Last(PathBuf),
-    /// The last one.
+    /// The last frame.
     Still(PathBuf),
 }
 
@@ -43,7 +43,7 @@ impl fmt::Display for Means {
 }
 
 impl Means {
-    /// The best that the machine has: window, frames, or read-outs.
+    /// Returns the best that the machine offers: window, frames, or read-outs.
     pub fn find(headless: bool, asked: Option<Film>) -> Self {
         if headless {
             return Means::Headless("--headless was given".into());
@@ -73,7 +73,7 @@ impl Means {
     }
 }
 
-/// Whether a window can be opened.
+/// Checks whether a window can be opened. Returns the reason if not.
 fn display() -> Result<(), String> {
     if cfg!(not(all(unix, not(target_os = "macos")))) {
         return Ok(());

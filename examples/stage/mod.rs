@@ -1,8 +1,8 @@
-//! What the examples share: a window where there is a display, frames where there is only an adapter,
-//! and read-outs everywhere.
+//! Shared by the examples: a window where there is a display, frames where there is only a graphics adapter, and
+//! read-outs everywhere.
 //!
-//! A scene is a [`Stage`]: a `setup` that adds systems (spawn in [`Begin`], which runs again whenever the scene
-//! starts again; give bodies a [`Shape`], and elements to be measured a [`Track`]), and a `check` that returns
+//! A scene is a [`Stage`] with a `setup` and a `check`. `setup` adds systems. They spawn in [`Begin`], which runs
+//! again at every restart. Give bodies a [`Shape`], and elements to be measured a [`Track`]. `check` returns
 //! [`Finding`]s. `main` returns `stage::run(&Stage { .. })`, whose exit code says whether all findings are good.
 
 mod again;
@@ -38,39 +38,40 @@ use bevy_rapier3d::prelude::*;
 use means::{Film, Means};
 use std::path::PathBuf;
 
-/// Seconds of a tick.
+/// Duration of a tick, s.
 pub const DT: f32 = 1.0 / 60.0;
 
-/// An example: what to set up, how long to look, what must hold in the end.
+/// An example: its setup, its duration, and its check.
 #[derive(Clone, Copy)]
 pub struct Stage {
     pub title: &'static str,
-    /// Adds systems and resources; spawn in [`Begin`].
+    /// Adds systems and resources. Spawn in [`Begin`].
     pub setup: fn(&mut App),
-    /// Seconds after which the check is due.
+    /// Time of the check, s.
     pub seconds: f32,
-    /// Seconds after which it starts again in a window, at least those of the check.
+    /// Time after which the scene restarts in a window, s; at least `seconds`.
     pub again: f32,
-    /// Measured against theory.
+    /// Compares measurements with theory.
     pub check: fn(&mut World) -> Vec<Finding>,
-    /// From where it is seen.
+    /// Position of the camera, m.
     pub eye: Vec3,
+    /// Point that the camera looks at, m.
     pub target: Vec3,
 }
 
-/// Inserted by a `setup`: the second that `--screenshot` shows, where the end is not the best of it.
+/// Inserted by a `setup`: time of the `--screenshot` picture, s, where it is not the end.
 #[derive(Resource)]
 pub struct PictureAt(pub f32);
 
-/// Inserted by a `setup` that moves bodies by their `Transform`: the engine hears of it once in a frame.
+/// Inserted by a `setup` that moves bodies by their `Transform`: Rapier's plugin reads it only once a frame.
 #[derive(Resource)]
 pub struct TickByTick;
 
-/// What the command line asks for.
+/// The command line arguments.
 #[derive(Default)]
 struct Arguments {
     headless: bool,
-    /// To be watched for so long.
+    /// Duration for which the scene is watched, in minutes.
     minutes: Option<f32>,
     film: Option<Film>,
 }
@@ -94,9 +95,9 @@ impl Arguments {
                 }
                 "--screenshot" => out.film = Some(Film::Still(path()?)),
                 "--frames" => out.film = Some(Film::Frames(path()?)),
-                // Read by the scenes that have something to plot.
+                // Read by scenes with a plot.
                 "--plot" => drop(path()?),
-                // Read by the scenes that can do something otherwise.
+                // Read by scenes with an alternative in Rapier's own springs.
                 "--rapier" => {}
                 // Read where pictures are made.
                 "--small" => {}
@@ -108,19 +109,19 @@ impl Arguments {
     }
 }
 
-/// Where a plot is asked for, from a scene that has one.
+/// Returns the path for the plot if the command line asks for one.
 pub fn plot_path() -> Option<PathBuf> {
     let words: Vec<_> = std::env::args().collect();
     let at = words.iter().position(|word| word == "--plot")?;
     words.get(at + 1).map(PathBuf::from)
 }
 
-/// Whether the command line has this word.
+/// Returns whether the command line contains this word.
 pub fn given(word: &str) -> bool {
     std::env::args().any(|other| other == word)
 }
 
-/// Runs an example as the machine and the command line allow.
+/// Runs an example as machine and command line allow.
 pub fn run(stage: &Stage) -> AppExit {
     let arguments = match Arguments::read() {
         Ok(arguments) => arguments,
@@ -143,7 +144,7 @@ pub fn run(stage: &Stage) -> AppExit {
     }
 }
 
-/// Physics alone, a tick in each update.
+/// Returns an app with physics only, one tick in each update.
 fn headless_app(stage: &Stage) -> App {
     let mut app = App::new();
     app.add_plugins((MinimalPlugins, TransformPlugin, CoiloverPlugin::default()));
@@ -151,7 +152,7 @@ fn headless_app(stage: &Stage) -> App {
     app
 }
 
-/// The check alone, as fast as it runs.
+/// Runs only the check, as fast as possible.
 fn headless(stage: &Stage) -> AppExit {
     let mut app = headless_app(stage);
     app.finish();
@@ -195,7 +196,7 @@ fn window(stage: &Stage) -> AppExit {
     app.run()
 }
 
-/// Rapier at a fixed step, so many ticks in each update; 0 follows the clock.
+/// Adds Rapier with a fixed step. Each update runs this number of ticks; 0 follows the clock.
 fn physics(app: &mut App, stage: &Stage, ticks: u32) {
     app.insert_resource(Time::<Fixed>::from_seconds(f64::from(DT)))
         .insert_resource(TimestepMode::Fixed {
@@ -207,7 +208,7 @@ fn physics(app: &mut App, stage: &Stage, ticks: u32) {
         let tick = app.world().resource::<Time<Fixed>>().timestep();
         app.insert_resource(TimeUpdateStrategy::ManualDuration(tick * ticks));
     }
-    // What the check does not look at need not be kept.
+    // Nothing is recorded after the check.
     let due = stage.seconds + 0.5 * DT;
     app.add_systems(
         FixedUpdate,
@@ -219,7 +220,7 @@ fn physics(app: &mut App, stage: &Stage, ticks: u32) {
     (stage.setup)(app);
 }
 
-/// Prints the check; whether all is well.
+/// Prints the check. Returns whether all findings are good.
 fn say(stage: &Stage, world: &mut World) -> bool {
     println!("{}, after {} s:", stage.title, stage.seconds);
     let findings = (stage.check)(world);

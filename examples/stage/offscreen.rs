@@ -1,4 +1,4 @@
-//! Pictures without a window. The render tests use this file too.
+//! Renders pictures without a window. The render tests use this file too.
 
 use bevy::app::ScheduleRunnerPlugin;
 use bevy::asset::RenderAssetUsages;
@@ -14,12 +14,12 @@ use bevy::window::ExitCondition;
 use bevy::winit::WinitPlugin;
 use std::time::{Duration, Instant};
 
-/// Nothing of this takes longer, however slow the machine.
+/// Longest wait for anything here, on the slowest machine.
 const PATIENCE: Duration = Duration::from_secs(120);
-/// Updates without a shader being compiled after which a picture is complete.
+/// Number of updates without a shader compilation after which a picture is complete.
 const QUIET: u32 = 4;
 
-/// The name of an adapter that can render, software ones included.
+/// Returns the name of an adapter that can render, including software adapters.
 pub fn adapter() -> Option<String> {
     let instance = wgpu::Instance::default();
     let adapters = bevy::tasks::block_on(instance.enumerate_adapters(wgpu::Backends::PRIMARY));
@@ -29,7 +29,7 @@ pub fn adapter() -> Option<String> {
     })
 }
 
-/// An app without window, and the image that its camera is to draw into.
+/// Returns an app without a window, and the image for its camera to draw into.
 pub fn app(width: u32, height: u32) -> (App, Handle<Image>) {
     let mut app = App::new();
     app.add_plugins((
@@ -39,7 +39,7 @@ pub fn app(width: u32, height: u32) -> (App, Handle<Image>) {
                 exit_condition: ExitCondition::DontExit,
                 ..default()
             })
-            // What was asked for in one update is in the picture of that update.
+            // A picture requested in one update shows that update.
             .disable::<PipelinedRenderingPlugin>()
             .disable::<LogPlugin>()
             .disable::<WinitPlugin>(),
@@ -53,7 +53,7 @@ pub fn app(width: u32, height: u32) -> (App, Handle<Image>) {
     (app, image)
 }
 
-/// For the camera.
+/// Returns the image as a render target for the camera.
 pub fn target(image: &Handle<Image>) -> RenderTarget {
     RenderTarget::Image(image.clone().into())
 }
@@ -80,8 +80,8 @@ fn is_compiling(app: &App) -> bool {
     cache.waiting_pipelines().next().is_some()
 }
 
-/// What the camera sees at the end of the next update, which draws, and so does one more: what no camera has seen before is
-/// drawn only then. After the first, `then` is called.
+/// Returns what the camera sees at the end of the next update. Two updates draw: entities that no camera has seen
+/// before are drawn only in the second. `then` is called after the first.
 pub fn shoot_next(
     app: &mut App,
     image: &Handle<Image>,
@@ -95,18 +95,18 @@ pub fn shoot_next(
     if !is_compiling(app) {
         return picture;
     }
-    // Something is in sight that never was before.
+    // An entity is in view that never was before.
     settle(app);
     shoot(app, image)
 }
 
-/// What the camera sees now.
+/// Returns what the camera sees now.
 pub fn shoot(app: &mut App, image: &Handle<Image>) -> Option<Image> {
     ask(app, image);
     wait(app)
 }
 
-/// Does something without drawing: software adapters take long for a picture that nobody looks at.
+/// Calls `act` without drawing: software adapters take long for a picture that nobody looks at.
 pub fn undrawn<T>(app: &mut App, act: impl FnOnce(&mut App) -> T) -> T {
     let draw = |app: &mut App, is_active: bool| {
         let mut cameras = app.world_mut().query::<&mut Camera>();
@@ -130,7 +130,7 @@ fn ask(app: &mut App, image: &Handle<Image>) {
         );
 }
 
-/// Updates until the picture has come that was asked for.
+/// Updates until the requested picture has arrived.
 fn wait(app: &mut App) -> Option<Image> {
     let begun = Instant::now();
     while begun.elapsed() < PATIENCE {

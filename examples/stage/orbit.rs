@@ -1,23 +1,24 @@
-//! A camera that goes around what it looks at.
+//! A camera that orbits its target.
 
 use super::{Stage, hand::Hand};
 use bevy::input::mouse::{MouseScrollUnit, MouseWheel};
 use bevy::prelude::*;
 
-/// Radians for a pixel of the mouse.
+/// Rotation per pixel of mouse movement, rad.
 const TURN: f32 = 0.005;
-/// Share of the distance that one notch of the wheel leaves, and its pixels where a wheel counts in them.
+/// Factor on the distance for one notch of the wheel.
 const NOTCH: f32 = 0.9;
+/// Pixels of one notch, for wheels that report pixels.
 const PIXELS: f32 = 60.0;
 
-/// Around what, how far away, and from which side.
+/// Target, distance and direction of the camera.
 #[derive(Resource)]
 struct Orbit {
     target: Vec3,
     distance: f32,
     yaw: f32,
     pitch: f32,
-    /// From the stage's own distance.
+    /// Derived from the stage's own distance, m.
     nearest: f32,
     farthest: f32,
 }
@@ -60,7 +61,7 @@ fn turn(
         return;
     }
     orbit.yaw -= TURN * drag.x;
-    // Neither below the floor nor over the top.
+    // Not below the floor, not past the vertical.
     orbit.pitch = (orbit.pitch + TURN * drag.y).clamp(0.02, 1.5);
     orbit.distance = (orbit.distance * NOTCH.powf(notches)).clamp(orbit.nearest, orbit.farthest);
     let side = Quat::from_euler(EulerRot::YXZ, orbit.yaw, -orbit.pitch, 0.0);

@@ -1,12 +1,12 @@
-//! A window that a processor draws instead of a graphics card: small and plain, so that it keeps up with the clock.
+//! A window drawn by a processor instead of a graphics card: small and simple, so that it keeps up with the clock.
 
 use bevy::prelude::*;
 use bevy::render::renderer::RenderAdapterInfo;
 
-/// Width and height of such a window, pixels: a quarter of what the others have.
+/// Width and height of such a window, pixels: a quarter of the usual number of pixels.
 const SIZE: (f32, f32) = (640.0, 360.0);
 
-/// Draws plainly where it has to.
+/// Simplifies drawing where the adapter needs it.
 pub fn add(app: &mut App) {
     app.add_systems(PostStartup, draw_plainly);
 }

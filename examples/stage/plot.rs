@@ -1,4 +1,4 @@
-//! A plain plot of curves as PNG.
+//! Draws a simple plot of curves as PNG.
 
 use image::{Rgb, RgbImage};
 use std::path::Path;
@@ -6,14 +6,14 @@ use std::path::Path;
 const SIZE: (u32, u32) = (960, 640);
 /// Left, top, right and bottom of the frame, pixels.
 const FRAME: [i32; 4] = [110, 40, 930, 570];
-/// Pixels of a dot of a letter.
+/// Size of a dot of a letter, pixels.
 const DOT: i32 = 3;
 const INK: Rgb<u8> = Rgb([40, 42, 46]);
 const GRID: Rgb<u8> = Rgb([218, 221, 225]);
 
-/// Curves over a common range.
+/// A plot of curves over a common range.
 pub struct Plot {
-    /// From, to, and step of the grid.
+    /// Start, end and grid step of each axis.
     pub x: [f32; 3],
     pub y: [f32; 3],
     /// Units, written at the axes.
@@ -65,7 +65,7 @@ impl Plot {
         self.write(y, FRAME[0], FRAME[1] - 30, 0.5);
     }
 
-    /// A line through points.
+    /// Draws a line through points.
     pub fn curve(&mut self, points: &[(f32, f32)], paint: Rgb<u8>) {
         for ends in points.windows(2) {
             let (from, to) = (self.at(ends[0]), self.at(ends[1]));
@@ -77,7 +77,7 @@ impl Plot {
         }
     }
 
-    /// A mark at each point.
+    /// Draws a mark at each point.
     pub fn marks(&mut self, points: &[(f32, f32)], paint: Rgb<u8>) {
         for point in points {
             let (x, y) = self.at(*point);
@@ -95,7 +95,7 @@ impl Plot {
         }
     }
 
-    /// Writes with this share of the text left of x.
+    /// Writes text with this share of its width left of x.
     fn write(&mut self, text: &str, x: i32, y: i32, share: f32) {
         let width: i32 = text.chars().map(|letter| glyph(letter).0 + 1).sum();
         let mut x = x - (share * (DOT * width) as f32) as i32;
@@ -120,7 +120,7 @@ fn number(value: f32) -> String {
     format!("{}", if rounded == 0.0 { 0.0 } else { rounded })
 }
 
-/// Width and rows of a letter, in dots; blank for those that no plot has needed.
+/// Returns width and rows of a letter, in dots. Letters that no plot has needed are blank.
 fn glyph(letter: char) -> (i32, [u8; 5]) {
     match letter {
         '0' => (3, [7, 5, 5, 5, 7]),

@@ -1,10 +1,10 @@
-//! How far a film is, and how long the rest of it takes.
+//! Shows the progress of a film and its remaining time.
 
 use indicatif::{ProgressBar, ProgressStyle};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-/// Where nobody watches a bar, a line is written so often.
+/// Number of pictures between two printed lines where no progress bar is shown.
 const QUIET: u64 = 12;
 
 pub struct Progress {
@@ -27,12 +27,12 @@ impl Progress {
         }
     }
 
-    /// One more is written.
+    /// Counts one more written picture.
     pub fn taken(&self, path: &Path) {
         self.bar.inc(1);
         let (done, all) = (self.bar.position(), self.bar.length().unwrap_or(0));
         if done == 1 {
-            // The first has waited for shaders, which the others need not.
+            // The first picture has waited for shaders. The others need not.
             self.bar.reset_eta();
         }
         if all > 1 && self.bar.is_hidden() && (done == 1 || done.is_multiple_of(QUIET)) {

@@ -1,4 +1,4 @@
-//! Rope of three strands, drawn along an element.
+//! Draws a rope of three strands along an element.
 
 use super::look::Paint;
 use bevy::asset::RenderAssetUsages;
@@ -8,7 +8,7 @@ use bevy_coilover::prelude::*;
 use std::collections::HashMap;
 use std::f32::consts::TAU;
 
-/// On an element: it looks like a rope of this radius, m, that has this length where it is not stretched, m.
+/// Draws an element as a rope with this radius and unstretched length, m.
 #[derive(Component, Clone, Copy)]
 pub struct Rope {
     pub radius: f32,
@@ -16,13 +16,13 @@ pub struct Rope {
     pub paint: Paint,
 }
 
-/// Length of rope in which a strand goes around once, in radii.
+/// Length of rope for one turn of a strand, in radii.
 const LAY: f32 = 7.0;
 const AROUND: u32 = 12;
-/// Rings in a turn of the strands.
+/// Number of rings in a turn of the strands.
 const RINGS: f32 = 10.0;
 
-/// Draws what is new; ropes of one size share a mesh, those of one paint a material.
+/// Adds meshes to new ropes. Ropes of the same size share a mesh, ropes of the same paint a material.
 pub fn show(
     ropes: Query<(Entity, &Rope), Added<Rope>>,
     mut kept: Local<HashMap<[i32; 2], Handle<Mesh>>>,
@@ -32,7 +32,7 @@ pub fn show(
     mut commands: Commands,
 ) {
     for (entity, rope) in &ropes {
-        // To a tenth of a millimetre, and to a centimetre.
+        // The radius to a tenth of a millimetre, the length to a centimetre.
         let size = [rope.radius * 1e4, rope.length * 1e2].map(|size| size.round() as i32);
         let mesh = kept
             .entry(size)
@@ -50,14 +50,14 @@ pub fn show(
     }
 }
 
-/// Three strands laid about one another, from the origin up.
+/// Returns the mesh of three twisted strands, from the origin upwards.
 fn laid(radius: f32, length: f32) -> Mesh {
     let turns = (length / (LAY * radius)).round().max(1.0);
     let rings = (RINGS * turns) as u32;
     let at = |ring: f32, around: f32| {
         let along = ring / rings as f32;
         let angle = TAU * around / AROUND as f32;
-        // Deep between two strands, and round on each.
+        // Deep between two strands, and round on each strand.
         let strand = (1.5 * (angle - TAU * turns * along)).cos().abs();
         let out = radius * (0.72 + 0.28 * strand.sqrt());
         Vec3::new(out * angle.cos(), length * along, out * angle.sin())

@@ -1,4 +1,4 @@
-//! Meshes that follow points: each vertex is where the weighted mean of some entities is.
+//! Meshes that follow points: each vertex is at the weighted mean of some entities.
 
 use super::Paint;
 use bevy::asset::{AssetEventSystems, RenderAssetUsages};
@@ -6,25 +6,25 @@ use bevy::camera::visibility::NoFrustumCulling;
 use bevy::mesh::{Indices, PrimitiveTopology};
 use bevy::prelude::*;
 
-/// A vertex: what it follows, with weights whose sum is 1, and how far it is from there in the world's axes.
+/// A vertex: the entities it follows, with weights whose sum is 1, and its offset in the world's axes, m.
 #[derive(Clone, Default)]
 pub struct Vertex {
     pub follows: Vec<(Entity, f32)>,
     pub offset: Vec3,
 }
 
-/// A mesh over moving points; ignored where nothing is drawn.
+/// A mesh over moving points. Ignored where nothing is drawn.
 #[derive(Component)]
 #[require(Transform, Visibility, NoFrustumCulling)]
 pub struct Skin {
     pub vertices: Vec<Vertex>,
-    /// Anticlockwise, seen from outside. Those that are taken away are drawn no more.
+    /// Anticlockwise, seen from outside. Removed triangles are no longer drawn.
     pub triangles: Vec<[u32; 3]>,
     pub paint: Paint,
 }
 
 impl Skin {
-    /// A tube along points, each of which follows one entity.
+    /// Returns a tube along points, each of which follows one entity.
     pub fn tube(points: &[Entity], radius: f32, across: [Vec3; 2], paint: Paint) -> Self {
         const SIDES: u32 = 8;
         let (mut vertices, mut triangles) = (Vec::new(), Vec::new());

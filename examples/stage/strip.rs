@@ -1,14 +1,14 @@
-//! A strip of road that is not level: what is below a curve, as triangles.
+//! The mesh of a road strip that is not level: the region below a curve, as triangles.
 
 use bevy::asset::RenderAssetUsages;
 use bevy::mesh::{Indices, Mesh, PrimitiveTopology};
 use bevy::prelude::*;
 
-/// Between two points along it, m.
+/// Distance between two points along the strip, m.
 const STEP: f32 = 0.1;
 
-/// Points, normals and triangles of the top of a strip along x from 0, as high as the function says, about z = 0, and of its
-/// ends and sides down to y = 0.
+/// Returns points, normals and triangles of a strip along x from 0 and about z = 0: its top at the function's height,
+/// and its ends and sides down to y = 0.
 pub fn strip(
     height: fn(f32) -> f32,
     length: f32,
@@ -19,7 +19,7 @@ pub fn strip(
     let xs: Vec<f32> = (0..=count).map(|i| i as f32 * step).collect();
     let (mut points, mut normals, mut triangles) = (Vec::new(), Vec::new(), Vec::new());
     let half = 0.5 * width;
-    // Each of these is a band between two lines, seen with the first on the left.
+    // Each item is a band between two lines, seen with the first line on the left.
     let mut band = |lines: [Vec<Vec3>; 2], normal: Vec<Vec3>| {
         let first = points.len() as u32;
         let count = normal.len() as u32;
@@ -60,7 +60,7 @@ pub fn strip(
     (points, normals, triangles)
 }
 
-/// The same to look at.
+/// Returns the strip as a mesh.
 pub fn strip_mesh(height: fn(f32) -> f32, length: f32, width: f32) -> Mesh {
     let (points, normals, triangles) = strip(height, length, width);
     let uvs: Vec<Vec2> = points.iter().map(|p| p.xz()).collect();

@@ -1,7 +1,7 @@
-//! Draws two plots of the guide: what comes of a game that goes back, and how many frames are run again over a bad connection.
+//! Draws two plots of the guide: the futures of a game that goes back, and the frames that run again over a bad connection.
 //!
-//! `cargo run --release --no-default-features --example plots -- ../docs/guide`, in the folder `netcode`, writes `going_back.svg`
-//! and `frames_again.svg` there.
+//! Run `cargo run --release --no-default-features --example plots -- ../docs/guide` in the folder `netcode`. It writes
+//! `going_back.svg` and `frames_again.svg` there.
 
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
@@ -17,11 +17,11 @@ use std::path::{Path, PathBuf};
 
 type Drawn = Result<(), Box<dyn Error>>;
 
-/// Ticks before the game is kept, and after it.
+/// Number of ticks before the snapshot, and after it.
 const BEFORE: usize = 200;
 const AFTER: usize = 300;
 
-/// Distances below this are drawn as this, m: on a logarithmic axis there is no zero.
+/// Least drawn distance, m. A logarithmic axis has no zero.
 const NOTHING: f32 = 1e-8;
 
 const SIZE: (u32, u32) = (760, 380);
@@ -37,18 +37,18 @@ fn main() -> Drawn {
     draw_again(&folder.join("frames_again.svg"))
 }
 
-/// What of a game is put back.
+/// State that is restored.
 #[derive(Clone, Copy)]
 enum Back {
-    /// Where bodies are and how they move.
+    /// Poses and velocities of bodies.
     Bodies,
-    /// All that Rapier has.
+    /// The snapshot of Rapier.
     Rapier,
-    /// That, and all that springs remember.
+    /// The snapshots of Rapier and of the springs.
     Both,
 }
 
-/// The game without a net: its lifts go by the number of the tick.
+/// The game without a network. The tick number drives its lifts.
 struct Game {
     app: App,
     tick: usize,
@@ -64,7 +64,7 @@ impl Game {
         Ok(game)
     }
 
-    /// Where all bodies are after each tick.
+    /// Plays a number of ticks. Returns the positions of all bodies after each tick, m.
     fn play(&mut self, ticks: usize) -> Vec<Vec<Vec3>> {
         let world = self.app.world_mut();
         let mut lifts = world.query::<(&Lift, &mut SpringDamper)>();
@@ -87,7 +87,7 @@ impl Game {
     }
 }
 
-/// Plays on, goes back, plays the same again: how far the second future is from the first, tick by tick, m.
+/// Plays on, goes back and plays again. Returns the greatest distance of a body from its first future for each tick, m.
 fn distances(back: Back) -> Result<Vec<f32>, Box<dyn Error>> {
     let mut game = Game::new()?;
     let world = game.app.world_mut();
@@ -170,7 +170,7 @@ fn draw_futures(path: &Path) -> Drawn {
     Ok(())
 }
 
-/// Ten seconds of two peers.
+/// Draws the frames that two peers run again in ten seconds.
 fn draw_again(path: &Path) -> Drawn {
     const FRAMES: i32 = 600;
     let weather = Weather {

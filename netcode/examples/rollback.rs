@@ -1,7 +1,7 @@
-//! Two peers play over UDP with delay, jitter and loss, and their checksums are compared; then a SyncTest session says what a
-//! frame costs that is run again. The exit code is the verdict.
+//! Two peers play over UDP with delay, jitter and loss, and their checksums are compared. Then a SyncTest session
+//! measures the cost of running frames again. The exit code is the verdict.
 //!
-//! `cargo run --release --no-default-features --example rollback -- SECONDS`, in the folder `netcode`.
+//! Run `cargo run --release --no-default-features --example rollback -- SECONDS` in the folder `netcode`.
 
 use bevy_ggrs::{RollbackFrameCount, Session};
 use netcode::game::{self, Mismatches, RATE};
@@ -50,7 +50,7 @@ fn play(frames: i32) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// What going back costs, in the same game.
+/// Measures the cost of going back in the same game.
 fn cost(distance: usize, frames: i32) -> Result<(), Box<dyn Error>> {
     let session = game::sync_test(distance)?;
     let mut app = game::app(Session::SyncTest(session), RollbackPhysicsPlugin::default());

@@ -1,6 +1,6 @@
-//! What springs cost on the wire when a server sends them with Replicon.
+//! Measures the bytes of springs on the wire when a server sends them with Replicon.
 //!
-//! `cargo run --example wire`, in the folder `netcode`.
+//! Run `cargo run --example wire` in the folder `netcode`.
 
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
@@ -9,7 +9,7 @@ use netcode::relay::Passed;
 use netcode::server::{Hosted, RATE};
 use std::error::Error;
 
-/// Elements that are spawned at once.
+/// Number of elements that are spawned at once.
 const MANY: usize = 1000;
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -98,10 +98,10 @@ fn each(world: &mut World, all: &[Entity], mut deed: impl FnMut(&mut EntityWorld
     }
 }
 
-/// A server with a client, and what passes between them.
+/// A server with a client, and the traffic between them.
 struct Wire {
     hosted: Hosted,
-    /// In a second without deeds.
+    /// Bytes to the client in a second without changes.
     idle: Bytes,
 }
 
@@ -124,7 +124,7 @@ impl Wire {
         Ok(wire)
     }
 
-    /// Bytes to the client in a second after a deed.
+    /// Bytes to the client in the second after a change, less those of an idle second.
     fn during(&mut self, deed: impl FnOnce(&mut World)) -> Bytes {
         let before = self.seen();
         deed(self.hosted.server.world_mut());

@@ -1,4 +1,4 @@
-//! A small game: each player moves a lift up and down, with all about it that springs remember something of.
+//! A small game in which each player moves a lift up and down. It has every state that springs keep between ticks.
 
 use crate::rollback::{RollbackPhysicsPlugin, Tick};
 use bevy::ecs::schedule::SingleThreadedExecutor;
@@ -18,7 +18,7 @@ use std::f32::consts::TAU;
 use std::hash::{Hash, Hasher};
 use std::time::Duration;
 
-/// What is sent between peers.
+/// GGRS configuration, with the inputs that peers send.
 pub type Net = GgrsConfig<Pressed>;
 
 /// Buttons of a player: [`UP`], [`DOWN`], both or none.
@@ -32,33 +32,33 @@ pub const DOWN: Pressed = 2;
 /// Frames per second.
 pub const RATE: u16 = 60;
 
-/// Lifts move with so many m/s.
+/// Speed of a lift, m/s.
 const SPEED: f32 = 0.5;
 
-/// A lift's actuator, and whose it is.
+/// The actuator of a lift, and its player.
 #[derive(Component, Clone, Copy, Debug)]
 pub struct Lift {
-    /// The player's handle.
+    /// Handle of the player.
     pub player: usize,
 }
 
-/// What is compared between peers, in the order of this number, which is the same for all.
+/// An entity that peers compare, in the order of this number, which is the same for all.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Compared(pub u32);
 
-/// Checksums of all frames as they were seen last.
+/// Latest checksum of each frame.
 #[derive(Resource, Clone, Debug, Default)]
 pub struct Seen(pub BTreeMap<i32, u64>);
 
-/// Frames that came out otherwise when they were run again.
+/// Frames that differed when they were run again.
 #[derive(Resource, Clone, Debug, Default)]
 pub struct Mismatches(pub Vec<SyncTestMismatch>);
 
-/// Where the checksum of all stands.
+/// Entity with the checksum of all compared entities.
 #[derive(Resource)]
 struct Sum(Entity);
 
-/// An app of the game, whose every update is one frame.
+/// Makes an app of the game that runs one frame per update.
 pub fn app(session: Session<Net>, physics: RollbackPhysicsPlugin) -> App {
     let mut app = App::new();
     let frame = Duration::from_secs(1) / u32::from(RATE);
@@ -69,7 +69,7 @@ pub fn app(session: Session<Net>, physics: RollbackPhysicsPlugin) -> App {
         .insert_resource(session)
         .init_resource::<Seen>()
         .init_resource::<Mismatches>()
-        // What inputs write.
+        // Inputs write this component.
         .rollback_component_with_clone::<SpringDamper>()
         .add_systems(Startup, spawn)
         .add_systems(ReadInputs, read_inputs)
@@ -84,7 +84,7 @@ pub fn app(session: Session<Net>, physics: RollbackPhysicsPlugin) -> App {
     app.insert_resource(Sum(sum));
     app.finish();
     app.cleanup();
-    // Waking worker threads costs more than these systems do.
+    // Waking worker threads costs more than these systems take.
     let mut schedules = app.world_mut().resource_mut::<Schedules>();
     for (_, schedule) in schedules.iter_mut() {
         schedule.set_executor(SingleThreadedExecutor::new());
@@ -92,7 +92,7 @@ pub fn app(session: Session<Net>, physics: RollbackPhysicsPlugin) -> App {
     app
 }
 
-/// What a player does: now and then something else. It depends on nothing else, so that runs repeat.
+/// Buttons of a player in a frame. They change now and then, and depend on nothing else, so that runs repeat.
 pub fn press(frame: i32, player: usize) -> Pressed {
     let mut hasher = checksum_hasher();
     (frame / 9, player).hash(&mut hasher);
@@ -202,7 +202,7 @@ fn spawn(mut commands: Commands) {
             Rollback,
             compared(),
         ));
-        // A box that is tossed, and lands where it may.
+        // A box that the lift tosses.
         commands.spawn((cube(0.3, 2.0, at + Vec3::new(0.05, 0.6, 0.02)), compared()));
         lifts.push(lift);
     }
@@ -223,20 +223,20 @@ fn spawn(mut commands: Commands) {
         commands.spawn((rope, SpringAction::Pull, compared()));
         last = link;
     }
-    // A flywheel on a hinge, that a torsion spring winds up past full turns.
+    // A flywheel on a hinge that winds up a torsion spring by more than full turns.
     let frame = (RigidBody::Fixed, Transform::from_xyz(2.0, 3.0, 3.0));
     let frame = commands.spawn(frame).id();
     let hinge = ImpulseJoint::new(frame, RevoluteJointBuilder::new(Vec3::X));
     let wheel = (cube(0.4, 2.0, Vec3::new(2.0, 3.0, 3.0)), hinge, compared());
     let mut wheel = commands.spawn(wheel);
-    // In place of the one that a cube has.
+    // Replaces the velocity of the cube.
     wheel.insert(Velocity::angular(Vec3::X * 3.0 * TAU));
     let wheel = wheel.id();
     let torsion = TorsionSpringDamper::new(frame, wheel, Vec3::X)
         .with_stiffness(0.05)
         .with_damping(1e-5);
     commands.spawn((torsion, compared()));
-    // A weight that swings free, and one that falls asleep.
+    // A weight that swings freely, and one that falls asleep.
     for (x, damping) in [(-2.0, 0.01), (-4.0, 20.0)] {
         let hook = commands.spawn(Transform::from_xyz(x, 3.0, 0.0)).id();
         let weight = (cube(0.2, 1.0, Vec3::new(x, 2.0, 0.3)), compared());
@@ -248,7 +248,7 @@ fn spawn(mut commands: Commands) {
     }
 }
 
-/// A session that goes back `distance` frames in every frame, and compares.
+/// A session that goes back by `distance` frames in every frame, and compares.
 pub fn sync_test(
     distance: usize,
 ) -> std::result::Result<SyncTestSession<Net>, bevy_ggrs::ggrs::GgrsError> {

@@ -1,5 +1,5 @@
-//! Springs over the net: rollback with GGRS, and a server that rules, with Replicon. For maintainers, and to copy from; the
-//! guide's page on it, `docs/guide/netcode.md`, says what it shows.
+//! Networked springs: rollback with GGRS, and an authoritative server with Replicon. For maintainers, and to copy from.
+//! The guide's page `docs/guide/netcode.md` explains it.
 
 pub mod game;
 pub mod lossy;
@@ -10,7 +10,7 @@ pub mod rollback;
 #[cfg(feature = "server")]
 pub mod server;
 
-/// The code of the guide's page.
+/// Tests of the code on the guide's page.
 #[cfg(all(doctest, feature = "server"))]
 #[doc = include_str!("../../docs/guide/netcode.md")]
 pub mod guide {}

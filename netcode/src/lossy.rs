@@ -1,4 +1,4 @@
-//! A UDP socket over which messages come late, in disorder, or never.
+//! A UDP socket that delays, reorders and loses messages.
 
 use bevy_ggrs::ggrs::{Message, NonBlockingSocket};
 use std::io;
@@ -6,23 +6,23 @@ use std::net::{Ipv4Addr, SocketAddr, UdpSocket};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
 
-/// What a net does to messages.
+/// Quality of a network.
 #[derive(Clone, Copy, Debug)]
 pub struct Weather {
-    /// Ticks that each takes at least.
+    /// Least delay of a message, ticks.
     pub delay: u32,
-    /// Ticks that it may take longer, each number as likely.
+    /// Greatest additional delay, ticks. Its distribution is uniform.
     pub jitter: u32,
-    /// The share that is lost.
+    /// Share of messages that are lost.
     pub loss: f64,
 }
 
-/// The clock of a net, in ticks. The test moves it, so nothing waits for real time.
+/// Clock of a network, in ticks. The test moves it, so nothing waits for real time.
 #[derive(Clone, Debug, Default)]
 pub struct Clock(Arc<AtomicU32>);
 
 impl Clock {
-    /// A tick later.
+    /// Moves the clock on by a tick.
     pub fn advance(&self) {
         self.0.fetch_add(1, Ordering::Relaxed);
     }
@@ -32,27 +32,27 @@ impl Clock {
     }
 }
 
-/// How many messages a socket has seen.
+/// Counters of a socket.
 #[derive(Clone, Debug, Default)]
 pub struct Counts(Arc<[AtomicU32; 4]>);
 
 impl Counts {
-    /// Sent, with those that were lost.
+    /// Number of messages sent, including lost ones.
     pub fn sent(&self) -> u32 {
         self.get(0)
     }
 
-    /// Lost.
+    /// Number of messages lost.
     pub fn lost(&self) -> u32 {
         self.get(1)
     }
 
-    /// That overtook an earlier one.
+    /// Number of messages that overtook an earlier one.
     pub fn overtaken(&self) -> u32 {
         self.get(2)
     }
 
-    /// Bytes that GGRS sent.
+    /// Number of bytes that GGRS sent.
     pub fn bytes(&self) -> u32 {
         self.get(3)
     }
@@ -67,7 +67,7 @@ impl Counts {
     }
 }
 
-/// Numbers that look random and repeat: splitmix64.
+/// Pseudo-random numbers that are the same in each run: splitmix64.
 #[derive(Clone, Debug)]
 pub struct Random(pub u64);
 
@@ -80,32 +80,32 @@ impl Random {
         z ^ (z >> 31)
     }
 
-    /// From 0 to 1.
+    /// The next number from 0 to 1.
     pub fn share(&mut self) -> f64 {
         (self.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
     }
 }
 
-/// A message under way.
+/// A received message that is not delivered yet.
 struct Held {
     due: u32,
     from: SocketAddr,
     bytes: Vec<u8>,
 }
 
-/// The socket.
+/// A UDP socket with a network of a given quality.
 pub struct LossySocket {
     socket: UdpSocket,
     weather: Weather,
     clock: Clock,
     random: Random,
     held: Vec<Held>,
-    /// What it has done.
+    /// Counters of this socket.
     pub counts: Counts,
 }
 
 impl LossySocket {
-    /// On loopback, on a port that is free.
+    /// Binds to a free port on loopback.
     pub fn new(weather: Weather, clock: Clock, seed: u64) -> io::Result<Self> {
         let socket = UdpSocket::bind((Ipv4Addr::LOCALHOST, 0))?;
         socket.set_nonblocking(true)?;
@@ -119,12 +119,12 @@ impl LossySocket {
         })
     }
 
-    /// Where it listens.
+    /// Address of the socket.
     pub fn address(&self) -> io::Result<SocketAddr> {
         self.socket.local_addr()
     }
 
-    /// Takes what has come from the real socket, and says when it is to be seen.
+    /// Receives from the real socket, and sets the tick at which each message is delivered.
     fn take_in(&mut self) {
         let mut buffer = [0; 4096];
         while let Ok((length, from)) = self.socket.recv_from(&mut buffer) {
@@ -153,9 +153,9 @@ impl NonBlockingSocket<SocketAddr> for LossySocket {
             self.counts.add(1, 1);
             return;
         }
-        // The tick goes along, so that delays are what they should be whichever peer has its turn first.
+        // The tick is sent along, so that the delay does not depend on which peer updates first.
         let dated = [&self.clock.now().to_le_bytes()[..], &bytes].concat();
-        // What the real socket loses is lost.
+        // A message that the real socket fails to send is lost.
         let _ = self.socket.send_to(&dated, to);
     }
 

@@ -1,4 +1,4 @@
-//! Two peers of the game, in one program, over UDP.
+//! Two peers of the game in one program, connected over UDP.
 
 use crate::game::{self, Net, Seen};
 use crate::lossy::{Clock, Counts, LossySocket, Weather};
@@ -9,33 +9,33 @@ use bevy_ggrs::ggrs::{DesyncDetection, GgrsEvent, PlayerType, SessionBuilder, Se
 use std::error::Error;
 use std::time::{Duration, Instant};
 
-/// Frames that peers may run ahead of what they know.
+/// Greatest number of frames that a peer runs ahead of confirmed inputs.
 pub const WINDOW: usize = 10;
 
-/// Two peers.
+/// Two connected peers.
 pub struct Peers {
-    /// Their apps.
+    /// Apps of the peers.
     pub apps: [App; 2],
-    /// What their sockets did.
+    /// Counters of their sockets.
     pub counts: [Counts; 2],
-    /// Frames that each ran again before each of its own.
+    /// For each update of a peer that ran ticks: the number of ticks beside the one of the frame itself.
     pub again: [Vec<u32>; 2],
     clock: Clock,
 }
 
-/// How far two peers came.
+/// Results of a run of two peers.
 #[derive(Clone, Copy, Debug)]
 pub struct Reached {
-    /// Frames whose checksums were compared.
+    /// Number of frames whose checksums were compared.
     pub compared: usize,
-    /// How often each went back.
+    /// Number of rollbacks of each peer.
     pub rollbacks: [u32; 2],
-    /// Frames that each ran more than once.
+    /// Number of frames that each peer ran again.
     pub again: [i64; 2],
 }
 
 impl Peers {
-    /// Connects two that play on such physics.
+    /// Connects two peers over a network of a given quality, both with the given physics.
     pub fn connect(
         weather: Weather,
         physics: RollbackPhysicsPlugin,
@@ -54,7 +54,7 @@ impl Peers {
                 .with_num_players(2)?
                 .with_max_prediction_window(WINDOW)
                 .with_input_delay(2)
-                // Real time: a slow machine is no lost peer.
+                // This timeout is in real time, and a slow machine is not a lost peer.
                 .with_disconnect_timeout(Duration::from_secs(60))
                 .with_desync_detection_mode(DesyncDetection::On { interval: 10 })
                 .add_player(PlayerType::Local, me)?
@@ -75,7 +75,7 @@ impl Peers {
         let start = Instant::now();
         while !peers.are_running() {
             peers.update()?;
-            // GGRS greets anew after 200 ms of real time.
+            // GGRS sends its greeting again after 200 ms of real time.
             std::thread::sleep(Duration::from_millis(2));
             if start.elapsed() > Duration::from_secs(60) {
                 return Err("the peers do not find each other".into());
@@ -84,7 +84,7 @@ impl Peers {
         Ok(peers)
     }
 
-    /// Has both play until so many frames are sure, and compares them all.
+    /// Lets both play until `frames` and some more are confirmed. Compares the checksums of all frames up to `frames`.
     pub fn play(&mut self, frames: i32) -> Result<Reached, Box<dyn Error>> {
         let sure = frames + 2 * WINDOW as i32;
         let mut last = (Instant::now(), -1);
@@ -104,7 +104,7 @@ impl Peers {
         let [a, b] = [a, b].map(|app| &app.world().resource::<Seen>().0);
         let mut compared = 0;
         for frame in 0..=frames {
-            // Frames before the first are those that no rollback reaches.
+            // A checksum that is missing at a peer is an error as well.
             match (a.get(&frame), b.get(&frame)) {
                 (Some(one), Some(other)) if one == other => compared += 1,
                 (one, other) => {
@@ -129,7 +129,7 @@ impl Peers {
             let before = app.world().resource::<Cost>().ticked;
             app.update();
             let ticks = app.world().resource::<Cost>().ticked - before;
-            // One of them is the frame itself; there is none while it waits for the other peer.
+            // One of the ticks is the frame itself. There is none while the peer waits for the other one.
             again.extend(ticks.checked_sub(1));
             let Session::P2P(session) = &mut *app.world_mut().resource_mut::<Session<Net>>() else {
                 return Err("no session".into());

@@ -1,4 +1,4 @@
-//! A relay between a client and the server: it counts what passes on the wire, and loses some of it.
+//! A relay between a client and the server that counts datagrams and loses some of them.
 
 use crate::lossy::Random;
 use std::io;
@@ -6,33 +6,33 @@ use std::net::{Ipv4Addr, SocketAddr, UdpSocket};
 
 /// The relay of one client.
 pub struct Relay {
-    /// Where the client sends to.
+    /// Socket to which the client sends.
     front: UdpSocket,
-    /// What the server takes for the client.
+    /// Socket that the server takes for the client.
     back: UdpSocket,
     server: SocketAddr,
     client: Option<SocketAddr>,
     loss: f64,
     random: Random,
-    /// What went to the client, lost or not.
+    /// Datagrams to the client, lost or not.
     pub down: Passed,
-    /// What went to the server, lost or not.
+    /// Datagrams to the server, lost or not.
     pub up: Passed,
 }
 
-/// What passed one way.
+/// Datagrams in one direction.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Passed {
-    /// Datagrams.
+    /// Number of datagrams.
     pub packets: u64,
-    /// Bytes in them, without the headers of UDP and IP, which are 28 bytes a packet.
+    /// Bytes in the datagrams, without the headers of UDP and IP, which are 28 bytes a packet.
     pub bytes: u64,
-    /// Datagrams that were lost.
+    /// Number of lost datagrams.
     pub lost: u64,
 }
 
 impl Relay {
-    /// Before a server, losing a share.
+    /// Opens a relay to a server that loses a share `loss` of all datagrams.
     pub fn new(server: SocketAddr, loss: f64, seed: u64) -> io::Result<Self> {
         let open = || {
             let socket = UdpSocket::bind((Ipv4Addr::LOCALHOST, 0))?;
@@ -51,12 +51,12 @@ impl Relay {
         })
     }
 
-    /// What the client takes for the server.
+    /// Address that the client takes for the server.
     pub fn address(&self) -> io::Result<SocketAddr> {
         self.front.local_addr()
     }
 
-    /// Passes on what is there.
+    /// Forwards all waiting datagrams in both directions.
     pub fn pass(&mut self) {
         let mut buffer = [0; 2048];
         while let Ok((length, from)) = self.front.recv_from(&mut buffer) {
@@ -75,7 +75,7 @@ impl Relay {
 }
 
 impl Passed {
-    /// Counts one, and says whether it is passed on.
+    /// Counts a datagram. Returns whether it is forwarded.
     fn keeps(&mut self, length: usize, loss: f64, random: &mut Random) -> bool {
         self.packets += 1;
         self.bytes += length as u64;

@@ -1,4 +1,4 @@
-//! Springs and Rapier under GGRS: what is kept of each frame, and put back.
+//! Springs and Rapier under GGRS: a snapshot of each frame is kept, and restored when GGRS goes back.
 
 use bevy::ecs::schedule::ScheduleLabel;
 use bevy::prelude::*;
@@ -10,47 +10,47 @@ use bevy_ggrs::{
 use bevy_rapier3d::prelude::*;
 use std::time::{Duration, Instant};
 
-/// One tick of Rapier and of springs. GGRS asks for it, as often as it needs.
+/// Schedule of one tick of Rapier and springs. It runs as often as GGRS asks for a frame.
 #[derive(ScheduleLabel, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Physics;
 
-/// Where the tick stands in `GgrsSchedule`: inputs act before it.
+/// Set of the physics tick in `GgrsSchedule`. Systems that apply inputs run before it.
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Tick;
 
-/// Runs Rapier and springs in GGRS's frames, and has them go back with it. Add it after `GgrsPlugin`.
+/// Runs Rapier and springs in GGRS's frames and makes them go back with it. Add it after `GgrsPlugin`.
 #[derive(Clone, Copy, Debug)]
 pub struct RollbackPhysicsPlugin {
-    /// Whether springs are put back too. Without it the future is another: a test shows it.
+    /// Whether springs are restored too. Without that the future differs: a test shows it.
     pub springs: bool,
     /// Frames per second.
     pub rate: u16,
 }
 
-/// What is kept of a frame.
+/// Snapshots of a frame.
 struct Kept {
     engine: RapierSnapshot,
     springs: CoiloverSnapshot,
 }
 
-/// How often things were done, and how long they took together.
+/// Counts and total times of snapshots and ticks.
 #[derive(Resource, Clone, Copy, Debug, Default)]
 pub struct Cost {
-    /// Snapshots taken.
+    /// Number of snapshots taken.
     pub saved: u32,
-    /// For it.
+    /// Total time of taking snapshots.
     pub saving: Duration,
-    /// Snapshots put back.
+    /// Number of snapshots restored.
     pub loaded: u32,
-    /// For it.
+    /// Total time of restoring snapshots.
     pub loading: Duration,
-    /// Ticks.
+    /// Number of ticks.
     pub ticked: u32,
-    /// For them.
+    /// Total time of ticks.
     pub ticking: Duration,
 }
 
-/// Whether springs are put back.
+/// Whether springs are restored.
 #[derive(Resource, Clone, Copy)]
 struct WithSprings(bool);
 
@@ -76,7 +76,8 @@ impl Plugin for RollbackPhysicsPlugin {
                 RapierPhysicsPlugin::<NoUserData>::default().in_schedule(Physics),
                 CoiloverPlugin::new(Physics),
             ))
-            // Before the first frame, or that would be kept without bodies: Rapier meets them in its first tick.
+            // A tick before the first frame, because Rapier creates bodies in its first tick. Without it, that frame's
+            // snapshot has no bodies.
             .add_systems(PostStartup, tick)
             .add_systems(GgrsSchedule, tick.in_set(Tick))
             .init_resource::<GgrsSnapshots<Kept>>()
@@ -90,7 +91,7 @@ impl Plugin for RollbackPhysicsPlugin {
                     .chain()
                     .in_set(SaveWorldSystems::Snapshot),
             )
-            // After the game's own components, which springs look at.
+            // After the game's own components, which springs read.
             .add_systems(LoadWorld, load.after(LoadWorldSystems::Mapping));
     }
 }

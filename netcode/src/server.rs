@@ -1,4 +1,4 @@
-//! A server with physics, and clients that only draw, over UDP.
+//! A server with physics, and clients that only draw, connected over UDP.
 
 use crate::relay::Relay;
 use bevy::app::ScheduleRunnerPlugin;
@@ -24,10 +24,10 @@ use std::time::{Duration, Instant, SystemTime};
 /// Ticks per second.
 pub const RATE: u16 = 60;
 
-/// Server and clients have to agree on it.
+/// Protocol number, which server and clients have to share.
 const PROTOCOL: u64 = 21;
 
-/// What is sent: the same, in the same order, on the server and on clients.
+/// Registers the replicated components. Server and clients have to register the same ones in the same order.
 pub struct SentPlugin;
 
 impl Plugin for SentPlugin {
@@ -37,27 +37,27 @@ impl Plugin for SentPlugin {
             RepliconPlugins.set(ServerPlugin::new(PostUpdate)),
             RepliconRenetPlugins,
         ))
-        // Bodies and points. Drawn elements have one too, which says nothing.
+        // Bodies and points. Drawn elements have a transform too, but nobody needs it.
         .replicate_filtered::<Transform, (Without<Coil>, Without<Telescope>, Without<TorsionCoil>)>(
         )
-        // Elements, whose ends Replicon maps.
+        // Elements. Replicon maps their ends.
         .replicate::<Spring>()
         .replicate::<Damper>()
         .replicate::<SpringDamper>()
         .replicate::<TorsionSpring>()
         .replicate::<TorsionDamper>()
         .replicate::<TorsionSpringDamper>()
-        // What says where and how they are drawn.
+        // Where and how elements are drawn.
         .replicate::<Anchors>()
         .replicate::<Coil>()
         .replicate::<Telescope>()
         .replicate::<TorsionCoil>()
-        // A strip shows full turns, which nobody can tell from where bodies are.
+        // A strip shows full turns, which do not follow from the poses of bodies.
         .replicate_filtered_as::<SpringReadout, Turned, With<TorsionCoil>>();
     }
 }
 
-/// What is sent of a read-out: the angle with full turns, rad.
+/// The replicated part of a readout: the angle with full turns, rad.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct Turned(f32);
 
@@ -76,7 +76,7 @@ impl From<Turned> for SpringReadout {
     }
 }
 
-/// An app whose every update is one tick.
+/// An app that runs one tick per update.
 fn bare() -> App {
     let mut app = App::new();
     let tick = Duration::from_secs_f64(1.0 / f64::from(RATE));
@@ -89,7 +89,7 @@ fn bare() -> App {
     app
 }
 
-/// Draws springs, without a window.
+/// Adds the plugins that draw springs, without a window.
 fn draw(app: &mut App) {
     app.add_plugins(AssetPlugin::default())
         .init_asset::<Mesh>()
@@ -106,30 +106,30 @@ fn channels(app: &App) -> ConnectionConfig {
     }
 }
 
-/// A client: no Rapier, no springs that act.
+/// A client, which has neither Rapier nor acting springs.
 pub struct Client {
-    /// Its app.
+    /// App of the client.
     pub app: App,
-    /// What is between it and the server.
+    /// Relay between the client and the server.
     pub relay: Relay,
 }
 
 /// A server and its clients.
 pub struct Hosted {
-    /// The server's app.
+    /// App of the server.
     pub server: App,
-    /// All that have joined.
+    /// Clients in the order in which they joined.
     pub clients: Vec<Client>,
     address: SocketAddr,
 }
 
 impl Hosted {
-    /// A server without clients, which draws nothing.
+    /// Starts a server without clients, which draws nothing.
     pub fn new() -> Result<Self, Box<dyn Error>> {
         Self::start(bare())
     }
 
-    /// A server without clients, which draws as they do: to compare with.
+    /// Starts a server without clients, which draws as clients do, for comparison.
     pub fn that_draws() -> Result<Self, Box<dyn Error>> {
         let mut server = bare();
         draw(&mut server);
@@ -163,7 +163,7 @@ impl Hosted {
         })
     }
 
-    /// Another client, over a wire that loses a share. It is there when this returns.
+    /// Adds a client over a relay that loses a share `loss`. Returns once it is connected.
     pub fn join(&mut self, loss: f64) -> Result<(), Box<dyn Error>> {
         let mut app = bare();
         draw(&mut app);
@@ -171,7 +171,7 @@ impl Hosted {
         app.finish();
         app.cleanup();
         let id = self.clients.len() as u64 + 1;
-        // Its entities have other ids than the server's.
+        // These entities give its scene other ids than the server's.
         for _ in 0..100 * id {
             app.world_mut().spawn_empty();
         }
@@ -198,7 +198,7 @@ impl Hosted {
         Ok(())
     }
 
-    /// A tick of the server, then of all clients.
+    /// Runs a tick of the server, then of all clients.
     pub fn tick(&mut self) {
         self.server.update();
         for client in &mut self.clients {
@@ -208,7 +208,7 @@ impl Hosted {
         }
     }
 
-    /// So many ticks.
+    /// Runs a number of ticks.
     pub fn run(&mut self, ticks: u32) {
         for _ in 0..ticks {
             self.tick();
@@ -221,30 +221,30 @@ impl Client {
         self.app.world().resource::<RenetClient>().is_connected()
     }
 
-    /// What an entity of the server's is called here.
+    /// The client's entity for an entity of the server.
     pub fn here(&self, there: Entity) -> Option<Entity> {
         let map = self.app.world().resource::<ServerEntityMap>();
         map.to_client().get(&there).copied()
     }
 
-    /// A component of an entity of the server's, as it is here.
+    /// The client's component of an entity of the server.
     pub fn get<C: Component>(&self, there: Entity) -> Option<&C> {
         self.app.world().get::<C>(self.here(there)?)
     }
 
-    /// All drawn parts, of all elements.
+    /// Number of drawn parts of all elements.
     pub fn drawn(&mut self) -> usize {
         let world = self.app.world_mut();
         world.query::<&Mesh3d>().iter(world).count()
     }
 
-    /// Where the coil of an element begins and ends.
+    /// Start and end of an element's drawn coil, in the world, m.
     pub fn coil(&self, there: Entity) -> Option<(Vec3, Vec3)> {
         let world = self.app.world();
         let parts = self.get::<Children>(there)?.iter();
         let mut coils = parts.filter(|part| world.get::<Mesh3d>(*part).is_some());
         let place = world.get::<GlobalTransform>(coils.next()?)?;
-        // The mesh is one metre long.
+        // The mesh of a coil is one metre long.
         Some((
             place.transform_point(Vec3::ZERO),
             place.transform_point(Vec3::Y),
@@ -252,7 +252,7 @@ impl Client {
     }
 }
 
-/// A weight below a hook on a drawn spring: hook, weight and element.
+/// Spawns a weight below a hook on a spring. Returns hook, weight and element.
 pub fn hang(world: &mut World, at: Vec3) -> [Entity; 3] {
     let hook = (Transform::from_translation(at), Replicated);
     let hook = world.spawn(hook).id();

@@ -1,5 +1,5 @@
-//! With the feature `enhanced-determinism`: does each scene end in the very bits that it ended in when they were noted here,
-//! on whatever machine that was? A change of the physics changes them: the test says the new ones.
+//! With the feature `enhanced-determinism`, each scene ends in the bits that are noted here, on every machine. A change
+//! of the physics changes them: the failing test prints the new ones.
 
 use bevy::ecs::schedule::SingleThreadedExecutor;
 use bevy::prelude::*;
@@ -11,7 +11,7 @@ use std::time::Duration;
 const DT: f32 = 1.0 / 60.0;
 const TICKS: u32 = 300;
 
-/// A scene, and the order in which its bodies were spawned.
+/// A scene, and its bodies in the order in which they were spawned.
 struct Scene {
     app: App,
     bodies: Vec<Entity>,
@@ -76,7 +76,7 @@ impl Scene {
         body
     }
 
-    /// FNV-1a of the bits of all places and velocities.
+    /// FNV-1a hash of all poses and velocities after [`TICKS`] ticks.
     fn hash(mut self) -> u64 {
         for _ in 0..TICKS {
             self.app.update();
@@ -190,7 +190,7 @@ fn laws(plugin: CoiloverPlugin) -> Scene {
         let spring = spring.with_damping(0.5).with_rest_length(1.0);
         scene.spawn((spring, law));
     }
-    // A valve that opens, and a rope that goes slack.
+    // A damper whose valve opens, and a rope that goes slack.
     let bob = scene.body(1.0, Vec3::new(4.0, -1.0, 0.0), Vec3::ZERO);
     let valve = SpringDamper::new(hook, bob).with_stiffness(60.0);
     let opens = DampingLaw::BlowOff {

@@ -1,4 +1,4 @@
-//! Does a client draw each kind of element as its server would, whenever it joined?
+//! A client draws each kind of element as its server would, whenever it joined.
 
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
@@ -7,7 +7,7 @@ use bevy_replicon::prelude::*;
 use netcode::server::{Client, Hosted};
 use std::f32::consts::TAU;
 
-/// An element of each kind, each with looks.
+/// An element of each kind, each with components that draw it.
 struct Kinds {
     ends: [Entity; 2],
     spring: Entity,
@@ -24,7 +24,7 @@ impl Kinds {
     }
 }
 
-/// Lengths of its parts that do not depend on where its ends were when it was first drawn.
+/// A telescope whose lengths do not depend on the pose in which it was first drawn.
 fn telescope() -> Telescope {
     Telescope {
         tube_length: Some(0.5),
@@ -87,7 +87,7 @@ fn spawn(world: &mut World) -> Kinds {
     }
 }
 
-/// What is drawn of an element: how many vertices, and where.
+/// Drawn parts of an element: number of vertices and transform of each.
 fn parts(world: &World, element: Entity) -> Vec<(usize, GlobalTransform)> {
     let children = world.get::<Children>(element).expect("it is drawn");
     let meshes = world.resource::<Assets<Mesh>>();
@@ -143,7 +143,7 @@ fn clients_draw_each_kind_as_the_server_would() {
         ends_are_mapped(&hosted.clients[0], &kinds);
         drawn_alike(&hosted, &hosted.clients[0], &kinds);
     }
-    // Past a full turn, which nobody can tell who sees the wheel for the first time.
+    // The wheel is past a full turn, which a client cannot tell from the pose when it joins.
     let world = hosted.server.world();
     let turned = world.get::<SpringReadout>(kinds.wound[2]);
     assert!(turned.expect("a torsion element").length > TAU);

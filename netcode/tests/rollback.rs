@@ -1,6 +1,6 @@
-//! Do springs go back under GGRS, and come out the same at both peers?
+//! Springs go back under GGRS, and are the same at both peers.
 //!
-//! `COILOVER_NET_SECONDS=600` for ten simulated minutes.
+//! Set `COILOVER_NET_SECONDS=600` for ten simulated minutes.
 
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
@@ -13,7 +13,7 @@ use netcode::rollback::{Cost, RollbackPhysicsPlugin};
 use std::collections::HashSet;
 use std::f32::consts::TAU;
 
-/// Frames that are played.
+/// Number of frames to play.
 fn frames() -> i32 {
     let seconds = std::env::var("COILOVER_NET_SECONDS");
     let seconds = seconds.map_or(20, |text| text.parse().expect("a number of seconds"));
@@ -31,7 +31,7 @@ const FORGETFUL: RollbackPhysicsPlugin = RollbackPhysicsPlugin {
     rate: RATE,
 };
 
-/// Plays alone, going back 7 frames in every frame. How often a frame came out otherwise.
+/// Plays alone and goes back by 7 frames in every frame. Returns the number of mismatches, and the cost.
 fn sync_test(frames: i32, physics: RollbackPhysicsPlugin) -> (usize, Cost) {
     let session = game::sync_test(7).expect("a session");
     let mut app = game::app(Session::SyncTest(session), physics);
@@ -44,7 +44,7 @@ fn sync_test(frames: i32, physics: RollbackPhysicsPlugin) -> (usize, Cost) {
     let world = app.world();
     let seen = &world.resource::<Seen>().0;
     let moved = seen.values().collect::<HashSet<_>>();
-    // Something has to move, or nothing is compared.
+    // The scene has to move, or the comparison says nothing.
     assert!(moved.len() > seen.len() / 2 || seen.len() < 10);
     (
         world.resource::<Mismatches>().0.len(),

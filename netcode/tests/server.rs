@@ -1,4 +1,4 @@
-//! Do springs of a server's arrive at clients, and are they drawn there where the bodies are?
+//! Springs of a server arrive at clients, which draw them between their bodies.
 
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
@@ -10,7 +10,7 @@ const ANCHORS: Anchors = Anchors {
     b: Vec3::new(0.0, 0.1, 0.0),
 };
 
-/// A server and two clients, of which one loses a twentieth of all.
+/// A server and two clients, the second of which loses a twentieth of all datagrams.
 fn hosted() -> Hosted {
     let mut hosted = Hosted::new().expect("a server");
     hosted.join(0.0).expect("the first client");
@@ -34,7 +34,7 @@ fn on_server<C: Component + Clone>(hosted: &Hosted, entity: Entity) -> C {
     found.expect("it is on the server").clone()
 }
 
-/// Whether an element is at a client as it is on the server, with its ends called as they are called there.
+/// Asserts that a client has an element with the values of the server, and with its ends mapped.
 fn arrived(hosted: &Hosted, client: &Client, all: [Entity; 3]) {
     let [hook, weight, element] = all;
     let mut expected: SpringDamper = on_server(hosted, element);
@@ -49,7 +49,7 @@ fn arrived(hosted: &Hosted, client: &Client, all: [Entity; 3]) {
     );
 }
 
-/// Whether the coil is drawn from anchor to anchor, as the client has the bodies.
+/// Asserts that a client draws the coil from anchor to anchor of its own bodies.
 fn drawn_between(client: &Client, [hook, weight, element]: [Entity; 3]) {
     let end = |entity, anchor| {
         let place: &GlobalTransform = client.get(entity).expect("it has a place");
@@ -75,7 +75,7 @@ fn elements_arrive_with_their_ends_and_are_drawn_without_physics() {
                 drawn_between(client, *all);
             }
         }
-        // Over a net that loses nothing, the client is where the server is.
+        // Over a connection without loss, the client has the pose of the server.
         let [_, weight, element] = scene[0];
         let there: Transform = on_server(&hosted, weight);
         let here = hosted.clients[0].get::<Transform>(weight);
@@ -91,7 +91,7 @@ fn elements_arrive_with_their_ends_and_are_drawn_without_physics() {
         assert_eq!(client.drawn(), 3);
         let world = client.app.world_mut();
         assert!(!world.contains_resource::<TimestepMode>());
-        // Each element has one, which nothing writes here.
+        // Each element has a readout, which nothing writes at a client.
         let mut readouts = world.query::<&SpringReadout>();
         assert_eq!(readouts.iter(world).count(), 3);
         let unwritten = SpringReadout::default();
@@ -126,7 +126,7 @@ fn what_changes_on_the_server_arrives() {
     let mut spring = changed.get_mut::<SpringDamper>().expect("an element");
     (spring.stiffness, spring.rest_length) = (333.0, Some(0.7));
     changed.get_mut::<Coil>().expect("a coil").turns = 11.0;
-    // Renet sends again what was lost after 0.3 s.
+    // Renet sends lost messages again after 0.3 s.
     hosted.run(120);
     for client in &hosted.clients {
         arrived(&hosted, client, scene[1]);
@@ -149,14 +149,14 @@ fn what_changes_on_the_server_arrives() {
 #[test]
 fn a_despawned_end_and_a_despawned_element_leave_nothing() {
     let mut hosted = hosted();
-    // Shapes that were drawn once are kept for the next coil.
+    // Meshes that were drawn once are kept for the next coil, so a first scene makes them.
     let before = scene(&mut hosted);
     hosted.run(60);
     clear(&mut hosted, before);
     let before: Vec<_> = hosted.clients.iter().map(all_of).collect();
     let scene = scene(&mut hosted);
     hosted.run(120);
-    // The end goes first, and its element is at fault until the game despawns it.
+    // The end is despawned first. The element has a fault until the game despawns it.
     let [_, weight, element] = scene[0];
     hosted.server.world_mut().despawn(weight);
     hosted.run(120);
@@ -187,17 +187,17 @@ fn who_joins_when_an_end_is_gone_sees_the_others() {
     drawn_between(late, scene[1]);
     assert!(late.get::<SpringDamper>(element).is_some());
     assert_eq!(late.coil(element), None);
-    // Replicon has an empty entity stand for what it is told of and never gets.
+    // Replicon spawns an empty entity for an end that it knows of but never receives.
     let stand_in = late.here(weight).expect("an entity in its place");
     assert!(late.get::<Transform>(weight).is_none());
     clear(&mut hosted, scene);
     let world = hosted.clients[2].app.world_mut();
     assert_eq!(world.query::<&SpringDamper>().iter(world).count(), 0);
-    // Nobody tells it that this one is gone: so the game had better despawn the element with its end.
+    // The client never learns that this entity is gone, so a game should despawn the element with its end.
     assert!(world.get_entity(stand_in).is_ok());
 }
 
-/// Despawns all of a scene, some of which may be gone.
+/// Despawns all entities of a scene, some of which may be gone.
 fn clear(hosted: &mut Hosted, scene: Vec<[Entity; 3]>) {
     for [hook, weight, element] in scene {
         let world = hosted.server.world_mut();
@@ -210,7 +210,7 @@ fn clear(hosted: &mut Hosted, scene: Vec<[Entity; 3]>) {
     }
 }
 
-/// All that a client has: entities, of whatever kind, and meshes.
+/// Number of entities and of meshes of a client.
 fn all_of(client: &Client) -> (usize, usize) {
     let world = client.app.world();
     let meshes = world.resource::<Assets<Mesh>>().len();

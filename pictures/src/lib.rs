@@ -1,16 +1,17 @@
-//! What tests and films share: how to run an example.
+//! Shared by tests and films: how to run an example.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::SystemTime;
 
-/// Where the examples are.
+/// Returns the root folder of the repository, which contains the examples.
 pub fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
 }
 
-/// An example, run in the root folder: as it was built along with this program, if that is newer than all sources; else
-/// by cargo, which for a whole workspace would first build Bevy again with one package's features alone.
+/// Returns the command that runs an example in the root folder. It uses the program built along with this one if that
+/// is newer than all sources. Otherwise it uses cargo, which for a whole workspace would first rebuild Bevy with the
+/// features of one package.
 pub fn command(scene: &str) -> Command {
     let root = root();
     let mut command = match built(&root, scene) {
@@ -28,7 +29,7 @@ pub fn command(scene: &str) -> Command {
 fn built(root: &Path, scene: &str) -> Option<PathBuf> {
     let program = std::env::current_exe().ok()?;
     let name = format!("{scene}{}", std::env::consts::EXE_SUFFIX);
-    // Tests are in a folder `deps` of their profile's, programs beside it.
+    // Tests are in the folder `deps` of their profile, programs beside it.
     let built = program
         .ancestors()
         .skip(1)
@@ -40,7 +41,7 @@ fn built(root: &Path, scene: &str) -> Option<PathBuf> {
     (age >= sources?).then_some(built)
 }
 
-/// When anything in a folder was changed last.
+/// Returns the time of the last change in a folder.
 fn newest(folder: &Path) -> Option<SystemTime> {
     let mut latest = None;
     for entry in std::fs::read_dir(folder).ok()?.flatten() {

@@ -1,4 +1,4 @@
-//! Films: an example's last seconds as one animated GIF.
+//! Makes an animated GIF of an example's last seconds.
 //!
 //! `cargo run --release -p pictures -- showcase docs/showcase.gif`, after
 //! `cargo build --release --example showcase`.
@@ -12,10 +12,10 @@ use std::io::BufWriter;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-/// Hundredths of a second that a picture is shown, as the examples film.
+/// Time that each picture is shown, in hundredths of a second: the rate at which the examples film.
 const DELAY: u16 = 5;
 const SIZE: (u16, u16) = (640, 360);
-/// Of the choice of colours: 1 is best, 30 is fastest.
+/// Speed of the colour selection: 1 is best, 30 is fastest.
 const SPEED: i32 = 10;
 
 const USAGE: &str = "pictures EXAMPLE FILE.gif: films the last seconds of an example";
@@ -62,7 +62,7 @@ fn run() -> Result<String, Box<dyn Error>> {
     Ok(format!("{} pictures in {}", frames.len(), file.display()))
 }
 
-/// The pictures in a folder, in their order.
+/// Returns the pictures in a folder, in order.
 fn frames(folder: &Path) -> Result<Vec<PathBuf>, Box<dyn Error>> {
     let mut frames = Vec::new();
     for entry in fs::read_dir(folder)? {
@@ -78,7 +78,7 @@ fn frames(folder: &Path) -> Result<Vec<PathBuf>, Box<dyn Error>> {
     Ok(frames)
 }
 
-/// Makes one animation of them.
+/// Combines the pictures into one animation.
 fn bind(frames: &[PathBuf], file: &Path) -> Result<(), Box<dyn Error>> {
     let (width, height) = SIZE;
     let out = BufWriter::new(File::create(file)?);

@@ -1,15 +1,15 @@
-//! Do the examples still look as they should after ten minutes in their windows? Nothing is drawn for that: each
-//! example watches where its bodies are. A minute of it by default, all of it with `MINUTES=all`.
+//! Checks that the examples still look as they should after ten minutes in their windows. Nothing is drawn: each
+//! example watches the positions of its bodies. Runs a minute of each by default, the whole time with `MINUTES=all`.
 
 #![allow(missing_docs, reason = "a test")]
 
 use pictures::command;
 use std::process::Stdio;
 
-/// Scenes, and the minutes that each is watched.
+/// Scenes, and the number of minutes that each is watched.
 const SCENES: [(&str, &str); 25] = [
     ("trampoline", "1"),
-    // Cloth and bridge are much to compute; a bridge crossed once shows what ten crossings would.
+    // Cloth and bridge take long to compute. One crossing of the bridge shows as much as ten.
     ("flag", "5"),
     ("rope_bridge", "5"),
     ("crane", "5"),
@@ -39,7 +39,7 @@ const SCENES: [(&str, &str); 25] = [
 #[test]
 fn after_ten_minutes_nothing_has_left_the_picture_or_lies_askew() {
     let all = std::env::var("MINUTES").is_ok_and(|minutes| minutes == "all");
-    // Two at a time; each is one thread's work.
+    // Two at a time: each uses one thread.
     for pair in SCENES.chunks(2) {
         let begin = |(scene, minutes): &(&'static str, &str)| {
             let mut watched = command(scene);

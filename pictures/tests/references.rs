@@ -1,6 +1,6 @@
-//! Do the examples look as they did? Each is run as a user runs it, and its picture compared with
-//! `references/`. After a change that is meant to be seen, look at the new pictures and keep them:
-//! `UPDATE_REFERENCES=1 cargo test --workspace --test references look`.
+//! Checks that the examples look as before. Each is run as a user runs it, and its picture is compared with
+//! `references/`. After an intended visual change, look at the new pictures and keep them: `UPDATE_REFERENCES=1 cargo
+//! test --workspace --test references look`.
 
 #![allow(missing_docs, reason = "a test")]
 
@@ -32,14 +32,15 @@ const SCENES: [&str; 22] = [
     "newtons_chain",
     "showcase",
 ];
-/// Pictures are compared and kept this small: what matters is still seen.
+/// Size in which pictures are compared and kept: details that matter stay visible.
 const SIZE: (u32, u32) = (480, 270);
-/// Tiles a picture is cut into, across and down: the worst one counts, for a coil is little of a picture.
+/// Number of tiles across and down a picture. The worst tile counts, because a coil is a small part of a picture.
 const TILES: (u32, u32) = (8, 5);
-/// One is the same tile. Other drivers' edges and rounding cost little of it, a missing coil far more.
+/// Least likeness of a tile; 1 is identical. Edges and rounding of other drivers lower it little, a missing coil much
+/// more.
 const ALIKE: f64 = 0.85;
 
-/// How alike the most different tiles of two pictures are.
+/// Returns the likeness of the most different tiles of two pictures.
 fn likeness(a: &RgbImage, b: &RgbImage) -> f64 {
     let (width, height) = (SIZE.0 / TILES.0, SIZE.1 / TILES.1);
     let mut worst = 1.0_f64;
@@ -60,7 +61,7 @@ fn the_examples_look_as_they_did_and_their_checks_hold() {
     let kept = root().join("pictures/references");
     let shot =
         |scene: &str| std::env::temp_dir().join(format!("{scene}_{}.png", std::process::id()));
-    // Two at a time: what is computed is one thread's work.
+    // Two at a time: each uses one thread.
     let seen = SCENES.chunks(2).flat_map(|pair| {
         let begin = |scene: &&'static str| {
             let mut seen = command(scene);

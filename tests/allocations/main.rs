@@ -1,5 +1,5 @@
-//! Does a step allocate memory, once everything has been seen? Every allocation of the process is counted
-//! while our systems run.
+//! Does a step allocate memory after the scene has been read once? Every allocation of the process is counted
+//! while the crate's systems run.
 
 use bevy::app::TaskPoolOptions;
 use bevy::ecs::schedule::SingleThreadedExecutor;
@@ -14,7 +14,7 @@ use std::time::Duration;
 #[global_allocator]
 static GLOBAL: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
 
-/// Allocations and reallocations when our systems began, and within them so far.
+/// Allocations and reallocations at the start of the crate's systems, and within the systems so far.
 #[derive(Resource, Default)]
 struct Count {
     before: usize,
@@ -34,11 +34,11 @@ fn end(mut count: ResMut<Count>) {
     count.within += allocations() - count.before;
 }
 
-/// An app on one thread, so that nothing but our systems runs between `begin` and `end`.
+/// An app on one thread, so that only the crate's systems run between `begin` and `end`.
 fn app() -> App {
     let tick = Duration::from_secs_f32(1.0 / 60.0);
     let mut app = App::new();
-    // Nor is there so much in the scene that other threads share it, which takes a little memory.
+    // One thread only: sharing work among threads takes a little memory.
     let one = TaskPoolPlugin {
         task_pool_options: TaskPoolOptions::with_num_threads(1),
     };
@@ -92,7 +92,7 @@ fn body(world: &mut World, at: Vec3) -> Entity {
         .id()
 }
 
-/// A chain of so many springs, hung at one end.
+/// A chain of `count` springs, hung at one end.
 fn chain(world: &mut World, at: Vec3, count: usize, arm: Vec3) {
     let mut last = world.spawn(Transform::from_translation(at)).id();
     for i in 1..=count {
@@ -108,13 +108,13 @@ fn chain(world: &mut World, at: Vec3, count: usize, arm: Vec3) {
     }
 }
 
-/// One test for all, since every thread's allocations are counted.
+/// One test for everything, because the allocations of all threads are counted.
 #[test]
 fn a_warm_step_allocates_nothing() {
     let mut app = app();
     let world = app.world_mut();
     for i in 0..20 {
-        // Alone, without and with turning.
+        // Lone springs, without and with rotation of the body.
         chain(world, Vec3::Z * 3.0 * i as f32, 1, Vec3::ZERO);
         chain(
             world,
@@ -135,7 +135,7 @@ fn a_warm_step_allocates_nothing() {
     }
     let within = app.world().resource::<Count>().within;
     assert_eq!(within, 0, "allocations in 30 steps");
-    // The counter does count: something new has to be found.
+    // Check that the counter works: a new network must allocate.
     let world = app.world_mut();
     chain(world, Vec3::Y * 50.0, 2, Vec3::ZERO);
     app.update();

@@ -1,6 +1,6 @@
 //! Project Chrono's validation of its translational spring-damper against MSC Adams.
 //!
-//! Chrono's own test asks for an RMS position error of 1e-4 m, which it meets with a step of 1e-5 s.
+//! Chrono's own test requires an RMS position error of 1e-4 m. Chrono meets it with a step of 1e-5 s.
 
 use crate::harness::*;
 use bevy::math::DVec3;
@@ -15,7 +15,7 @@ struct Case {
     rest_length: f32,
     stiffness: f32,
     damping: f32,
-    /// N/m².
+    /// Quadratic coefficient of the spring law, N/m².
     quadratic: f32,
 }
 
@@ -30,7 +30,7 @@ const CASE_01: Case = Case {
     quadratic: 0.0,
 };
 
-/// Case 3 with the linear part of its law.
+/// Case 3 with only the linear part of its law.
 const CASE_03: Case = Case {
     file: include_str!("../data/tsda_case03_linear.csv"),
     ground: Vec3::new(1.0, 2.0, 3.0),
@@ -42,14 +42,14 @@ const CASE_03: Case = Case {
     quadratic: 0.0,
 };
 
-/// Case 3 as it is.
+/// Case 3 with its quadratic law.
 const CASE_03_QUADRATIC: Case = Case {
     file: include_str!("../data/tsda_case03.csv"),
     quadratic: 10.0,
     ..CASE_03
 };
 
-/// RMS position error over 5 s, m, and the largest angle between orientations, rad.
+/// RMS position error over 5 s, m, and largest orientation error, rad.
 fn errors(case: &Case, plugin: CoiloverPlugin) -> (f64, f64) {
     let gravity = Vec3::NEG_Z * 9.80665;
     let mut lab = Lab::with(

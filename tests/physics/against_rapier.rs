@@ -1,4 +1,4 @@
-//! What do the two ways that Rapier itself offers make of the soft elastic pendulum?
+//! How accurate are the two springs that Rapier itself offers, for the soft elastic pendulum?
 
 use crate::harness::*;
 use bevy::math::DVec3;
@@ -33,7 +33,7 @@ fn joint() -> f64 {
     worst(lab, weight, |_| {})
 }
 
-/// The force of the spring, written once a step.
+/// The force of the spring, set once per step.
 fn force() -> f64 {
     let mut lab = Lab::new();
     let weight = lab.body(1.0, Vec3::X);

@@ -1,4 +1,4 @@
-//! Are anchors and rates taken as they were given?
+//! Are world anchors and rates applied exactly as given?
 
 use crate::harness::*;
 use crate::messages::Log;
@@ -9,7 +9,7 @@ use bevy_rapier3d::prelude::*;
 #[test]
 fn points_of_the_world_become_points_of_the_ends_at_the_first_step() {
     let mut lab = Lab::weightless();
-    // An end with a place, a turn and a scale, below another entity.
+    // An end with a translation, rotation and scale in the world, below another entity.
     let root =
         lab.spawn(Transform::from_xyz(1.0, 0.0, 2.0).with_rotation(Quat::from_rotation_y(0.7)));
     let hook = lab.spawn((

@@ -8,7 +8,7 @@ use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use std::collections::BTreeSet;
 
-/// Everything of ours in the type registry, by the path that a saved scene writes.
+/// Type paths of this crate's types in the type registry. A saved scene contains these paths.
 pub fn paths(lab: &Lab) -> BTreeSet<&'static str> {
     let registry = lab.app.world().resource::<AppTypeRegistry>().read();
     registry
@@ -57,7 +57,7 @@ fn every_public_component_is_in_the_type_registry() {
 #[test]
 fn a_saved_scene_names_types_by_paths_that_no_moved_file_changes() {
     let found = paths(&Lab::new());
-    // What components are made of is saved with them.
+    // A saved scene also contains the types of the components' fields.
     let inside = [
         "SpringMethod",
         "ForceTable",

@@ -1,4 +1,4 @@
-//! Is bad input told once, with entity and field, while everything else goes on?
+//! Does bad input cause one message with entity and field, while everything else goes on?
 
 use crate::harness::*;
 use crate::messages::Log;
@@ -14,7 +14,7 @@ struct Bench {
     neighbour: Entity,
 }
 
-/// One element that will be spoilt, and a neighbour on its own body that must not notice.
+/// One element that a test will spoil, and a second body on its own spring that must not be affected.
 fn bench() -> Bench {
     let mut lab = Lab::weightless();
     let hook = lab.point(Vec3::ZERO);
@@ -47,7 +47,8 @@ impl Bench {
         self.lab.get_mut::<SpringDamper>(self.element)
     }
 
-    /// Runs with the fault and checks that it is told once, that the element is inert and the rest is not.
+    /// Runs with the fault. Checks that there is one message, that the element is inert, and that the second body
+    /// still moves.
     fn expect_fault(&mut self, field: &str, reason: &str) {
         let log = Log::capture();
         let before = self.lab.velocity(self.body);
@@ -61,7 +62,7 @@ impl Bench {
         assert_eq!(fault.field, field);
         assert!(fault.reason.contains(reason), "{fault}");
         assert_eq!(fault.entity, self.element);
-        // No force is shown that does not act.
+        // The readout must not show a force that does not act.
         assert_eq!(self.lab.readout(self.element), SpringReadout::default());
         let told = log.take();
         let naming = format!("{}: {field}", self.element);
@@ -75,7 +76,7 @@ impl Bench {
         assert!(self.lab.velocity(self.neighbour).length() > 0.0);
     }
 
-    /// Mended, it acts again and the fault is gone.
+    /// After the input is corrected, the element acts again and the fault is gone.
     fn expect_recovery(&mut self) {
         let before = self.lab.velocity(self.body);
         self.lab.run(0.1);
@@ -209,7 +210,7 @@ fn ends_that_coincide_where_the_direction_matters() {
     let body = b.body;
     b.lab.get_mut::<Transform>(body).translation = Vec3::ZERO;
     let (hook, body) = (b.hook, b.body);
-    // A new element has no direction to remember.
+    // A new element has no earlier direction to use.
     b.lab.app.world_mut().despawn(b.element);
     b.element = b.lab.spawn((
         SpringDamper::new(hook, body)

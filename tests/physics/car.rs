@@ -10,7 +10,7 @@ const WHEEL: f32 = 20.0;
 const RADIUS: f32 = 0.32;
 const STIFFNESS: f32 = 30e3;
 const DAMPING: f32 = 3e3;
-/// Length of a spring without load.
+/// Length of an unloaded spring, m.
 const REST: f32 = 0.5;
 
 struct Car {
@@ -19,8 +19,8 @@ struct Car {
     wheels: [Entity; 4],
 }
 
-/// Four wheels guided up and down along the chassis, each rolling about its axle; a step of 6 cm stands
-/// 3 m ahead. The car drives along −z.
+/// Four wheels, each guided vertically along the chassis and rolling about its axle. A step of 6 cm lies ahead.
+/// The car drives along −z at `speed`, m/s.
 fn car(speed: f32) -> Car {
     let mut lab = Lab::new();
     lab.spawn((
@@ -141,7 +141,7 @@ fn over_a_step_it_stays_on_its_wheels_and_comes_to_rest() {
     );
     assert!(car.speed() < 1e-3, "{}", car.speed());
     assert!(up.y > 0.9999, "{up:?}");
-    // It stands a step higher than on the plane.
+    // The car stands on the step, which is 0.06 m high.
     let sag = CHASSIS * GRAVITY as f32 / 4.0 / STIFFNESS;
     let y = car.lab.position(car.chassis).y;
     let wanted = 0.06 + RADIUS + REST - sag;

@@ -1,4 +1,4 @@
-//! Does a network that is left alone, and so not read anew in every step, move as one that is?
+//! A network without changes is not read again in every step. Does it move as one that is read in every step?
 
 use crate::dice::Dice;
 use crate::harness::*;
@@ -6,7 +6,7 @@ use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
 
-/// A net of balls that hangs from hooks, one of them a thing that the game moves.
+/// A net of balls that hangs from hooks. The game moves one of the hooks.
 struct Net {
     lab: Lab,
     hook: Entity,
@@ -57,7 +57,7 @@ impl Net {
         }
     }
 
-    /// Everything that can be seen of it.
+    /// Positions and velocities of the balls, and the readouts of the springs.
     fn state(&self) -> Vec<u32> {
         let mut state = Vec::new();
         for ball in &self.balls {
@@ -72,7 +72,7 @@ impl Net {
         state.into_iter().map(f32::to_bits).collect()
     }
 
-    /// What game and player do to it in a tick.
+    /// Changes that the game and the player make to the net in a tick.
     fn disturb(&mut self, tick: usize) {
         if (40..60).contains(&tick) {
             let t = (tick - 40) as f32 / 20.0;
@@ -104,7 +104,7 @@ fn a_network_left_alone_moves_as_one_that_is_read_anew_bit_for_bit() {
         let mut touched = Net::new(stiffness, damping);
         for tick in 0..180 {
             alone.disturb(tick);
-            // The same number once more, but it might have been another one.
+            // The value does not change, but the crate must read the spring again to know that.
             let spring = touched.springs[tick % 20];
             touched.lab.get_mut::<SpringDamper>(spring).stiffness = stiffness;
             touched.disturb(tick);
@@ -146,7 +146,7 @@ fn a_hand_that_moves_and_is_put_elsewhere_does_the_same_work_on_a_net_left_alone
 }
 
 impl Net {
-    /// Something happens to a net whose springs and balls nobody need know about.
+    /// Makes a random change to a ball, a spring or the engine.
     fn surprise(&mut self, dice: &mut Dice) {
         let mut pick = |count: usize| dice.pick(count as u32) as usize;
         let (ball, spring) = (pick(20), pick(self.springs.len()));
@@ -269,7 +269,7 @@ fn what_is_changed_while_the_engine_rests_holds_when_it_goes_on() {
     net.lab.run(0.1);
     pause(&mut net, true);
     net.lab.run(1.0);
-    // By Hooke's law with the old number the whole net would hang metres lower.
+    // With the old stiffness, the whole net would hang metres lower by Hooke's law.
     let lowest = net.balls.iter().map(|b| net.lab.position(*b).y);
     let lowest = lowest.fold(f32::INFINITY, f32::min);
     assert!(lowest > -5.5, "{lowest} m");

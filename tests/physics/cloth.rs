@@ -1,4 +1,4 @@
-//! Balls on a cloth of springs: contacts between bodies that all move.
+//! Do balls on a cloth of springs gain energy? All bodies in contact can move.
 
 use crate::dice::some;
 use crate::harness::*;
@@ -11,7 +11,7 @@ const PITCH: f32 = 0.2;
 const POINT: f32 = 0.05;
 const REST_LENGTH: f32 = 0.1;
 
-/// What the cloth is made of.
+/// What connects the points of the cloth.
 #[derive(Clone, Copy, Debug)]
 enum Link {
     Ours,
@@ -27,7 +27,7 @@ struct Cloth {
     springs: Vec<[Entity; 2]>,
 }
 
-/// `off` is how far the balls are moved aside: a little changes everything that comes after.
+/// `off` is how far the balls are moved aside, m. A small change here changes all the motion that follows.
 fn cloth(link: Link, stiffness: f32, damping: f32, friction: f32, off: f32) -> Cloth {
     let mut lab = Lab::new();
     let middle = 0.5 * (SIDE - 1) as f32;
@@ -128,25 +128,26 @@ impl Cloth {
     }
 }
 
-/// Energy that the balls have to lose by falling, J.
+/// Energy that the balls lose in the fall to the cloth, J.
 const FALLS: f64 = GRAVITY * (3.0 * 1.2 + 1.5 * 1.6 + 2.0 * 0.9);
 
-/// Energy that they may seem to win, as a share of that; and how high that would lift the lightest of them, m. Nothing forbids
-/// that one ball takes over what another one brought: of these fifteen cases it rises by a millimetre in one.
+/// Permitted apparent energy gain, as a fraction of `FALLS`. `RISE` is how high that gain would lift the lightest
+/// ball, m. One ball may take over energy that another one brought: in one of these fifteen cases it rises by a
+/// millimetre.
 const GAIN: f64 = 1e-3;
 const RISE: f32 = (GAIN * FALLS / (GRAVITY * 1.5)) as f32;
 
-/// What was seen while balls fell.
+/// Observations while the balls fall.
 struct Seen {
-    /// The most energy above the first, as a share of the falls'.
+    /// Largest energy above the initial energy, as a fraction of `FALLS`.
     gain: f64,
-    /// How far the highest ball rose above where it had lain, or another one did, m.
+    /// Largest height of any ball, less the height at which the highest ball started, m.
     rise: f32,
-    /// Speed of the fastest point in the end.
+    /// Speed of the fastest point at the end, m/s.
     fastest: f32,
 }
 
-/// Lets the balls fall and watches for six seconds.
+/// Lets the balls fall and observes them for six seconds.
 fn watch(mut cloth: Cloth) -> Seen {
     let height = |cloth: &Cloth| {
         let heights = cloth
@@ -196,8 +197,8 @@ fn balls_that_fall_on_a_cloth_win_no_energy() {
     }
 }
 
-/// Stiffness beyond what a step resolves (ω·dt of a point 6.7 and 15), under balls that weigh sixty times
-/// as much as what they fall on.
+/// The cloth is stiffer than a step resolves: ω·dt of a point is 6.7 and 15. The balls weigh up to sixty times as
+/// much as a point.
 #[test]
 fn a_cloth_too_stiff_for_its_step_wins_nothing_under_balls() {
     for (stiffness, damping, friction) in [

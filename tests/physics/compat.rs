@@ -1,12 +1,12 @@
-// What the tests write otherwise with another version of Bevy and Rapier; `bevy-0.20/tests/physics/compat.rs` is the
-// twin.
+// Code of the tests that differs between versions of Bevy and Rapier. `bevy-0.20/tests/physics/compat.rs` is its
+// counterpart.
 
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
 use bevy_rapier3d::rapier::dynamics::IntegrationParameters;
 
-/// How a context begins.
+/// Initialises the default Rapier context.
 pub fn begin(parameters: IntegrationParameters, gravity: Vec3) -> RapierContextInitialization {
     RapierContextInitialization::InitializeDefaultRapierContext {
         integration_parameters: parameters,

@@ -1,4 +1,4 @@
-//! Does a damped spring decay as y″ + 2ζω y′ + ω² y = 0 says?
+//! Does the motion of a damped spring follow y″ + 2ζω y′ + ω² y = 0?
 
 use crate::fit::exact;
 use crate::harness::*;
@@ -9,15 +9,15 @@ use bevy_rapier3d::prelude::*;
 struct Case {
     phase: f64,
     zeta: f64,
-    /// m
+    /// Initial displacement from the rest length, m.
     release: f64,
-    /// m/s
+    /// Initial velocity, m/s.
     kick: f64,
     microsteps: u32,
 }
 
-/// Largest error over five periods or ten seconds, and the lowest point, both in units of the
-/// first amplitude.
+/// Largest error over ten seconds, and the lowest point. Both as a fraction of the amplitude, which is the initial
+/// displacement or v/ω.
 fn error(case: &Case) -> (f64, f64) {
     let mass = 2.0_f32;
     let k = (f64::from(mass) * (case.phase / f64::from(DT)).powi(2)) as f32;
@@ -88,9 +88,9 @@ fn released_at_rest_it_decays_as_theory_says() {
 
 #[test]
 fn started_with_a_velocity_it_is_as_exact() {
-    // The step is the true axial flow for any initial state, so the error is rounding, and what is left
-    // where the body falls asleep. The bar
-    // of a second-order step would be (ω·dt)²/12 = 7.5e-3 of v/ω here.
+    // The step is the exact axial solution for any initial state. The remaining error is rounding, and what is
+    // left where the body falls asleep. The tolerance of a second-order step would be (ω·dt)²/12 = 7.5e-3 of v/ω
+    // here.
     let mut worst = 0.0_f64;
     for zeta in ZETAS {
         for phase in PHASES {

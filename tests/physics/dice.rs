@@ -1,9 +1,9 @@
-//! Chance that is the same everywhere.
+//! Random numbers that are the same on every machine, and how many cases the searching tests take.
 
 use bevy::prelude::*;
 use std::ops::Range;
 
-/// What a searching test leaves out: it takes every so many of its cases, and of their time; all with `COILOVER_SEEDS=all`.
+/// A searching test takes one case in three, and a third of the time. With `COILOVER_SEEDS=all`, it takes all.
 fn each() -> usize {
     let all_of_them = std::env::var_os("COILOVER_SEEDS").is_some_and(|v| v == "all");
     if all_of_them { 1 } else { 3 }
@@ -19,19 +19,20 @@ pub fn some<T>(all: impl IntoIterator<Item = T>) -> Vec<T> {
     all.into_iter().step_by(each()).collect()
 }
 
-/// Seconds that a searching test watches a scene which it would watch for so many.
+/// Seconds for which a searching test watches a scene, from the seconds for a full run.
 pub fn span(seconds: f64) -> f64 {
     seconds / each() as f64
 }
 
-/// Of cases in every one of three ways, each in one of them, and all ways in turn.
+/// For a list with every case in each of three ways: takes each case in one way, and goes through the ways in
+/// turn.
 pub fn in_turn<T>(all: Vec<T>) -> Vec<T> {
     let ways = each();
     let taken = |(index, case)| (index % ways == index / ways % ways).then_some(case);
     all.into_iter().enumerate().filter_map(taken).collect()
 }
 
-/// A small generator of our own, so that a scene is the same everywhere (SplitMix64).
+/// Random number generator (SplitMix64), so that a scene is the same on every machine.
 pub struct Dice(pub u64);
 
 impl Dice {

@@ -1,4 +1,4 @@
-//! Does a weight on a spring follow the elastic pendulum of the reference (DOP853, 1e-12)?
+//! Does a weight on a spring follow the elastic pendulum of the reference solution (DOP853, tolerance 1e-12)?
 
 use crate::harness::*;
 use bevy::prelude::*;

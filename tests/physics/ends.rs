@@ -1,4 +1,4 @@
-//! What can an element be held by?
+//! What can hold an end of an element?
 
 use crate::harness::*;
 use bevy::prelude::*;
@@ -8,7 +8,7 @@ use bevy_rapier3d::prelude::*;
 const K: f32 = 200.0;
 const C: f32 = 20.0;
 
-/// A 2 kg weight below an end, after it has come to rest; the end stands at the origin.
+/// Sag of a weight of 2 kg below an end at the origin, after it has come to rest, m.
 fn sag(lab: &mut Lab, end: Entity) -> f32 {
     let weight = lab.body(2.0, Vec3::NEG_Y);
     lab.spawn(
@@ -41,7 +41,7 @@ fn fixed_and_kinematic_bodies_and_plain_entities_hold_alike() {
     }
 }
 
-/// An end that moves up and down at a steady rate: what the damper transmits is c times that rate.
+/// An end that moves at a constant speed. The damper force is c times the relative speed.
 #[test]
 fn a_moving_end_drags_through_the_damper_whatever_it_is() {
     for kind in 0..3 {
@@ -65,7 +65,7 @@ fn a_moving_end_drags_through_the_damper_whatever_it_is() {
             }
             lab.tick();
         }
-        // m v' = c (v_end − v): the body takes up the end's speed exponentially.
+        // m v' = c (v_end − v): the speed of the body approaches that of the end exponentially.
         let t = if kind == 1 { 61.0 } else { 60.0 } * DT;
         let wanted = -0.6 * (1.0 - (-4.0 / 2.0 * t).exp());
         let v = lab.velocity(body).x;
@@ -83,7 +83,7 @@ fn a_moving_end_drags_through_the_damper_whatever_it_is() {
 /// An end below a body in the hierarchy moves with that body and loads it, torque included.
 #[test]
 fn a_child_of_a_body_is_the_same_as_an_anchor_on_it() {
-    // Sums that f32 holds exactly, so that both are the very same point.
+    // f32 holds these sums exactly, so both ends are at exactly the same point.
     let arm = Vec3::new(0.375, 0.125, -0.25);
     let run = |child: bool| {
         let mut lab = Lab::weightless();
@@ -114,7 +114,7 @@ fn a_child_of_a_body_is_the_same_as_an_anchor_on_it() {
     assert!(va.angular.distance(vb.angular) < 1e-4 && va.angular.length() > 0.1);
 }
 
-/// An anchor is where a child with that translation would stand, so scale and parents count.
+/// An anchor is where a child with that translation would be, so scale and parents count.
 #[test]
 fn scaled_and_nested_parents_place_the_anchor() {
     let mut lab = Lab::weightless();
@@ -161,7 +161,7 @@ fn rest_length_none_is_the_length_at_the_first_step_and_is_written_back() {
     assert!(lab.velocity(body).length() < 1e-6);
 }
 
-/// The first fixed tick after spawning counts, whether colliders give the mass or not.
+/// An element acts from the first fixed tick after spawning, whether colliders give the mass or not.
 #[test]
 fn an_element_acts_from_the_first_tick() {
     for collider in [false, true] {
@@ -209,7 +209,7 @@ fn both_ends_on_one_body_do_nothing_to_it() {
     assert!(lab.position(body).length() < 1e-6 && lab.velocity(body).length() < 1e-6);
 }
 
-/// A point that moved while its element was off has not leapt when it comes on again.
+/// A move of a point while its element is off must not count as a velocity when the element comes back.
 #[test]
 fn a_point_is_at_rest_when_its_element_comes_back() {
     use bevy::ecs::entity_disabling::Disabled;
@@ -331,7 +331,7 @@ fn what_holds_an_end_may_become_another_kind_of_thing_at_any_time() {
         assert!((hung - sag).abs() < 1e-3, "{name}: {hung}, not {sag}");
         after(&mut lab.app.world_mut().entity_mut(top));
         lab.run(1.0);
-        // Both fall together, and the spring has drawn them to its rest length.
+        // Both fall together, and the spring has pulled them to its rest length.
         let apart = lab.position(top).y - lab.position(low).y;
         let fallen = lab.position(top).y;
         assert!(fallen < -3.0, "{name}: at {fallen} after a second");

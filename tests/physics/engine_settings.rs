@@ -1,4 +1,4 @@
-//! Do the engine's other settings leave the physics as it is?
+//! Does the motion stay correct with other settings of the engine?
 
 use crate::fit::{Sine, frequency};
 use crate::harness::*;
@@ -6,7 +6,7 @@ use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
 
-/// An oscillation along x of a 1 kg body on 40 N/m over 5 s: its trace.
+/// Trace of an oscillation along x over 5 s, of a body of 1 kg on 40 N/m: time, s, and displacement, m.
 fn trace(mut lab: Lab, extra: impl Bundle) -> Vec<(f64, f64)> {
     let hook = lab.point(Vec3::ZERO);
     let body = lab.body(1.0, Vec3::X * 1.3);
@@ -77,7 +77,7 @@ fn a_single_iteration_is_given_back() {
 
 #[test]
 fn damping_of_the_engine_works_on_top() {
-    // v/(1 + dt·d) once per step is a decay of d/2 on the oscillation.
+    // v/(1 + dt·d) once per step damps the oscillation at a rate of d/2.
     let samples = trace(
         engine(4, 1),
         Damping {
@@ -123,7 +123,7 @@ fn gravity_scale_counts() {
 
 #[test]
 fn locked_translation_leaves_the_rest_of_the_oscillator() {
-    // Free along x only, on a spring at 45°, small amplitude: stiffness k cos² 45° = k/2.
+    // The body is free along x only, on a spring at 45°. At a small amplitude the stiffness is k cos² 45° = k/2.
     let mut lab = Lab::weightless();
     let hook = lab.point(Vec3::ZERO);
     let body = lab.spawn((
@@ -155,8 +155,8 @@ fn locked_translation_leaves_the_rest_of_the_oscillator() {
 
 #[test]
 fn locked_rotation_turns_a_pendulum_into_a_hinge_about_one_axis() {
-    // A bar held at its end by a stiff spring of zero length, free to turn about z only: a compound
-    // pendulum of period 2π √(I_end/(m g r)).
+    // A bar is held at its end by a stiff spring of zero length and can turn about z only. It is a compound
+    // pendulum with the period 2π √(I_end/(m g r)).
     let mut lab = Lab::with(
         CoiloverPlugin::default().with_microsteps(4),
         Engine::default(),
@@ -172,7 +172,7 @@ fn locked_rotation_turns_a_pendulum_into_a_hinge_about_one_axis() {
         ),
         LockedAxes::ROTATION_LOCKED_X | LockedAxes::ROTATION_LOCKED_Y,
     ));
-    // Its own frame is upright; the anchor is the end that coincides with the pivot.
+    // The bar's own frame is upright. The anchor is the end at the pivot.
     let up = lab.position(bar) * -1.0;
     lab.spawn((
         SpringDamper::new(pivot, bar)
@@ -188,7 +188,7 @@ fn locked_rotation_turns_a_pendulum_into_a_hinge_about_one_axis() {
         })
         .collect();
     let omega = (GRAVITY * r / (inertia + r * r)).sqrt();
-    // Finite amplitude slows it by θ²/16.
+    // The finite amplitude θ lowers the frequency by θ²/16.
     let omega = omega * (1.0 - f64::from(tilt * tilt) / 16.0);
     let f = frequency(&samples, omega) / omega;
     assert!((f - 1.0).abs() < 2e-3, "{f}");
@@ -210,7 +210,7 @@ fn length_unit_leaves_the_motion_alone() {
     }
 }
 
-/// In `TimestepMode::Interpolated` transforms lag behind the bodies; the physics must not notice.
+/// In `TimestepMode::Interpolated`, transforms lag behind the bodies. This must not affect the physics.
 #[test]
 fn interpolated_transforms_do_not_feed_back() {
     let mut lab = Lab::without_plugin(Engine::weightless());
@@ -233,7 +233,7 @@ fn interpolated_transforms_do_not_feed_back() {
             .with_rest_length(1.0),
     );
     let omega = 40.0_f64.sqrt();
-    // Simulated time runs ahead of the ticks by whole engine steps; the readout is of the simulation.
+    // Simulated time is ahead of the ticks by whole engine steps. The readout belongs to the simulated time.
     let mut energies = Vec::new();
     for _ in 0..300 {
         lab.tick();

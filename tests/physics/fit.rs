@@ -1,4 +1,4 @@
-//! Least-squares fits of what a lab measured, and the exact damped oscillator.
+//! Least-squares fits of measured motions, and the exact solution of the damped oscillator.
 
 /// y ≈ offset + cosine·cos ωt + sine·sin ωt.
 #[derive(Clone, Copy, Debug)]
@@ -14,7 +14,7 @@ impl Sine {
         self.cosine.hypot(self.sine)
     }
 
-    /// The best sine of a known angular frequency.
+    /// Best fit with a known angular frequency, rad/s. Samples are (t, y).
     pub fn fit(samples: &[(f64, f64)], omega: f64) -> Self {
         let basis = |t: f64| [1.0, (omega * t).cos(), (omega * t).sin()];
         let mut m = [[0.0_f64; 4]; 3];
@@ -52,7 +52,7 @@ impl Sine {
     }
 }
 
-/// The angular frequency within 1 % of a guess whose sine fits best.
+/// Angular frequency of the best fit, within 1 % of `guess`.
 pub fn frequency(samples: &[(f64, f64)], guess: f64) -> f64 {
     let (mut low, mut high) = (guess * 0.99, guess * 1.01);
     for _ in 0..80 {
@@ -67,7 +67,7 @@ pub fn frequency(samples: &[(f64, f64)], guess: f64) -> f64 {
     0.5 * (low + high)
 }
 
-/// The exact free motion from (y, v), with ω and ζ.
+/// Exact free motion at time t from the initial state (y, v), with angular frequency ω and damping ratio ζ.
 pub fn exact(omega: f64, zeta: f64, y: f64, v: f64, t: f64) -> f64 {
     let gamma = zeta * omega;
     let square = omega * omega - gamma * gamma;

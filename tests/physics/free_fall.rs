@@ -1,10 +1,10 @@
-//! Does anything fall as Galileo says, beside springs and with a slack damper?
+//! Do bodies fall correctly beside sprung bodies, and with a spring and damper that exert no force?
 
 use crate::harness::*;
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 
-/// The engine's own error after n substeps of size h: it falls g t h/2 too far, plus rounding.
+/// Error of the engine, m: with substeps of size h, it falls g t h/2 too far, plus rounding.
 fn engine_error(t: f64, iterations: usize) -> f64 {
     0.5 * GRAVITY * t * f64::from(DT) / iterations as f64
 }
@@ -30,8 +30,8 @@ fn a_body_beside_a_sprung_one_falls_as_the_engine_lets_it() {
 
 #[test]
 fn a_body_with_a_slack_spring_and_damper_falls_exactly() {
-    // Both ends fall alike, so neither spring nor damper has anything to do; bodies that elements hold
-    // are carried by our integrator, whose only error in free fall is the rounding of f32.
+    // Both ends fall alike, so the spring and the damper exert no force. The crate's own integrator moves bodies
+    // with elements. Its only error in free fall is the rounding of f32.
     let mut lab = Lab::new();
     let a = lab.body(1.0, Vec3::ZERO);
     let b = lab.body(3.0, Vec3::X);

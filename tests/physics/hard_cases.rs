@@ -1,12 +1,12 @@
-//! Can anything make it blow up?
+//! Do extreme stiffness, damping, mass ratios and geometry stay stable?
 
 use crate::harness::*;
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
 
-/// Runs a weightless pair for 60 s; the largest mechanical energy over the first, with what the
-/// spring could not have had at the start.
+/// Result of a run of 60 s. `growth` is the largest mechanical energy as a multiple of the initial energy.
+/// `farthest` is the largest distance of a body from the origin, m.
 struct Outcome {
     growth: f64,
     farthest: f32,
@@ -45,7 +45,7 @@ fn run(masses: [f32; 2], k: f32, c: f32, rest: f32, apart: Vec3, kick: Vec3) -> 
     }
 }
 
-/// Stiffness for a phase ω·dt of the pair.
+/// Stiffness, N/m, with which the pair has the phase ω·dt per step.
 fn stiffness(masses: [f32; 2], phase: f32) -> f32 {
     let m = masses[0] * masses[1] / (masses[0] + masses[1]);
     m * (phase / DT).powi(2)
@@ -55,7 +55,7 @@ fn stiffness(masses: [f32; 2], phase: f32) -> f32 {
 fn phase_of_a_hundred_per_step() {
     let masses = [1.0, 1.0];
     let k = stiffness(masses, 100.0);
-    // Stretched, kicked across, kicked along.
+    // Three starts: stretched, kicked across the line, kicked along the line.
     for (apart, kick) in [
         (Vec3::X * 1.001, Vec3::ZERO),
         (Vec3::X, Vec3::Y),
@@ -133,8 +133,8 @@ fn rest_length_zero() {
 
 #[test]
 fn straight_through_the_centre_of_a_long_spring() {
-    // Squeezed through zero length, where its force turns round in an instant. No fixed step resolves
-    // that; it must not gain by it.
+    // The spring passes through zero length, where its force reverses at once. No fixed step resolves that. It
+    // must not gain energy.
     for phase in [0.1, 0.3, 1.0] {
         let masses = [1.0, 1.0];
         let k = stiffness(masses, phase);
@@ -176,7 +176,7 @@ fn ends_coincide() {
 
 #[test]
 fn a_damper_passed_at_speed_only_takes_energy() {
-    // The line turns by more than a radian within the step that the damper stops.
+    // The line turns by more than a radian within the step in which the damper stops the body.
     for anchor in [Vec3::ZERO, Vec3::new(0.05, 0.1, 0.0)] {
         let mut lab = Lab::weightless();
         let hook = lab.point(Vec3::ZERO);
@@ -202,7 +202,8 @@ fn a_damper_passed_at_speed_only_takes_energy() {
 
 #[test]
 fn a_needle_held_at_its_tip_keeps_its_energy() {
-    // A rod of 1 m and 1 kg: 1 : 1660 between its inertias, which a step cannot follow about its axis.
+    // A rod of 1 m and 1 kg. The ratio of its inertias is 1 : 1660. A step cannot resolve its rotation about its
+    // own axis.
     for (k, microsteps) in [(5.0, 1), (500.0, 1), (500.0, 4)] {
         let plugin = CoiloverPlugin::default().with_microsteps(microsteps);
         let mut lab = Lab::with(plugin, Engine::weightless());

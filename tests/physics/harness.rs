@@ -1,4 +1,4 @@
-//! A headless app with the real Rapier pipeline, stepped tick by tick.
+//! Headless app with the real Rapier pipeline. Tests step it tick by tick.
 
 use crate::compat::begin;
 use bevy::ecs::schedule::SingleThreadedExecutor;
@@ -11,12 +11,12 @@ use std::time::Duration;
 pub const DT: f32 = 1.0 / 60.0;
 pub const GRAVITY: f64 = 9.81;
 
-/// A lab: an app whose every `tick` is one engine step.
+/// App in which every `tick` is one engine step.
 pub struct Lab {
     pub app: App,
 }
 
-/// What the engine should do differently from its defaults.
+/// Settings of the engine that a test can change.
 #[derive(Clone, Copy)]
 pub struct Engine {
     pub dt: f32,
@@ -61,7 +61,7 @@ impl Lab {
         lab
     }
 
-    /// The same engine without springs; call [`prime`](Self::prime) after adding what else it needs.
+    /// Engine without the coilover plugin. Call [`prime`](Self::prime) after adding further plugins.
     pub fn without_plugin(engine: Engine) -> Self {
         let mut app = App::new();
         let mut rapier = RapierPhysicsPlugin::<NoUserData>::default().in_fixed_schedule();
@@ -82,7 +82,7 @@ impl Lab {
         Self { app }
     }
 
-    /// Runs the start-up schedules; the first update passes no time, so no tick.
+    /// Runs the start-up schedules. No time passes in the first update, so it runs no tick.
     pub fn prime(&mut self) {
         self.app.finish();
         self.app.cleanup();
@@ -100,7 +100,7 @@ impl Lab {
         }
     }
 
-    /// Whether the engines of all worlds step.
+    /// Switches the physics step of all worlds on or off.
     pub fn set_stepping(&mut self, active: bool) {
         let world = self.app.world_mut();
         let mut engines = world.query::<&mut RapierConfiguration>();
@@ -124,19 +124,19 @@ impl Lab {
         self.app.world_mut().spawn(bundle).id()
     }
 
-    /// A body without collider: mass, and principal inertia 0.4 of it.
+    /// Spawns a body without collider; see [`body`].
     pub fn body(&mut self, mass: f32, at: Vec3) -> Entity {
         self.spawn(body(mass, at))
     }
 
-    /// A body that starts with a velocity.
+    /// Spawns a body with an initial velocity.
     pub fn moving(&mut self, body: impl Bundle, velocity: Velocity) -> Entity {
         let entity = self.spawn(body);
         self.app.world_mut().entity_mut(entity).insert(velocity);
         entity
     }
 
-    /// A plain entity to hold on to.
+    /// Spawns an entity without a body, for elements to attach to.
     pub fn point(&mut self, at: Vec3) -> Entity {
         self.spawn(Transform::from_translation(at))
     }
@@ -175,8 +175,8 @@ impl Lab {
     }
 }
 
-/// Waking worker threads costs ten times what the small systems of a lab do; and messages are then told
-/// on the test's own thread.
+/// Makes all schedules single-threaded. Waking worker threads costs ten times as much as the small systems of a
+/// lab. The messages of the crate also arrive on the test's own thread then.
 pub fn single_threaded(app: &mut App) {
     let mut schedules = app.world_mut().resource_mut::<Schedules>();
     for (_, schedule) in schedules.iter_mut() {
@@ -184,12 +184,12 @@ pub fn single_threaded(app: &mut App) {
     }
 }
 
-/// A dynamic body without collider: its mass, and a principal inertia of 0.4 kg m² per kg.
+/// Dynamic body without collider. Mass in kg; each principal moment of inertia is 0.4 kg m² per kg.
 pub fn body(mass: f32, at: Vec3) -> impl Bundle {
     brick(mass, Vec3::splat(0.4 * mass), at)
 }
 
-/// A dynamic body without collider, with its own principal inertia.
+/// Dynamic body without collider. Mass in kg, principal moments of inertia in kg m².
 pub fn brick(mass: f32, inertia: Vec3, at: Vec3) -> impl Bundle {
     (
         RigidBody::Dynamic,
@@ -204,7 +204,7 @@ pub fn brick(mass: f32, inertia: Vec3, at: Vec3) -> impl Bundle {
     )
 }
 
-/// Rows of a reference file in `tests/data`: one every 1/240 s, t first.
+/// Rows of a reference file in `tests/data`, one every 1/240 s. The first column is the time in s.
 pub fn reference(text: &str) -> Vec<Vec<f64>> {
     text.lines()
         .skip(2)
@@ -217,7 +217,7 @@ pub fn reference(text: &str) -> Vec<Vec<f64>> {
 }
 
 impl Lab {
-    /// Gives a body a force of the user's.
+    /// Applies an external force of the user, N, to a body.
     pub fn spawn_force(&mut self, body: Entity, force: Vec3) {
         self.app
             .world_mut()

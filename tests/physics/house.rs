@@ -1,4 +1,4 @@
-//! Does the house stay one that a newcomer can live in? No files that import each other in large circles, none too long.
+//! Does the source stay easy to read? No large import cycles, and no file that is too long.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -25,7 +25,7 @@ fn sources(folder: &str) -> Vec<PathBuf> {
     found
 }
 
-/// Path of a module in the crate, as its names.
+/// Path of a module in the crate, as a list of names.
 fn module(path: &Path) -> Vec<String> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
     let path = path.strip_prefix(root).expect("in src").with_extension("");
@@ -39,7 +39,7 @@ fn module(path: &Path) -> Vec<String> {
     names
 }
 
-/// The modules that a file's `use` lines name, but for its own children and what its tests use.
+/// Modules that the `use` lines of a file name, without the file's own children and without its tests.
 fn imports(of: &[String], text: &str, known: &BTreeSet<Vec<String>>) -> BTreeSet<Vec<String>> {
     let text = text
         .split("#[cfg(test)]\nmod tests {")
@@ -90,7 +90,7 @@ fn imports(of: &[String], text: &str, known: &BTreeSet<Vec<String>>) -> BTreeSet
     found
 }
 
-/// Modules that can be reached from one.
+/// Modules that can be reached from a module.
 fn reach(
     from: &[String],
     graph: &BTreeMap<Vec<String>, BTreeSet<Vec<String>>>,
@@ -152,7 +152,7 @@ fn one_folder_of_the_physics_names_rapier() {
                 .lines()
                 .filter(|line| !line.trim_start().starts_with("//"));
             let named: Vec<_> = code.filter(|line| line.contains("rapier")).collect();
-            // Which engines there are, and what tests compare with.
+            // Permitted: the lines that list the engines, and the function that tests compare with.
             let only = |line: &&str| {
                 line.contains("mod rapier")
                     || line.contains("fn ")

@@ -1,4 +1,4 @@
-//! Does an element act right on a body that a joint holds?
+//! Does an element act correctly on a body that a joint holds?
 
 use crate::fit::{exact, frequency};
 use crate::harness::*;
@@ -6,12 +6,12 @@ use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
 
-/// A door of 1 m on a hinge along y at the origin, with a spring in tension from its edge to a post 1 m
-/// further out.
+/// A door of 1 m on a hinge along y at the origin. A spring in tension connects its edge to a post 1 m beyond the
+/// edge.
 struct Door {
     lab: Lab,
     door: Entity,
-    /// Moment of inertia about the hinge.
+    /// Moment of inertia about the hinge, kg m².
     inertia: f64,
 }
 
@@ -57,8 +57,8 @@ impl Door {
 
 #[test]
 fn a_door_on_its_hinge_swings_as_a_spring_in_tension_makes_it() {
-    // Tension T = k (1 − 0.5) at the edge, along the line to the post: restoring torque
-    // T r (r + d)/d θ with r = 1, d = 1 for small θ.
+    // The tension at the edge is T = k (1 − 0.5), along the line to the post. The restoring torque is T r (r +
+    // d)/d θ with r = 1 and d = 1 for small θ.
     for k in [40.0, 400.0] {
         let mut door = door(0.05, k, 0.0);
         let omega = (f64::from(k) * 0.5 * 2.0 / door.inertia).sqrt();
@@ -81,8 +81,8 @@ fn a_door_on_its_hinge_swings_as_a_spring_in_tension_makes_it() {
 
 #[test]
 fn a_damper_slows_the_door_as_theory_says() {
-    // The damper acts along the line to the post, at an angle 2θ to the edge's path: no damping of small
-    // swings. Turned a quarter, the edge moves straight at its post.
+    // In `door`, the line to the post is at an angle of 2θ to the normal of the edge's path, so a damper hardly
+    // damps small swings. Here the post lies in the direction in which the edge moves.
     let mut lab = Lab::weightless();
     let frame = lab.spawn((RigidBody::Fixed, Transform::default()));
     let own = MASS / 12.0;
@@ -123,7 +123,7 @@ fn a_damper_slows_the_door_as_theory_says() {
 fn a_wheel_on_a_slider_is_the_quarter_car_again() {
     let (chassis_mass, wheel_mass, k, c) = (250.0_f32, 20.0_f32, 30e3_f32, 2e3_f32);
     let mut lab = Lab::new();
-    // The wheel is welded to the ground; the chassis slides on a prismatic joint.
+    // A fixed joint holds the wheel to the ground. The chassis slides on a prismatic joint.
     let ground = lab.spawn((RigidBody::Fixed, Transform::default()));
     let wheel = lab.spawn((
         body(wheel_mass, Vec3::Y * 0.3),
@@ -161,13 +161,14 @@ fn a_wheel_on_a_slider_is_the_quarter_car_again() {
 
 #[test]
 fn a_spring_between_two_links_of_a_multibody_keeps_its_frequency_and_its_energy() {
-    // Two carts on one rail, the second hung from the first: reduced coordinates, so the engine knows no
-    // free bodies there. Between them a spring; their centre of mass stays where it is.
+    // Two carts on one rail; the second cart's joint is attached to the first cart. The multibody has reduced
+    // coordinates, so the engine has no free bodies here. A spring connects the carts. Their centre of mass stays
+    // where it is.
     for (k, c) in [(40.0_f32, 0.0_f32), (400.0, 0.0), (400.0, 4.0)] {
         let masses = [2.0_f32, 1.0];
         let mut lab = Lab::weightless();
         let rail = lab.spawn((RigidBody::Fixed, Transform::default()));
-        // Links start where their joint's coordinate is zero.
+        // Each link starts where the coordinate of its joint is zero.
         let slider = |at: f32| PrismaticJointBuilder::new(Vec3::X).local_anchor1(Vec3::X * at);
         let first = lab.spawn((
             body(masses[0], Vec3::ZERO),
@@ -198,7 +199,8 @@ fn a_spring_between_two_links_of_a_multibody_keeps_its_frequency_and_its_energy(
     }
 }
 
-/// Two bodies on a hinge with such locks fall on a tilted block. The fastest that they become, m/s, with Rapier alone.
+/// Two bodies on a hinge, with these locked axes, fall on a tilted block with Rapier alone. Returns the greatest
+/// speed of the lower body, m/s.
 fn fastest_without_springs(locks: LockedAxes) -> f32 {
     let mut lab = Lab::without_plugin(Engine::default());
     let tilt = Transform::from_rotation(Quat::from_rotation_z(0.6));
@@ -224,7 +226,8 @@ fn fastest_without_springs(locks: LockedAxes) -> f32 {
     fastest
 }
 
-/// It is told in `docs/limits.md`. When this fails, Rapier has been mended, and the entry can go.
+/// `docs/limits.md` describes this fault of Rapier. When this test fails, Rapier has fixed it, and the entry can
+/// go.
 #[test]
 fn planar_bodies_on_a_hinge_are_thrown_by_rapier_alone() {
     let turns = LockedAxes::ROTATION_LOCKED_X | LockedAxes::ROTATION_LOCKED_Y;

@@ -1,6 +1,6 @@
-//! Springs and dampers on the real Rapier pipeline, by physical question.
+//! Tests of springs and dampers on the real Rapier pipeline, one file for each physical question.
 
-/// What differs between versions of Bevy. The folder of each manifest has its own.
+/// What differs between versions of Bevy. The folder of each manifest has its own `compat.rs`.
 mod compat {
     include!(concat!(
         env!("CARGO_MANIFEST_DIR"),

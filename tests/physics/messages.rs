@@ -1,4 +1,4 @@
-//! Does a wrong set-up say what to change?
+//! Does a wrong set-up cause a message that says what to change?
 
 use crate::harness::*;
 use bevy::prelude::*;
@@ -28,12 +28,12 @@ impl log::Log for Collector {
     fn flush(&self) {}
 }
 
-/// What the crate has told on this thread; labs run on the test's own thread.
+/// Messages of the crate on this thread. Labs run on the test's own thread.
 pub struct Log;
 
 impl Log {
     pub fn capture() -> Self {
-        // The first test installs it; the others find it there.
+        // Only the first call installs the logger. For later calls it is already there.
         let _ = log::set_logger(&Collector);
         log::set_max_level(log::LevelFilter::Info);
         MESSAGES.take();
@@ -105,7 +105,7 @@ fn with_rapier_in_another_schedule() {
     let told = log.take();
     assert_eq!(told.len(), 1, "{told:?}");
     assert!(told[0].contains("FixedUpdate") && told[0].contains("CoiloverPlugin::new"));
-    // And nothing is heaped up on the body meanwhile.
+    // No load accumulates on the body meanwhile.
     assert!(app.world().get::<SpringLoad>(body).is_none());
 }
 
@@ -181,7 +181,7 @@ fn an_element_with_a_name_is_told_by_it() {
     assert!(told[0].starts_with("Left rear, ") && told[0].contains("Spring::stiffness is NaN"));
 }
 
-/// A body pulled by a spring of so many radians a step, and one pulled by a soft one.
+/// Two bodies, each on its own spring: one with the phase `omega_dt` per step, rad, and one with 0.5.
 fn stiff_and_soft(plugin: CoiloverPlugin, omega_dt: f32) -> (Lab, [Entity; 2]) {
     let mut lab = Lab::with(plugin, Engine::default());
     let springs = [omega_dt, 0.5].map(|omega_dt| {
@@ -200,7 +200,7 @@ fn stiff_and_soft(plugin: CoiloverPlugin, omega_dt: f32) -> (Lab, [Entity; 2]) {
 #[test]
 fn what_cannot_be_followed_is_told_once() {
     let log = Log::capture();
-    // Up to 32 micro-steps are taken of each spring's own, which is enough up to ω·dt of 64.
+    // A lone spring takes up to 32 micro-steps. They are enough up to ω·dt = 64.
     let (mut lab, [stiff, soft]) = stiff_and_soft(CoiloverPlugin::default(), 100.0);
     lab.run(0.5);
     let told = log.take();
@@ -213,7 +213,7 @@ fn what_cannot_be_followed_is_told_once() {
     lab.run(0.5);
     assert_eq!(log.take(), Vec::<String>::new());
     assert!(springs.iter().all(|spring| !lab.readout(*spring).capped));
-    // Whoever asks for just so many has them.
+    // An explicit number of micro-steps is taken as given, without a message.
     let exactly = CoiloverPlugin::default().with_microsteps(2);
     let (mut lab, [stiff, _]) = stiff_and_soft(exactly, 100.0);
     lab.run(0.5);
@@ -244,7 +244,7 @@ fn a_network_beyond_its_budget_is_told_in_one_message() {
     assert_eq!(told.len(), 1, "{told:?}");
     assert!(told[0].contains("and 2 others"), "{told:?}");
     assert!(springs.iter().all(|spring| lab.readout(*spring).capped));
-    // Later ones are told on their own.
+    // A later element gets its own message.
     let hook = lab.point(Vec3::Y);
     let body = lab.body(1.0, Vec3::new(1.01, 1.0, 0.0));
     let stiff = Spring::new(hook, body).with_stiffness(1e9);

@@ -1,4 +1,4 @@
-//! Does what a pointer has hold of follow it, as quickly and calmly as it should?
+//! Does a body that a pointer holds follow it as quickly and calmly as it should?
 
 use crate::harness::*;
 use crate::messages::Log;
@@ -64,7 +64,7 @@ fn a_pointer_that_moves_takes_it_along() {
         lab.get_mut::<MouseSpring>(mouse).target = target;
         lab.tick();
     }
-    // Pointer and body go alike, so that no damper lags behind.
+    // At constant speed, pointer and body move alike, so the damper exerts no force and the body does not lag.
     let at = lab.position(body);
     assert!((at.x - 8.0).abs() < 5e-3, "{at}");
     assert_eq!(elements(&mut lab), 3, "none is made anew for a new target");
@@ -197,7 +197,8 @@ fn a_target_that_jumps_is_overshot_by_the_blow_that_its_damper_gets() {
         lab.tick();
         farthest = farthest.max(lab.position(body).x);
     }
-    // Of a body at speed 2 ω, critically damped: e⁻² of the way.
+    // The damper's impulse gives the body a speed of 2 ω. Critically damped motion then overshoots by e⁻² of the
+    // way.
     assert!((farthest - 1.0 - 0.135).abs() < 0.01, "{farthest}");
     assert!((lab.position(body).x - 1.0).abs() < 1e-3);
 }
@@ -217,14 +218,15 @@ fn a_pointer_that_was_wrong_and_lets_go_leaves_no_fault() {
     assert!(lab.app.world().get::<SpringFault>(mouse).is_none());
 }
 
-/// A body is held for the mass that it has at a point, if it can turn about such axes of the world.
+/// Compares each stiffness with the body's effective mass at the point. `turns` is 1 for each world axis about
+/// which the body can turn.
 fn is_held_for_its_mass(locked: LockedAxes, turns: Vec3) {
     let mut lab = Lab::weightless();
     let (mass, inertia) = (2.0, 0.05);
     let body = lab.spawn(brick(mass, Vec3::splat(inertia), Vec3::ZERO));
     lab.app.world_mut().entity_mut(body).insert(locked);
     lab.get_mut::<Transform>(body).scale = Vec3::new(4.0, 1.0, 1.0);
-    // In the world 0.4 m from its centre, along X.
+    // The point is 0.4 m from the centre in the world, along X.
     let (point, lever) = (Vec3::X * 0.1, Vec3::X * 0.4);
     lab.spawn(MouseSpring::new(body, point, lever).with_frequency(FREQUENCY));
     lab.run(0.1);

@@ -1,4 +1,4 @@
-//! Do elements find their ends by name, and say which name is wrong?
+//! Do elements find their ends by name, and does a message say which name is wrong?
 
 use crate::harness::*;
 use crate::messages::Log;
@@ -92,7 +92,7 @@ fn two_instances_of_one_scene_do_not_mix() {
         let element = lab.spawn((spring("Hook", "Weight"), ChildOf(frame)));
         made.push((element, [a, b]));
     }
-    // The same names at large are farther away.
+    // Entities with the same names outside the scenes must not be chosen.
     lab.spawn(hook("Hook"));
     lab.spawn(weight("Weight"));
     lab.tick();
@@ -125,7 +125,7 @@ fn a_name_that_is_missing_is_told_once_and_mended_by_itself() {
     let told = log.take();
     assert_eq!(told.len(), 1, "{told:?}");
     assert!(told[0].contains(wanted), "{told:?}");
-    // It comes without that name first.
+    // The entity first appears disabled and with another name.
     let a = lab.spawn((hook("Crook"), Disabled));
     lab.tick();
     *lab.app.world_mut().get_mut::<Name>(a).expect("a name") = Name::new("Hook");
@@ -213,7 +213,7 @@ fn names_inserted_again_are_looked_for_again() {
     entity.insert(EndNames::new("", "Nobody"));
     lab.tick();
     assert!(fault(&lab, element).is_some());
-    // Who takes the names away has the ends as they were.
+    // Without `EndNames`, the element keeps its current ends.
     lab.app.world_mut().entity_mut(element).remove::<EndNames>();
     lab.run(0.1);
     assert_eq!(fault(&lab, element), None);
@@ -275,7 +275,7 @@ fn what_makes_the_search_run_goes_with_the_last_missing_name() {
         let count = |e: Entity| lab.app.world().entity(e).archetype().component_count();
         count(entity) - count(given)
     };
-    // Its names, and no mark; the other has a fault and a mark too.
+    // `named` has `EndNames` and no marker. `late` also has a fault and a marker.
     assert_eq!((extra(&lab, named), extra(&lab, late)), (1, 3));
     lab.spawn((Name::new("Late"), body(1.0, Vec3::X)));
     lab.run(0.1);
@@ -305,7 +305,7 @@ fn a_hundred_scenes_of_three_hundred_springs_are_tied_in_no_time() {
     println!("30 000 springs among 60 000 entities: {took:?}");
     let mut faults = lab.app.world_mut().query::<&SpringFault>();
     assert_eq!(faults.iter(lab.app.world()).count(), 0);
-    // Every spring against every bearer of its name would be a hundred times as long.
+    // Comparing every spring with every entity of its name would take a hundred times as long.
     assert!(took.as_secs_f64() < 10.0, "{took:?}");
 }
 

@@ -29,7 +29,7 @@ fn frequency_and_amplitude_hold_from_soft_to_barely_resolved() {
             })
             .collect();
         let error = (frequency(&samples, omega) / omega - 1.0).abs();
-        // Two periods of the slowest fit into the first half.
+        // The first half holds about one period of the slowest oscillation.
         let (first, last) = samples.split_at(300);
         let kept = Sine::fit(last, omega).amplitude() / Sine::fit(first, omega).amplitude();
         let lost = 2.0 * (1.0 - kept);

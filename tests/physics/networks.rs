@@ -1,4 +1,4 @@
-//! Do elements that share bodies move as the reference, and stay bounded at any stiffness?
+//! Do elements that share bodies follow the reference, and stay bounded at any stiffness?
 
 use crate::fit::frequency;
 use crate::harness::*;
@@ -8,14 +8,15 @@ use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
 use std::f64::consts::PI;
 
-/// What joins the points.
+/// What connects the points.
 #[derive(Clone, Copy)]
 pub enum Link {
     Ours,
     Joint,
 }
 
-/// Points of a mass, some of them fixed, joined pairwise at their first distance.
+/// Points of equal mass, some of them fixed. Links connect them in pairs. Their rest lengths are the initial
+/// distances.
 pub struct Net {
     pub lab: Lab,
     pub points: Vec<Entity>,
@@ -122,7 +123,7 @@ pub fn swing(lab: Lab, link: Link) -> (Net, &'static str, &'static [usize]) {
     (net(lab, &plan, link), file, &[5, 10])
 }
 
-/// The reference's sheet of 6 × 6 points, hung at two corners.
+/// The reference's sheet of 6 × 6 points, hung at two corners, and the points of it whose motion is known.
 pub fn sheet(lab: Lab, link: Link) -> (Net, &'static str, &'static [usize]) {
     let (at, pairs) = lattice(6);
     let plan = Plan {
@@ -226,7 +227,7 @@ fn strong_dampers_bring_a_row_to_one_speed_at_once() {
 
 #[test]
 fn an_inert_neighbour_stops_nothing() {
-    // Two bodies at the same place give their spring no direction; the next spring goes on.
+    // Two bodies at the same place give their spring no direction. The next spring still acts.
     let mut lab = Lab::weightless();
     let (a, b, c) = (
         lab.body(1.0, Vec3::ZERO),

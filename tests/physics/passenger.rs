@@ -1,4 +1,4 @@
-//! A load that lies on a sprung platform swings with it.
+//! Does a load that lies on a sprung platform swing with it?
 
 use crate::harness::*;
 use bevy::prelude::*;
@@ -8,7 +8,8 @@ use bevy_rapier3d::prelude::*;
 const PLATFORM: f32 = 10.0;
 const LOAD: f32 = 2.0;
 
-/// Heights of the swings of a platform that is let go above its rest, as shares of the first.
+/// Releases a platform at `lift` above its rest position. Returns ω·dt and the heights of its first four swings as
+/// fractions of `lift`.
 fn swings(stiffness: f32, lift: f32, loaded: bool) -> (f32, Vec<f32>) {
     let mut lab = Lab::new();
     let mass = PLATFORM + if loaded { LOAD } else { 0.0 };
@@ -66,10 +67,11 @@ fn a_load_on_a_sprung_platform_swings_with_it() {
         println!(
             "ω·dt {phase:.2}: heights of the swings without a load {bare:.3?}, with one {loaded:.3?}"
         );
-        // To the top of a swing between two ticks.
+        // The top of a swing can lie between two ticks.
         assert!(bare.iter().all(|height| (0.97..1.001).contains(height)));
         for (n, height) in (1..).zip(&loaded) {
-            // A force that acts evenly would damp by ω·dt/16 of the critical damping in the engine's four substeps.
+            // A force that is constant over the step would add a damping ratio of ω·dt/16 in the engine's four substeps. The
+            // bound allows ω·dt/35.
             let least = (-std::f32::consts::TAU * n as f32 * phase / 35.0).exp();
             assert!(
                 (least..1.001).contains(height),

@@ -1,11 +1,11 @@
-//! What happens while the engine rests (paused, or between the steps of an interpolated game) acts when it goes on.
+//! Do changes made while the engine is paused, or between the steps of an interpolated game, act when it goes on?
 
 use crate::harness::*;
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
 
-/// A weight asleep below a post, on a spring.
+/// A sleeping weight on a spring below a post.
 struct Hung {
     lab: Lab,
     post: Entity,
@@ -15,7 +15,7 @@ struct Hung {
 }
 
 impl Hung {
-    /// `watched` by a body that flies by, which has the engine's bodies looked at in every tick.
+    /// With `watched`, another body flies by. It keeps the engine's bodies under observation in every tick.
     fn new(mut lab: Lab, watched: bool) -> Self {
         let post = lab.spawn((RigidBody::Fixed, Transform::default()));
         let weight = lab.body(1.0, Vec3::NEG_Y);
@@ -41,7 +41,7 @@ impl Hung {
         }
     }
 
-    /// How far it rises within five seconds after a pause in which this happens.
+    /// Rise of the weight, m, in the five seconds after a pause during which `change` happens.
     fn rises(mut self, change: impl FnOnce(&mut Self)) -> f32 {
         self.lab.set_stepping(false);
         self.lab.tick();
@@ -113,7 +113,7 @@ fn a_post_moved_between_interpolated_steps_lifts_what_hangs_from_it() {
         };
         lab.app.insert_resource(mode);
         lab.prime();
-        // Twelve seconds of frames, not of steps.
+        // Twelve seconds of frames, not of physics steps.
         let mut hung = Hung::new(lab, false);
         for _ in 0..24 * 60 + phase {
             hung.lab.tick();
@@ -128,7 +128,7 @@ fn a_post_moved_between_interpolated_steps_lifts_what_hangs_from_it() {
     }
 }
 
-/// A world of its own beside the default one.
+/// Adds a physics world beside the default one.
 fn second_world(lab: &mut Lab, gravity: Vec3) -> RapierContextEntityLink {
     let engine = RapierConfiguration {
         gravity,
@@ -230,7 +230,7 @@ fn a_world_that_rests_turns_nothing_into_heat_while_another_runs() {
     assert_eq!(lab.readout(damper), before);
 }
 
-/// A floor, a box on it, a point, and a spring from that to the box, in a world.
+/// A floor, a box on it, a point, and a spring from the point to the box, in the given world.
 fn box_on_floor(lab: &mut Lab, link: RapierContextEntityLink) -> [Entity; 4] {
     let below = Transform::from_xyz(0.0, -0.5, 0.0);
     let floor = lab.spawn((Collider::cuboid(5.0, 0.5, 5.0), below, link));
@@ -291,7 +291,7 @@ fn a_box_that_goes_to_another_world_harms_nobody_there() {
     let world = lab.app.world_mut();
     let mut sets = world.query::<&RapierRigidBodySet>();
     let bodies = &sets.get(world, link.0).expect("its bodies").bodies;
-    // The box, those that were there, and what stands for the hook: the floor is a collider alone.
+    // The box, the six other boxes, and the body that represents the hook. The floor is only a collider.
     assert_eq!(bodies.len(), 8);
     for (other, before) in others.iter().zip(before) {
         assert!(lab.position(*other).distance(before) < 1e-3);

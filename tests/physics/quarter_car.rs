@@ -1,4 +1,4 @@
-//! Does a spring stand right on a wheel that stands on the ground?
+//! Does a spring act correctly on a wheel that stands on the ground?
 
 use crate::fit::exact;
 use crate::harness::*;
@@ -18,7 +18,7 @@ struct Car {
     element: Entity,
 }
 
-/// Chassis above wheel above ground; both move up and down only.
+/// A chassis above a wheel above the ground. Both move only vertically.
 fn car(mut lab: Lab, stiffness: f32, damping: f32, wheel_height: f32, length: f32) -> Car {
     lab.spawn((
         Collider::halfspace(Vec3::Y).expect("up"),
@@ -34,8 +34,8 @@ fn car(mut lab: Lab, stiffness: f32, damping: f32, wheel_height: f32, length: f3
         Transform::from_xyz(0.0, wheel_height, 0.0),
         Velocity::default(),
         Sleeping::default(),
-        // A wheel at 8 m/s would be a hand's breadth in the ground before Rapier sees the contact, and
-        // pushing it out against the spring is work.
+        // A wheel at 8 m/s would be a hand's breadth deep in the ground before Rapier detects the contact. Pushing
+        // it out against the spring would do work.
         SoftCcd { prediction: 0.3 },
         upright,
     ));
@@ -54,8 +54,8 @@ fn car(mut lab: Lab, stiffness: f32, damping: f32, wheel_height: f32, length: f3
     }
 }
 
-/// Rapier's contact with the ground is a spring of its own (60 Hz); to compare with a fixed base it has to
-/// be hard.
+/// Rapier's contact with the ground is itself a spring (60 Hz). For the comparison with a fixed base, it has to be
+/// hard.
 fn hard_ground() -> Lab {
     let mut lab = Lab::new();
     let mut contexts = lab.app.world_mut().query::<&mut RapierContextSimulation>();
@@ -110,8 +110,8 @@ fn sag_and_motion_are_those_of_the_chassis_on_a_fixed_base() {
     }
 }
 
-/// Drops the car from 1 m; the energy at the start and at the top of each bounce, J, and the height of
-/// the first top, m.
+/// Drops the car from `height`, m. Returns the energy at the start and at the end of each flight, J, and the
+/// height of the first peak, m.
 fn bounces(damping: f32, dt: f32, height: f32) -> (Vec<f64>, f64) {
     let engine = Engine { dt, ..default() };
     let mut car = car(
@@ -142,7 +142,7 @@ fn bounces(damping: f32, dt: f32, height: f32) -> (Vec<f64>, f64) {
         );
         if car.lab.position(car.wheel).y < RADIUS + 0.01 {
             if landed && highest > 1.0 {
-                // A flight is over: what did it have?
+                // A flight is over: record its peak and its energy.
                 if first == 0.0 {
                     first = highest;
                 }
@@ -169,7 +169,7 @@ fn a_wheel_that_lands_and_bounces_gains_nothing() {
             "c {c}: {coarse} and {fine} m"
         );
     }
-    // A step meets the ground anywhere in its course, and the heights decide where.
+    // Where the ground is hit within a step depends on the height.
     let mut worst = 0.0_f64;
     for i in -20..20 {
         let height = 1.0 + 0.0057 * i as f32;

@@ -1,4 +1,4 @@
-//! Does a swinging weight stay within the tolerance with as many micro-steps as are recommended for it?
+//! Does a swinging weight stay within the tolerance with the number of micro-steps that `recommend` returns?
 
 use crate::harness::*;
 use bevy::math::DVec3;

@@ -1,4 +1,4 @@
-//! Is a run the same run twice, however the ticks fall into frames?
+//! Are two runs bitwise equal, however many ticks fall into a frame, and in whatever order the scene was spawned?
 
 use crate::harness::*;
 use bevy::prelude::*;
@@ -6,7 +6,7 @@ use bevy::time::TimeUpdateStrategy;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
 
-/// A bit of everything: a pendulum, a spinning pair held off-centre, a chain, a child as end.
+/// A pendulum, a spinning pair held off-centre, a chain, and a child entity as an end. Returns the bodies.
 fn populate(lab: &mut Lab) -> Vec<Entity> {
     let hook = lab.point(Vec3::new(0.0, 2.0, 0.0));
     let weight = lab.body(1.0, Vec3::new(1.0, 2.0, 0.0));
@@ -63,7 +63,7 @@ fn state(lab: &Lab, bodies: &[Entity]) -> Vec<u32> {
         .collect()
 }
 
-/// State after 240 ticks, so many in each frame.
+/// State after 240 ticks, with the given number of ticks in each frame.
 fn run(ticks_per_frame: u32) -> Vec<u32> {
     let mut lab = Lab::new();
     let bodies = populate(&mut lab);
@@ -88,7 +88,7 @@ fn four_ticks_in_a_frame_are_four_frames_of_a_tick() {
 
 #[test]
 fn threads_change_nothing() {
-    // The lab's schedules are single-threaded; here they are as an app has them.
+    // The schedules of a lab are single-threaded. This test leaves them multi-threaded, as in a game.
     let mut lab = Lab::without_plugin(Engine::default());
     lab.app.add_plugins(CoiloverPlugin::default());
     lab.app.finish();
@@ -103,7 +103,7 @@ fn threads_change_nothing() {
 
 #[test]
 fn networks_that_threads_share_move_as_each_does_alone() {
-    // Three springs each: above some hundred networks threads share the work.
+    // Each network has three springs. From 256 elements on, several threads share the work.
     let run = |networks: usize| {
         let mut lab = Lab::new();
         let mut first = Vec::new();
@@ -130,7 +130,8 @@ fn networks_that_threads_share_move_as_each_does_alone() {
     assert_eq!(run(1), run(200));
 }
 
-/// A net of 60 by 60 points, whose step threads share; and as many beside it as are asked for.
+/// Nets of 60 by 60 points, large enough that several threads share a step. The first net must move alike alone
+/// and beside another one.
 #[test]
 fn a_net_that_threads_share_moves_beside_another_as_alone() {
     const SIDE: usize = 60;
@@ -201,8 +202,8 @@ fn the_order_in_which_springs_are_spawned_changes_nothing() {
     assert_eq!(run(false), run(true));
 }
 
-/// A chain, a lattice's corner, a torsion bar and a pendulum on a hinge, made in one of three orders: as written, from the
-/// last to the first, and every third one first. Bodies have labels, which say who is who.
+/// A chain, a corner of a lattice, a torsion bar, and a pendulum on a hinge. `order` is the spawn order: 0 as
+/// written, 1 reversed, 2 every third one first. The index of a body in the returned list does not depend on it.
 fn populate_in_order(lab: &mut Lab, order: usize) -> Vec<Entity> {
     const BODIES: usize = 14;
     let shuffled = |count: usize| -> Vec<usize> {

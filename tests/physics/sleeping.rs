@@ -5,7 +5,7 @@ use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
 
-/// A settled, sleeping weight on a damped spring: hook, weight, element.
+/// A settled, sleeping weight on a damped spring. Returns hook, weight and element.
 fn asleep(lab: &mut Lab) -> (Entity, Entity, Entity) {
     let hook = lab.point(Vec3::ZERO);
     let weight = lab.body(1.0, Vec3::NEG_Y);
@@ -27,7 +27,7 @@ fn asleep(lab: &mut Lab) -> (Entity, Entity, Entity) {
 
 #[test]
 fn a_slow_swing_does_not_fall_asleep() {
-    // 0.1 rad/s and at most 0.02 m/s: far below the engine's own threshold for half a second and more.
+    // 0.1 rad/s and at most 0.02 m/s. This is below the engine's own sleep threshold for more than half a second.
     let mut lab = Lab::weightless();
     let hook = lab.point(Vec3::ZERO);
     let body = lab.body(1.0, Vec3::X * 1.2);
@@ -50,7 +50,7 @@ fn a_slow_swing_does_not_fall_asleep() {
 
 #[test]
 fn without_the_plugins_care_the_engine_would_put_it_to_sleep() {
-    // The test above means something only if this holds.
+    // The test above proves something only if the engine alone would put this body to sleep.
     let mut lab = Lab::weightless();
     let body = lab.body(1.0, Vec3::ZERO);
     lab.get_mut::<Velocity>(body).linear = Vec3::X * 0.02;
@@ -139,7 +139,7 @@ fn moving_one_body_wakes_the_other() {
         "it is pulled along: {}",
         lab.position(b).x
     );
-    // The pair keeps its centre of mass: neither end was dead weight for a tick.
+    // The pair keeps its centre of mass: neither body was treated as fixed for a tick.
     let center = 0.5 * (lab.position(a).x + lab.position(b).x);
     assert!((center - 0.25).abs() < 1e-5, "{center}");
 }

@@ -1,4 +1,4 @@
-//! Do two free bodies, held off-centre and spinning, keep momentum and energy?
+//! Do two free bodies that spin and are held off-centre keep momentum and energy?
 
 use crate::harness::*;
 use bevy::math::{DMat3, DVec3};
@@ -49,7 +49,7 @@ fn pair(lab: &mut Lab, stiffness: f32, damping: f32) -> ([Entity; 2], Entity) {
     (bodies, element)
 }
 
-/// Linear momentum, angular momentum about the origin, kinetic energy.
+/// Linear momentum, N s, angular momentum about the origin, N m s, and kinetic energy, J.
 fn moments(lab: &Lab, bodies: [Entity; 2]) -> (DVec3, DVec3, f64) {
     let (mut p, mut l, mut e) = (DVec3::ZERO, DVec3::ZERO, 0.0);
     for body in bodies {

@@ -1,4 +1,4 @@
-//! Are springs that are too stiff for one micro-step followed, although nobody asked for more?
+//! Do default settings follow springs that are too stiff for one micro-step?
 
 use crate::harness::*;
 use bevy::prelude::*;
@@ -6,7 +6,8 @@ use bevy_coilover::prelude::*;
 
 const AMPLITUDE: f64 = 0.1;
 
-/// Bodies of these masses in a row from a hook, on springs of these stiffnesses; the last one stretched.
+/// Bodies in a row from a hook, given as (mass in kg, stiffness in N/m of the spring before it). The last spring
+/// is stretched. Returns the last body.
 fn row<const N: usize>(plugin: CoiloverPlugin, bodies: [(f32, f64); N]) -> (Lab, Entity) {
     let mut lab = Lab::with(plugin, Engine::weightless());
     let mut last = lab.point(Vec3::ZERO);
@@ -23,7 +24,7 @@ fn row<const N: usize>(plugin: CoiloverPlugin, bodies: [(f32, f64); N]) -> (Lab,
     (lab, last)
 }
 
-/// Largest distance of the last body from where it should be in three seconds, over the amplitude.
+/// Largest distance of the last body from its exact position over three seconds, as a fraction of the amplitude.
 fn error(lab: &mut Lab, body: Entity, places: f64, wanted: impl Fn(f64) -> f64) -> f64 {
     let mut worst = 0.0_f64;
     for tick in 1..=180 {
@@ -52,7 +53,7 @@ fn a_heavy_body_behind_a_light_one_keeps_its_phase() {
     for (phase, ratio) in [(0.5, 1.0), (0.1, 1e3), (1.0, 300.0), (10.0, 3.0)] {
         let wanted = ratio * (phase / f64::from(DT)).powi(2);
         let (k, m) = (f64::from(wanted as f32), ratio);
-        // Modes of M⁻¹K = [[2k, −k], [−k/m, k/m]].
+        // Eigenvalues of M⁻¹K = [[2k, −k], [−k/m, k/m]].
         let half = 0.5 * (2.0 * k + k / m);
         let high = half + (half * half - k * k / m).sqrt();
         let squares = [k * k / m / high, high];
@@ -92,7 +93,7 @@ fn who_asks_for_one_micro_step_gets_one_and_what_is_too_stiff_stays_stable() {
     }
 }
 
-/// A hundred pairs of bodies on springs that each would take the whole budget.
+/// A hundred networks of two springs. Each network alone would take about half of the budget.
 #[test]
 fn networks_share_the_budget() {
     let mut lab = Lab::with(CoiloverPlugin::default(), Engine::weightless());
@@ -113,7 +114,8 @@ fn networks_share_the_budget() {
     assert!(kicks <= 1024, "{kicks} kicks");
 }
 
-/// A thousand planks of 2 kg with 500 kg on the middle one, let go slack along a parabola; far too many for the budget.
+/// A bridge of planks of 2 kg on 1000 springs, with 500 kg more on the middle plank. It is released from a
+/// parabola with all springs at rest length. It has far too many springs for the budget.
 #[test]
 fn a_long_bridge_falls_as_it_should() {
     const PLANKS: u16 = 1000;
@@ -147,14 +149,14 @@ fn a_long_bridge_falls_as_it_should() {
     assert!(lab.position(points[500]).y < -20.0);
 }
 
-/// Kicks that the last step took.
+/// Largest number of micro-steps that an element took in the last step.
 fn kicks(lab: &mut Lab) -> u32 {
     let mut readouts = lab.app.world_mut().query::<&SpringReadout>();
     let of_all = readouts.iter(lab.app.world()).map(|r| r.microsteps);
     of_all.max().unwrap_or(0)
 }
 
-/// A heavy body swings behind a light one, whose own mode was never touched; then someone strikes the light one.
+/// A heavy body swings behind a light one. The light one's own mode is not excited until the light body is struck.
 #[test]
 fn a_stiff_mode_costs_nothing_until_it_is_struck() {
     let m = 3000.0;
@@ -162,7 +164,7 @@ fn a_stiff_mode_costs_nothing_until_it_is_struck() {
     let k = f64::from(stiffness as f32);
     let mut lab = Lab::with(CoiloverPlugin::default(), Engine::weightless());
     let hook = lab.point(Vec3::ZERO);
-    // The light one stands where the slow mode has it.
+    // The light body starts where the slow mode places it.
     let light = lab.body(1.0, Vec3::X * 1.05);
     let heavy = lab.body(m as f32, Vec3::X * 2.1);
     for (a, b) in [(hook, light), (light, heavy)] {
@@ -184,7 +186,7 @@ fn a_stiff_mode_costs_nothing_until_it_is_struck() {
     let from = x - 0.5 * f64::from(lab.position(heavy).x);
     lab.tick();
     let struck = kicks(&mut lab);
-    // It goes on as an oscillator about where the slow mode has it, half way to the heavy one.
+    // The light body then oscillates about the place that the slow mode gives it, half-way to the heavy body.
     let half = |lab: &Lab| 0.5 * f64::from(lab.position(heavy).x);
     let omega = (2.0 * k).sqrt();
     let phase = omega * f64::from(DT);

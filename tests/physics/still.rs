@@ -1,12 +1,12 @@
-//! A world asleep is not looked at. Does whatever wakes a part of it still do so, in the same step as where a
-//! body that flies by keeps all others under watch?
+//! A sleeping world is not examined. Does everything that wakes a part of it still act in the same step as in a
+//! world that a flying body keeps under observation?
 
 use crate::harness::*;
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
 
-/// A weight on a hook that the game can move, a pair that floats, and a chain that hangs from a fixed body.
+/// A weight on a hook that the game can move, a floating pair, and a chain that hangs from a fixed body.
 struct Bedroom {
     lab: Lab,
     hook: Entity,
@@ -76,7 +76,7 @@ impl Bedroom {
         state.into_iter().map(f32::to_bits).collect()
     }
 
-    /// Straight in the engine, past all components.
+    /// Changes a body directly in the engine, without any component.
     fn in_the_engine(
         &mut self,
         body: usize,
@@ -125,7 +125,7 @@ impl Bedroom {
                 world.despawn(self.springs.remove(0));
             }
             _ => {
-                // Something heavy falls on it.
+                // A heavy ball falls on the last body.
                 let above = self.lab.position(last) + Vec3::new(0.05, 0.6, 0.0);
                 let ball = self.lab.body(5.0, above);
                 let round = (Collider::ball(0.1), ColliderMassProperties::Mass(0.0));

@@ -1,4 +1,4 @@
-//! Does what an element does depend only on what it has to do with?
+//! Does the motion of an element depend only on the bodies that it is connected to?
 
 use crate::harness::*;
 use bevy::prelude::*;

@@ -1,4 +1,5 @@
-//! Is what stands where no element is told of, once, and nothing else?
+//! Does a component that needs an element, on an entity without one, cause one message, and does nothing else
+//! cause any?
 
 use crate::harness::*;
 use crate::messages::Log;

@@ -1,4 +1,4 @@
-//! Does a tolerance give the error that was asked for, at a fair price?
+//! Does a tolerance give the requested error at an acceptable cost?
 
 use crate::harness::*;
 use crate::networks::{Link, Net, sheet, swing};
@@ -6,7 +6,7 @@ use bevy::math::DVec3;
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 
-/// A scene with a reference: the points to watch, and an element to ask for the kicks.
+/// A scene with a reference. Returns the net, the reference file and the points to watch.
 type Scene = fn(Lab) -> (Net, &'static str, &'static [usize]);
 
 fn pendulum(
@@ -51,7 +51,7 @@ const SCENES: [(&str, Scene); 5] = [
     ("lattice 6×6", |lab| sheet(lab, Link::Ours)),
 ];
 
-/// Largest error over the first second, m; kicks in it; largest estimate, m/s.
+/// Largest error over the first second, m; micro-steps in that second; sum of the error estimates of its steps, m.
 fn run(scene: Scene, plugin: CoiloverPlugin) -> (f64, u32, f64) {
     let (mut net, file, watched) = scene(Lab::with(plugin, Engine::default()));
     let mut springs = net.lab.app.world_mut().query::<&SpringReadout>();
@@ -77,7 +77,7 @@ fn run(scene: Scene, plugin: CoiloverPlugin) -> (f64, u32, f64) {
 #[test]
 fn the_error_of_the_first_second_is_near_the_tolerance() {
     for (name, scene) in SCENES {
-        // What fixed counts reach, and what they cost.
+        // The errors and the costs of fixed numbers of micro-steps.
         let mut fixed = Vec::new();
         for n in [1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64] {
             let plugin = CoiloverPlugin::default().with_microsteps(n);
@@ -118,7 +118,7 @@ fn a_cap_that_bites_is_told() {
     let mut springs = net.lab.app.world_mut().query::<&SpringReadout>();
     let readout = springs.single(net.lab.app.world()).expect("one element");
     assert!(readout.capped, "{readout:?}");
-    // A fixed count below the cap is no bite.
+    // A fixed number of micro-steps below the cap does not set `capped`.
     let plugin = CoiloverPlugin::default().with_microsteps(4);
     let (mut net, ..) = SCENES[2].1(Lab::with(plugin, Engine::default()));
     net.lab.run(0.5);

@@ -1,5 +1,5 @@
-//! Does what nothing brakes keep its energy for long? `COILOVER_HOURS=1 cargo test --test physics undamped -- --nocapture`
-//! plays an hour; without the variable it is a minute.
+//! Do undamped motions keep their energy for long? `COILOVER_HOURS=1 cargo test --test physics undamped --
+//! --nocapture` simulates an hour. Without the variable, it is a minute.
 
 use crate::harness::*;
 use bevy::math::DMat3;
@@ -15,7 +15,7 @@ struct Scene {
     bodies: Vec<Part>,
     springs: Vec<Entity>,
     gravity: f64,
-    /// Energy of rest, J.
+    /// Energy at rest, J.
     rest: f64,
 }
 
@@ -37,8 +37,8 @@ impl Scene {
             - self.rest
     }
 
-    /// Energy in motion in the mean of two seconds, over that of the first two: at the end, and where it was farthest
-    /// from one.
+    /// Averages the energy of motion over intervals of two seconds. Returns the last average and the one that
+    /// deviates most, as a fraction of the first average.
     fn watch(&mut self, seconds: f64) -> (f64, f64) {
         let mut means = Vec::new();
         for _ in 0..(seconds / 2.0) as usize {
@@ -69,7 +69,7 @@ fn spring(lab: &mut Lab, a: Entity, b: Entity, anchors: [Vec3; 2], k: f32, rest:
     ))
 }
 
-/// 1 kg on 50 N/m, let go aside.
+/// A weight of 1 kg on 50 N/m, released from the side.
 fn pendulum(plugin: CoiloverPlugin) -> Scene {
     let mut lab = Lab::with(plugin, Engine::default());
     let hook = lab.point(Vec3::ZERO);
@@ -86,7 +86,8 @@ fn pendulum(plugin: CoiloverPlugin) -> Scene {
     }
 }
 
-/// 12 kg on four springs of 900 N/m from its corners to hooks above; struck so that it bounces, rolls, and yaws.
+/// A box of 12 kg on four springs of 900 N/m from its corners to hooks above. Its initial velocity makes it
+/// bounce, roll and yaw.
 fn box_on_four(plugin: CoiloverPlugin) -> Scene {
     let mut lab = Lab::with(plugin, Engine::default());
     let half = Vec3::new(0.5, 0.2, 0.3);
@@ -122,7 +123,7 @@ fn box_on_four(plugin: CoiloverPlugin) -> Scene {
     }
 }
 
-/// Two bricks on one spring between their corners, tumbling.
+/// Two tumbling bricks with one spring between their corners.
 fn dumbbell(plugin: CoiloverPlugin) -> Scene {
     let mut lab = Lab::with(plugin, Engine::weightless());
     let inertia = Vec3::new(0.02, 0.03, 0.04);

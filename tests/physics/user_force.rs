@@ -5,7 +5,7 @@ use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
 
-/// What the user does with the force, tick by tick.
+/// How the user changes the force from tick to tick.
 #[derive(Clone, Copy, Debug)]
 enum Habit {
     SetOnce,
@@ -66,7 +66,8 @@ fn act(habit: Habit, tick: usize, lab: &mut Lab, body: Entity) {
     }
 }
 
-/// A body in free space under the habit, with a spring and a damper of no strength on it, or without.
+/// Path of a body in free space whose force changes by `habit`. With `plugin`, a spring-damper without stiffness
+/// and damping is attached to it.
 fn path(habit: Habit, plugin: bool) -> Vec<(Vec3, Quat)> {
     let mut lab = if plugin {
         Lab::new()
@@ -99,8 +100,8 @@ fn path(habit: Habit, plugin: bool) -> Vec<(Vec3, Quat)> {
 fn a_body_held_by_a_powerless_element_moves_as_without_the_plugin() {
     for habit in HABITS {
         let (with, without) = (path(habit, true), path(habit, false));
-        // The engine falls g·t·h/2 too far with n substeps (see free_fall.rs), and pushes likewise; an
-        // element's body does not, so it may differ by that much and no more.
+        // With substeps of h, the engine falls g·t·h/2 too far (see free_fall.rs). Constant forces have the same
+        // error. A body with elements does not have it. The paths may differ by that error and no more.
         for (tick, ((x, r), (y, s))) in with.iter().zip(&without).enumerate() {
             let t = (tick + 1) as f32 * DT;
             let substep = DT / 4.0;
@@ -117,7 +118,7 @@ fn a_body_held_by_a_powerless_element_moves_as_without_the_plugin() {
     }
 }
 
-/// What stands in the component is the user's share and ours; the engine has the same.
+/// The component contains the sum of the user's force and the elements' force. The engine has the same force.
 #[test]
 fn the_component_shows_the_sum_and_the_load_keeps_the_shares_apart() {
     let mut lab = Lab::new();
@@ -160,7 +161,7 @@ fn the_component_shows_the_sum_and_the_load_keeps_the_shares_apart() {
     }
 }
 
-/// A body that the user's 5 N hold against a spring, at rest and asleep: the sum of both shares is zero.
+/// The user's 5 N hold a body against a spring. After 20 s it is at rest: the sum of both forces is zero.
 fn balanced() -> (Lab, Entity) {
     let mut lab = Lab::weightless();
     let hook = lab.point(Vec3::ZERO);
@@ -248,7 +249,7 @@ fn nothing_of_ours_is_left_behind() {
     }
 }
 
-/// The share of elements must not come back as the user's when a body does.
+/// When a body gets its rigid body back, the elements' share must not be taken for a force of the user.
 #[test]
 fn a_body_that_loses_its_rigid_body_keeps_only_the_users_share() {
     let mut lab = Lab::weightless();

@@ -8,7 +8,7 @@ use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use std::collections::HashSet;
 
-/// A lab with what the visual plugin needs of Bevy, and no renderer.
+/// A lab with the parts of Bevy that the visual plugin needs, without a renderer.
 pub fn lab() -> Lab {
     let mut lab = Lab::without_plugin(Engine::default());
     lab.app
@@ -62,14 +62,14 @@ fn equal_springs_share_one_mesh_and_one_material() {
     for i in 0..50 {
         let hook = lab.point(Vec3::new(i as f32, 3.0, 0.0));
         let body = lab.body(5.0, Vec3::new(i as f32, 2.0, 0.0));
-        // However long they are, and whatever holds them.
+        // Elements of any length, at any place, share the mesh.
         lab.spawn((
             Spring::new(hook, body).with_rest_length(1.0 + 0.02 * i as f32),
             Coil::default(),
         ));
     }
     lab.run(0.1);
-    // One mesh for each level of detail, of which all show the same.
+    // One mesh for each level of detail. All coils show the same one.
     let world = lab.app.world_mut();
     assert_eq!(world.resource::<Assets<Mesh>>().len(), 4);
     assert_eq!(world.resource::<Assets<RoundWireMaterial>>().len(), 1);
@@ -91,7 +91,7 @@ fn the_coil_meets_the_anchors_every_frame_under_scaled_parents_too() {
             .with_rest_length(1.0),
         anchors,
         Coil::default(),
-        // An element may have a place of its own; it does not matter.
+        // An element may have a transform of its own. It has no effect.
         Transform::from_xyz(7.0, 8.0, 9.0).with_rotation(Quat::from_rotation_x(1.0)),
     ));
     lab.tick();
@@ -125,7 +125,7 @@ fn a_swinging_spring_neither_spins_nor_flips_and_no_length_is_no_harm() {
     let first = before;
     for degree in 0..=720 {
         let angle = (degree as f32).to_radians();
-        // Up through the vertical, through zero length once, and back to where it began.
+        // Two full turns through the vertical, once with zero length on the way, and back to the start.
         let length = if degree == 200 { 0.0 } else { 1.0 };
         lab.get_mut::<Transform>(end).translation =
             length * Vec3::new(0.0, angle.cos(), angle.sin());
@@ -187,7 +187,7 @@ fn looks_that_cannot_be_drawn_are_told_once_by_entity_and_field() {
     let telescope = lab.spawn((Damper::new(a, b), thin));
     let endless = Telescope::default().with_stroke(f32::NAN);
     let stroke = lab.spawn((Damper::new(a, b), endless));
-    // Eight turns of 0.16 m do not go into a metre.
+    // Eight turns of 0.16 m do not fit into a metre.
     let thick = lab.spawn((spring, Coil::new(0.2, 0.08, 8.0)));
     lab.run(0.2);
     let told = log.take();
@@ -236,7 +236,7 @@ fn a_coil_pressed_until_wire_passes_through_wire_is_told_once_with_both_lengths(
     assert_eq!(told[0], wanted);
     assert!(told_at(&mut lab, 1.0).is_empty());
     assert!(told_at(&mut lab, length).is_empty(), "told twice");
-    // Other looks are another matter.
+    // Changed looks cause a new message.
     lab.get_mut::<Coil>(element).color = Color::BLACK;
     assert_eq!(told_at(&mut lab, length).len(), 1);
 }
@@ -252,7 +252,7 @@ fn a_coil_pressed_between_its_seats_is_told_though_its_ends_are_farther_apart() 
     lab.spawn((damper, Telescope::default()));
     lab.run(0.1);
     assert!(log.take().is_empty());
-    // Between them are two seats, each one and a half times the wire's radius high.
+    // Two seats lie between the ends. Each is one and a half times the wire's radius high.
     lab.get_mut::<Transform>(b).translation = Vec3::Y * (coil.solid_length() + coil.wire_radius);
     lab.run(0.1);
     let told = log.take();
@@ -278,7 +278,7 @@ fn what_is_drawn_reflects() {
     ] {
         let registration = registry.get_with_short_type_path(name);
         let path = registration.map(|r| r.type_info().type_path());
-        // In a saved scene no module's name stands, which another version may not have.
+        // A saved scene must not contain module names, because another version may not have these modules.
         assert_eq!(path, Some(format!("bevy_coilover::{name}").as_str()));
     }
     drop(registry);

@@ -1,4 +1,4 @@
-//! Do the lines for debugging show forces the way they act?
+//! Do the debug lines show the forces in the direction in which they act?
 
 use crate::harness::*;
 use bevy::asset::AssetPlugin;
@@ -9,12 +9,12 @@ use bevy_coilover::prelude::*;
 use std::any::TypeId;
 use std::f32::consts::FRAC_PI_2;
 
-/// Where end B is; end A is at the origin, turned so that its Y points along −X.
+/// Position of end B. End A is at the origin, rotated so that its Y axis points along −X.
 const B: Vec3 = Vec3::new(0.3, 1.0, 0.0);
 
-/// The shafts of the arrows of an element under a tension of 40 N, from where to where.
+/// Start and end of each arrow shaft of an element under a tension of 40 N.
 fn arrows(axis: Option<SpringAxis>) -> Vec<[Vec3; 2]> {
-    // Without physics, which would write what the element shows.
+    // Without the physics plugin, which would overwrite the readout.
     let mut lab = Lab::without_plugin(Engine::default());
     lab.app
         .add_plugins(AssetPlugin::default())
@@ -41,7 +41,7 @@ fn arrows(axis: Option<SpringAxis>) -> Vec<[Vec3; 2]> {
     let handle = handle.and_then(Option::as_ref).expect("lines");
     let drawn = world.resource::<Assets<GizmoAsset>>().get(handle);
     let drawn = drawn.expect("lines").buffer().buffer();
-    // An arrow's shaft is ten times as long as its tips.
+    // The shaft of an arrow is ten times as long as its tips.
     let lines = drawn
         .list_positions
         .chunks(2)
@@ -60,7 +60,7 @@ fn forces_lie_along_the_line_between_the_ends_or_along_the_axis_of_the_element()
         (Some(SpringAxis::World(2.0 * Vec3::X)), Vec3::X),
         (Some(SpringAxis::BodyA(Vec3::Y)), Vec3::NEG_X),
     ] {
-        // 5 mm for a newton.
+        // 5 mm per newton.
         let pull = 0.2 * way;
         let wanted = [[Vec3::ZERO, pull], [B, B - pull]];
         let drawn = arrows(axis);

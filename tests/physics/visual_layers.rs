@@ -1,4 +1,4 @@
-//! Do the cameras that see an element see what was drawn of it?
+//! Are the drawn parts of an element visible to the cameras that see the element?
 
 use crate::harness::*;
 use crate::visual_data::lab;
@@ -6,7 +6,7 @@ use bevy::camera::visibility::RenderLayers;
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 
-/// Whether there are parts, and all are on these layers.
+/// Asserts that the element has parts, and that all of them are on the layers `wanted`.
 fn are_on(lab: &Lab, element: Entity, wanted: &Option<RenderLayers>) {
     let world = lab.app.world();
     let children = world.get::<Children>(element).expect("parts");
@@ -63,7 +63,7 @@ fn parts_are_on_the_layers_of_their_element_from_their_first_frame_on() {
     lab.tick();
     are_on(&lab, pair, &wanted);
     are_on(&lab, spiral, &wanted);
-    // Made anew.
+    // The parts are created again.
     lab.get_mut::<Coil>(pair).turns = 5.0;
     lab.get_mut::<TorsionCoil>(spiral).turns = 3.0;
     lab.tick();

@@ -1,4 +1,4 @@
-//! Do looks fit their scene, and can a coilover be built in one expression?
+//! Do fitted looks suit the scene, and can a coilover be built in one expression?
 
 use crate::harness::*;
 use crate::visual_data::{lab, parts};
@@ -46,7 +46,7 @@ fn fitted_looks_are_as_thick_as_their_first_length_asks_and_stay_so() {
         let both = lab.spawn(Coilover::new(a, b).fitted());
         lab.tick();
         lab.tick();
-        // The widest of the telescope's parts is its collar, a little wider than the tube.
+        // The widest part of the telescope is its collar. It is a little wider than the tube.
         let widest = |lab: &Lab| {
             let scales = parts(lab, telescope).into_iter().map(|part| part.scale().x);
             scales.fold(0.0, f32::max)
@@ -90,7 +90,7 @@ fn a_skin_gives_its_element_what_drawing_needs() {
         Spring::new(a, b),
         children![(SpringSkin { length: 1.0 }, Mesh3d(mesh))],
     ));
-    // Within the frame in which it was spawned, at whose end Bevy warns of parents without them.
+    // Still in the spawn frame. At its end, Bevy warns of parents without these components.
     lab.tick();
     let world = lab.app.world();
     assert!(world.get::<GlobalTransform>(element).is_some());
@@ -134,13 +134,13 @@ fn what_is_a_skin_no_more_goes_back_to_its_own_place_and_stays_its_users() {
         if is_removed {
             lab.app.world_mut().entity_mut(skin).remove::<SpringSkin>();
         } else {
-            // As good as none, and told.
+            // A skin with a bad length is ignored, with a message.
             lab.get_mut::<SpringSkin>(skin).length = -1.0;
         }
         lab.run(0.1);
         let own = Vec3::new(0.0, 5.0, 2.0);
         assert!(foot(&lab).distance(own) < 1e-5, "{}", foot(&lab));
-        // It is no part of the looks that come and go.
+        // The former skin must not be removed together with the looks.
         lab.app
             .world_mut()
             .entity_mut(element)
@@ -150,7 +150,7 @@ fn what_is_a_skin_no_more_goes_back_to_its_own_place_and_stays_its_users() {
         lab.app.world_mut().entity_mut(element).remove::<Coil>();
         lab.run(0.1);
         assert!(foot(&lab).distance(own) < 1e-5, "{}", foot(&lab));
-        // Given back, it is laid again.
+        // With `SpringSkin` again, it is stretched between the ends again.
         let again = SpringSkin { length: 1.0 };
         lab.app.world_mut().entity_mut(skin).insert(again);
         lab.run(0.1);

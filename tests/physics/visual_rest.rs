@@ -1,4 +1,4 @@
-//! Is a resting element, which is left alone, still drawn right after anything but its ends has changed?
+//! A resting element is not updated. Is it still drawn correctly after something other than its ends has changed?
 
 use crate::harness::*;
 use crate::visual_data::{lab, parts};
@@ -8,7 +8,7 @@ use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use std::collections::HashSet;
 
-/// A coil from the origin to a metre above, that has rested for a while.
+/// A coil from the origin to one metre above it, which has rested for a while.
 struct Rest {
     lab: Lab,
     a: Entity,
@@ -33,7 +33,7 @@ impl Rest {
         }
     }
 
-    /// Whether the coil is drawn from one point to another.
+    /// Whether the coil is drawn from one point to the other.
     fn goes(&self, from: Vec3, to: Vec3) -> bool {
         let at = self.lab.get::<GlobalTransform>(self.coil);
         at.transform_point(Vec3::ZERO).distance(from) < 1e-5
@@ -156,7 +156,7 @@ fn a_disabled_element_is_not_drawn_and_has_its_new_looks_once_it_is_enabled() {
     rest.remove::<Disabled>(rest.element);
     rest.lab.tick();
     assert_eq!(parts(&rest.lab, rest.element).len(), 0);
-    // One that comes disabled, as from a pool.
+    // An element that is spawned disabled, as from a pool.
     let look = (Spring::new(rest.a, rest.b), Coil::default(), Disabled);
     let pooled = rest.lab.spawn(look);
     rest.lab.run(0.1);
@@ -220,7 +220,7 @@ fn a_skin_given_to_another_element_or_changed_follows_at_once() {
     assert!(rest.goes(Vec3::X, top + 2.0 * Vec3::Y), "twice as long now");
 }
 
-/// A camera, prepared as a renderer does it.
+/// A camera with the computed values that a renderer would give it.
 fn look(lab: &mut Lab, at: Transform) -> Entity {
     let projection = Projection::default();
     let computed = ComputedCameraValues {
@@ -261,11 +261,11 @@ fn out_of_sight_it_is_laid_seldom_and_is_right_soon_after_it_stops() {
         places.insert(at.translation().y.to_bits());
     }
     assert!((2..=3).contains(&places.len()), "{} times", places.len());
-    // Long after its last move.
+    // 0.2 s after its last move.
     rest.lab.run(0.2);
     assert!(rest.goes(-0.15 * Vec3::Y, Vec3::Y));
 
-    // A camera that turns to it finds it right at once.
+    // When a camera turns to it, it is right at once.
     rest.lab.get_mut::<Transform>(rest.a).translation.y = -0.5;
     rest.lab.tick();
     turn(&mut rest.lab, camera, ahead);
@@ -280,12 +280,12 @@ fn out_of_sight_but_with_a_shadow_in_the_picture_it_is_laid_in_every_frame() {
     look(&mut rest.lab, away);
     rest.lab.run(0.2);
     for i in 0..16 {
-        // As the renderer marks what a light's view sees.
+        // The renderer marks a part like this when the view of a light sees it.
         rest.insert(rest.coil, ViewVisibility::VISIBLE);
         let low = -0.01 * i as f32 * Vec3::Y;
         rest.lab.get_mut::<Transform>(rest.a).translation = low;
         rest.lab.tick();
-        // Whether it shows is known from the frame before.
+        // The visibility is known from the frame before.
         assert!(i < 2 || rest.goes(low, Vec3::Y), "frame {i}");
     }
 }
@@ -295,7 +295,7 @@ fn what_is_made_out_of_sight_lies_where_it_should_from_its_first_frame() {
     let mut rest = Rest::new();
     let away = Transform::from_xyz(0.0, 0.5, 10.0).looking_to(Vec3::Z, Vec3::Y);
     look(&mut rest.lab, away);
-    // In each frame other ones have their turn.
+    // Each frame updates other elements out of sight.
     for _ in 0..8 {
         let (a, b) = (rest.lab.point(Vec3::X), rest.lab.point(Vec3::ONE));
         let other = rest.lab.spawn((Spring::new(a, b), Coil::default()));
@@ -312,7 +312,7 @@ fn a_resting_coil_gets_coarser_as_the_camera_goes_away_and_finer_as_it_comes_bac
     let mut vertices = |distance: f32| {
         let at = Transform::from_xyz(0.0, 0.5, distance);
         turn(&mut rest.lab, camera, at);
-        // How an element is seen is looked at in every eighth frame.
+        // The visibility and the distance of an element are checked in every eighth frame.
         rest.lab.run(8.0 / 60.0);
         let mesh = rest.lab.get::<Mesh3d>(rest.coil);
         let meshes = rest.lab.app.world().resource::<Assets<Mesh>>();

@@ -1,4 +1,4 @@
-//! Is the spiral of a torsion element where the bodies have its ends, at any twist, and does it cost nothing at rest?
+//! Does the spiral of a torsion element meet its ends at any twist, and does it cost nothing at rest?
 
 use crate::harness::*;
 use crate::messages::Log;
@@ -10,11 +10,11 @@ use bevy_rapier3d::prelude::*;
 use std::collections::HashSet;
 use std::f32::consts::TAU;
 
-/// Radius of the spiral and of its arbor, m.
+/// Outer radius of the spiral, m. `ARBOR` is the radius of its arbor, m.
 const RADIUS: f32 = 0.2;
 const ARBOR: f32 = 0.04;
 
-/// A door on the axis of its frame, which nothing but the test turns.
+/// A door on the axis of its frame. Only the test turns it.
 struct Door {
     lab: Lab,
     door: Entity,
@@ -36,12 +36,12 @@ impl Door {
 
     fn turn(&mut self, angle: f32) {
         self.lab.get_mut::<Transform>(self.door).rotation = Quat::from_rotation_z(angle);
-        // As the physics plugin would tell, full turns counted.
+        // The physics plugin would write this angle. It includes full turns.
         self.lab.get_mut::<SpringReadout>(self.element).length = angle;
         self.lab.tick();
     }
 
-    /// The strip's inner and outer end in the world.
+    /// Inner and outer end of the strip, in world coordinates.
     fn ends(&self) -> [Vec3; 2] {
         let world = self.lab.app.world();
         let children = world.get::<Children>(self.element).expect("parts");
@@ -58,7 +58,7 @@ impl Door {
             panic!("positions");
         };
         let at = self.lab.get::<GlobalTransform>(strip);
-        // Sections of eight vertices each, and eight more that close the ends.
+        // The mesh consists of sections of eight vertices each, and of eight more that close the ends.
         let middle = |from: usize| {
             let ring = all[from..from + 8].iter().copied().map(Vec3::from);
             at.transform_point(ring.sum::<Vec3>() / 8.0)
@@ -88,7 +88,7 @@ fn its_outer_end_goes_around_with_body_b_and_its_inner_end_stays() {
         let [inner, outer] = door.ends();
         assert!((outer.distance(Vec3::X) - RADIUS).abs() < 1e-5);
         assert!((inner.distance(Vec3::X) - ARBOR).abs() < 1e-5);
-        // There and back, and through more than a full turn either way.
+        // To 450° and back, then from −450° to 450°.
         for degrees in (0..=450).chain(-450..=450) {
             let angle = (degrees as f32 + 0.4).to_radians();
             door.turn(angle);
@@ -98,14 +98,14 @@ fn its_outer_end_goes_around_with_body_b_and_its_inner_end_stays() {
                 gone.distance(wanted) < 1e-5,
                 "{degrees}: {gone}, not {wanted}"
             );
-            // Strips are made for whole degrees.
+            // Strip meshes are made for whole degrees.
             let off = still.distance(inner) / ARBOR;
             assert!(off < 0.51_f32.to_radians(), "{degrees}: off by {off} rad");
         }
     }
 }
 
-/// Meshes that a renderer has been told of.
+/// Meshes of which a renderer has received an event.
 #[derive(Resource)]
 struct Known(HashSet<AssetId<Mesh>>);
 
@@ -123,7 +123,7 @@ fn a_renderer_hears_of_a_new_strip_in_the_frame_that_shows_it() {
     let there: HashSet<_> = app.world().resource::<Assets<Mesh>>().ids().collect();
     app.insert_resource(Known(there)).add_systems(Last, hear);
     for step in 1..=300 {
-        // Some degrees in each frame: every one shows a strip of its own.
+        // Three degrees per frame, so every frame shows a new strip.
         door.turn((3.0 * step as f32).to_radians());
         let world = door.lab.app.world();
         let known = &world.resource::<Known>().0;
@@ -175,7 +175,7 @@ fn at_rest_nothing_of_it_is_sent_to_the_graphics_card_again() {
     door.lab.run(0.5);
     assert_eq!(sent(&door), before);
     door.turn(0.002);
-    // The strip and its pin; the arbor is as round as before, but turns with them.
+    // Three parts change: the strip, its pin, and the arbor, which keeps its mesh but turns.
     assert_eq!(sent(&door), before + 3);
 }
 
@@ -200,7 +200,8 @@ fn springs_that_swing_alike_share_their_meshes_and_keep_few() {
         }
         lab.tick();
     }
-    // One for each of the degrees that were passed at most, and the cylinder; old ones are dropped beyond a bound.
+    // At most one mesh for each whole degree of the swing, and the cylinder. Unused meshes are dropped beyond a
+    // bound.
     let meshes = lab.app.world().resource::<Assets<Mesh>>().len();
     assert!((2..=270).contains(&meshes), "{meshes} meshes");
 }
@@ -208,7 +209,7 @@ fn springs_that_swing_alike_share_their_meshes_and_keep_few() {
 #[test]
 fn it_is_a_quarter_as_large_as_what_it_turns() {
     for (place, collider, size) in [
-        // How far the door is from the hinge, its collider, or neither.
+        // Distance of the door from the hinge, or size of its collider, or neither.
         (Vec3::X * 0.8, None, 0.8),
         (Vec3::ZERO, Some(Collider::ball(1.2)), 1.2),
         (Vec3::ZERO, None, 0.5),

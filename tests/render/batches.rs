@@ -1,4 +1,4 @@
-//! Are many springs drawn in as few draws as one?
+//! Do many springs need as few draws as one?
 
 use crate::canvas::*;
 use bevy::core_pipeline::core_3d::Opaque3d;
@@ -8,7 +8,7 @@ use bevy::render::RenderApp;
 use bevy::render::render_phase::{BinnedPhaseItem, ViewBinnedRenderPhases};
 use bevy_coilover::prelude::*;
 
-/// Draws that the graphics card is asked for, of one kind of pass.
+/// Number of draws in the phases of one kind.
 fn draws<P: BinnedPhaseItem>(app: &App) -> usize {
     let world = app.sub_app(RenderApp).world();
     let phases = world.resource::<ViewBinnedRenderPhases<P>>();

@@ -1,4 +1,4 @@
-//! A white sheet of two metres, seen straight on, and where on it something is drawn.
+//! A view of two metres, seen straight on, and measurements of what is drawn in it.
 
 use bevy::core_pipeline::tonemapping::Tonemapping;
 use bevy::image::Image;
@@ -7,23 +7,23 @@ use bevy_coilover::prelude::*;
 use stage::offscreen;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// Software adapters are slow, and one renderer has all their threads.
+/// Software adapters are slow: one renderer uses all threads.
 static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
 
 pub const SIZE: u32 = 512;
-/// Metres that the picture is wide and high.
+/// Width and height of the view, m.
 pub const VIEW: f32 = 2.0;
-/// Metres of a pixel.
+/// Size of a pixel, m.
 pub const PIXEL: f32 = VIEW / SIZE as f32;
 
-/// An app that draws, seen along −Z without perspective.
+/// An app that draws, with an orthographic view along −Z.
 pub struct Canvas {
     pub app: App,
     image: Handle<Image>,
     _alone: MutexGuard<'static, ()>,
 }
 
-/// Whether there is an adapter; says so where there is none.
+/// Whether there is a graphics adapter. Prints a message if there is none.
 pub fn can_draw() -> bool {
     let can = offscreen::adapter().is_some();
     if !can {
@@ -34,7 +34,7 @@ pub fn can_draw() -> bool {
     can
 }
 
-/// Holds all other renderers off.
+/// Makes all other renderers wait while the guard is held.
 pub fn alone() -> MutexGuard<'static, ()> {
     ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner)
 }
@@ -72,14 +72,14 @@ impl Canvas {
         })
     }
 
-    /// The picture once nothing is missing from it.
+    /// Takes a picture when everything has been loaded and drawn.
     pub fn shoot(&mut self) -> Image {
         offscreen::settle(&mut self.app);
         offscreen::shoot(&mut self.app, &self.image).expect("a picture within two minutes")
     }
 }
 
-/// Draws what `setup` spawns; `None` where nothing can be drawn.
+/// Draws what `setup` spawns. Returns `None` where there is no adapter.
 pub fn draw(setup: impl FnOnce(&mut World)) -> Option<Image> {
     let mut canvas = Canvas::new()?;
     setup(canvas.app.world_mut());
@@ -94,14 +94,14 @@ pub fn is_red([r, g, _]: [u8; 3]) -> bool {
     r > g.saturating_add(30)
 }
 
-/// The colour of a pixel, counted from the top left.
+/// Colour of a pixel. x and y count from the top left.
 pub fn pixel(picture: &Image, x: u32, y: u32) -> [u8; 3] {
     let data = picture.data.as_ref().expect("pixels");
     let at = ((y * SIZE + x) * 4) as usize;
     [data[at], data[at + 1], data[at + 2]]
 }
 
-/// Where the pixels lie that a test picks, in metres, and how many they are.
+/// Bounds of the pixels that a test selects, m, and their number.
 pub struct Extent {
     pub low: Vec2,
     pub high: Vec2,
@@ -127,7 +127,7 @@ pub fn extent(picture: &Image, is_it: impl Fn([u8; 3], Vec2) -> bool) -> Extent 
     out
 }
 
-/// Heights in pixels of what a test picks in the column at x (m), from the top down.
+/// Lengths of the runs of selected pixels in the column at x, m, from the top down. Lengths in pixels.
 pub fn runs(picture: &Image, x: f32, is_it: impl Fn([u8; 3]) -> bool) -> Vec<u32> {
     let column = ((x + VIEW / 2.0) / PIXEL) as u32;
     let mut out = Vec::new();

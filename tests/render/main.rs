@@ -1,7 +1,7 @@
-//! Is what is drawn where the ends are, and does it look like anything?
+//! Is what is drawn where the ends are, and does it have the right shape?
 //!
-//! Needs a Vulkan, Metal or DirectX adapter, a software one included; says so and passes where there is
-//! none.
+//! Needs a Vulkan, Metal or DirectX adapter; a software adapter is enough. Without an adapter, each test prints a
+//! message and passes.
 
 mod batches;
 mod canvas;
@@ -39,7 +39,7 @@ fn a_coil_is_drawn_between_its_ends_at_any_stretch() {
         assert!(
             (coil.low.x + 0.22).abs() < 2.0 * PIXEL && (coil.high.x - 0.22).abs() < 2.0 * PIXEL
         );
-        // A coil, not a tube: more than a fifth of its outline shows what is behind.
+        // It must look like a coil, not like a tube: more than a fifth of its outline shows the background.
         let outline = (coil.high - coil.low) / PIXEL;
         let share = coil.count as f32 / (outline.x * outline.y);
         assert!((0.1..0.8).contains(&share), "{length}: {share} covered");
@@ -67,7 +67,7 @@ fn a_telescope_is_a_wide_tube_and_a_thin_rod_from_end_to_end() {
     let all = extent(&picture, |pixel, _| is_drawn(pixel));
     assert!((all.low.y + 0.7).abs() < 2.0 * PIXEL && (all.high.y - 0.7).abs() < 2.0 * PIXEL);
     let wide = extent(&picture, |pixel, p| is_drawn(pixel) && p.x.abs() > 0.1);
-    // The collar at its mouth stands out a little.
+    // The collar at the open end of the tube is a little wider.
     assert!((wide.high.x - 0.224).abs() < 2.0 * PIXEL, "{}", wide.high.x);
     let below = extent(&picture, |pixel, p| is_drawn(pixel) && p.y < -0.2);
     assert!((below.high.x - 0.2).abs() < 2.0 * PIXEL, "{}", below.high.x);

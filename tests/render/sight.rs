@@ -1,4 +1,4 @@
-//! Do springs out of sight cost less, and are they right as soon as they are seen?
+//! Do springs out of sight cost less, and are they drawn correctly as soon as they are seen?
 
 use crate::canvas::*;
 use bevy::gizmos::config::GizmoConfigStore;

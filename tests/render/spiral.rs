@@ -1,4 +1,4 @@
-//! Is a torsion element seen as a spiral that winds up?
+//! Is a torsion element drawn as a spiral that winds up?
 
 use crate::canvas::*;
 use bevy::prelude::*;
@@ -16,7 +16,7 @@ fn a_spiral_is_as_large_as_it_says_and_has_a_turn_more_where_it_is_wound_by_one(
             let (a, b) = ends(world, Vec3::ZERO, Vec3::ZERO);
             world.spawn((
                 TorsionSpring::new(a, b, Vec3::Z).with_rest_angle(0.0),
-                // As the physics would tell of a body that has gone around so often.
+                // The physics plugin would write this angle for a body that has turned so often.
                 SpringReadout {
                     length: full * TAU,
                     ..default()
@@ -28,11 +28,11 @@ fn a_spiral_is_as_large_as_it_says_and_has_a_turn_more_where_it_is_wound_by_one(
         };
         let strip = extent(&picture, |pixel, _| is_red(pixel));
         for (side, wanted) in [(strip.high.x, RADIUS), (-strip.low.x, RADIUS)] {
-            // An outer turn loses at most what lies between two turns.
+            // The outermost turn ends anywhere within a turn, so a side may be smaller by up to one pitch.
             let pitch = RADIUS / (TURNS + full);
             assert!(side < wanted + 0.03 && side > wanted - pitch, "{side}");
         }
-        // Above and below the axis, each turn is crossed once.
+        // A vertical line through the axis crosses each turn once above and once below the axis.
         seen.push(runs(&picture, 0.0, is_red).len());
     }
     println!("crossings of the strip: {seen:?}");

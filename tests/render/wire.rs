@@ -11,13 +11,15 @@ const WIRE: f32 = 0.03;
 const TURNS: f32 = 5.5;
 const REST: f32 = 0.7;
 
-/// Rise per turn of the active coils of a coil with closed ends.
+/// Rise per turn of the active turns of a coil with closed ends, m.
 fn pitch(length: f32) -> f32 {
-    // One turn at each end lies flat, and half a turn more goes from that pitch to this.
+    // One turn at each end lies flat. Over another half turn, the rise changes from that of the flat turn to that
+    // of the active turns.
     (length - 2.0 * WIRE - 2.0 * WIRE * 2.5) / (TURNS - 2.5)
 }
 
-/// From the height of a run where the wire passes before the axis to its thickness across, in pixels.
+/// Thickness of the wire across its direction, from the height of a run where the wire passes in front of the
+/// axis. Both in pixels.
 fn across(runs: &mut [u32], length: f32, amplitude: f32) -> f32 {
     runs.sort_unstable();
     let middle = runs[runs.len() / 2] as f32;
@@ -45,7 +47,7 @@ fn the_wire_is_as_thick_at_twice_the_length() {
             return;
         };
         let mut runs = runs(&picture, 0.0, is_red);
-        // The flat turns at the ends are one run each, and the active ones two each: front and back.
+        // Each flat turn at an end is one run. Each active turn is two runs: front and back.
         assert!(runs.len() >= 7, "{runs:?}");
         widths.push(across(&mut runs, length, RADIUS));
     }
@@ -64,7 +66,7 @@ fn its_shadow_is_as_thick_at_twice_the_length() {
         let length = stretch * REST;
         let Some(picture) = draw(|world| {
             spring(world, -0.5, length);
-            // A white wall behind, and a light that throws the shadow on it, one metre to the right.
+            // A white wall is behind the coil. A light throws the shadow onto it, one metre to the right.
             let wall = world
                 .resource_mut::<Assets<Mesh>>()
                 .add(Cuboid::new(4.0, 4.0, 0.1));
@@ -98,11 +100,11 @@ fn its_shadow_is_as_thick_at_twice_the_length() {
         }) else {
             return;
         };
-        // The wall is white; what the coil keeps from it leaves the ambient light.
+        // The wall is white. Where the coil shades it, only the ambient light remains.
         let dark = |pixel: [u8; 3]| pixel.into_iter().all(|c| c < 200);
         let mut runs = runs(&picture, 0.5, dark);
         assert!(runs.len() >= 5, "{runs:?}");
-        // Seen from the light the coil is as wide as ever, and the wall stretches that sideways.
+        // Seen from the light, the coil has its usual width. The wall stretches the shadow sideways.
         widths.push(across(&mut runs, length, RADIUS * 2.0_f32.sqrt()));
     }
     println!("shadow: {widths:?} px at 1x and 2x");

@@ -1,25 +1,25 @@
-//! A car that stands on four wheels and is pushed down.
+//! A car on four wheels that is pushed down.
 
 use super::{Endurance, GRAVITY, body, lab};
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
 
-/// m.
+/// Radius of a wheel, m.
 const RADIUS: f32 = 0.33;
-/// m.
+/// Rest length of a coilover, m.
 const REST: f32 = 0.5;
-/// Half the chassis' size, m.
+/// Half extents of the chassis, m.
 const HALF: Vec3 = Vec3::new(1.6, 0.15, 0.6);
-/// kg.
+/// Mass of the chassis, kg.
 const CHASSIS: f32 = 1200.0;
-/// kg.
+/// Mass of a wheel, kg.
 const WHEEL: f32 = 20.0;
-/// N/m and N s/m of each coilover: 1.4 Hz, a third of critical.
+/// Stiffness in N/m and damping in N s/m of each coilover: 1.4 Hz, a third of critical.
 const STIFFNESS: f32 = 23e3;
 const DAMPING: f32 = 1750.0;
 
-/// A chassis of 1 200 kg on four wheels that joints guide. Sag is what statics say, and it does not walk.
+/// A chassis of 1 200 kg on four wheels that joints guide. Its sag has to be that of statics.
 pub fn car() -> Endurance {
     let mut app = lab(GRAVITY);
     let world = app.world_mut();
@@ -94,14 +94,14 @@ pub fn car() -> Endurance {
             }
         },
         stands: |scene| {
-            // On its wheels' height, less the sag under the chassis.
+            // Expected height: wheel radius and rest length less the sag under the chassis. The error is a share of the sag.
             let sag = CHASSIS * GRAVITY / (4.0 * STIFFNESS);
             let place = scene.place(scene.bodies[0]);
             let height = (place.y - (RADIUS + REST - sag)).abs() / sag;
             (f64::from(height), 0.03)
         },
         strikes: 0,
-        // Tyres take of it as well.
+        // The contacts of the wheels dissipate energy as well.
         explained: None,
     }
 }

@@ -1,4 +1,4 @@
-//! A cloth that hangs and is blown at.
+//! A hanging cloth that wind blows at.
 
 use super::{Endurance, GRAVITY, body, direction, lab};
 use bevy::prelude::*;
@@ -6,17 +6,17 @@ use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
 
 const SIDE: usize = 16;
-/// m.
+/// Distance between neighbouring points, m.
 const PITCH: f32 = 0.1;
-/// kg.
+/// Mass of a point, kg.
 const POINT: f32 = 0.01;
-/// N/m and N s/m of each thread.
+/// Stiffness in N/m and damping in N s/m of each thread.
 const STIFFNESS: f32 = 100.0;
 const DAMPING: f32 = 0.3;
-/// N s/m of what stands for air, at each fourth point of each fourth row.
+/// Damping that stands for air, at each fourth point of each fourth row, N s/m.
 const AIR: f32 = 0.3;
 
-/// 16 × 16 points that hang from those of their uppermost row: what all weigh hangs on that row.
+/// A cloth of 16 × 16 points that hangs from its uppermost row.
 pub fn cloth() -> Endurance {
     let mut app = lab(GRAVITY);
     let world = app.world_mut();
@@ -47,7 +47,7 @@ pub fn cloth() -> Endurance {
             }
         }
     }
-    // Far behind, so that it acts across the cloth.
+    // The dampers' other ends are far behind the cloth, so that they act across it.
     for i in (0..SIDE * SIDE).filter(|i| i % SIDE % 4 == 3 && i / SIDE % 4 == 3) {
         let at = Vec3::new(PITCH * (i % SIDE) as f32, -PITCH * (i / SIDE) as f32, -50.0);
         let far = world.spawn(Transform::from_translation(at)).id();
@@ -70,7 +70,8 @@ pub fn cloth() -> Endurance {
             }
         },
         stands: |scene| {
-            // The middle of its lowest row, where statics of one hanging thread put it: each thread carries what is below.
+            // Expected mean height of the lowest row, by the statics of one hanging thread: each
+            // link carries the points below it.
             let row: f32 = (1..SIDE)
                 .map(|n| PITCH + (SIDE - n) as f32 * POINT * GRAVITY / STIFFNESS)
                 .sum();

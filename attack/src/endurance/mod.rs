@@ -1,5 +1,5 @@
-//! Scenes that run for days: a car that stands, a hanging cloth, a net of a thousand springs. Each is struck again and again,
-//! comes to rest or nearly so in between, and keeps a ledger of its energy.
+//! Scenes that run for days: a standing car, a hanging cloth, a net of a thousand springs. Each is struck again and
+//! again, comes nearly to rest in between, and keeps a balance of its energy.
 
 mod car;
 mod cloth;
@@ -16,46 +16,46 @@ use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
 use std::time::Duration;
 
-/// One tick, s.
+/// Length of a tick, s.
 pub const DT: f32 = 1.0 / 60.0;
-/// m/s², downwards where there is any.
+/// Acceleration of gravity in the scenes that have it, m/s².
 pub const GRAVITY: f32 = 9.81;
 
-/// A scene that is struck in equal times.
+/// A scene that is struck at equal intervals.
 pub struct Endurance {
-    /// What it is.
+    /// Name of the scene.
     pub title: &'static str,
     app: App,
     bodies: Vec<Entity>,
-    /// Mass, kg, and principal inertia, kg m², of each.
+    /// Mass in kg and principal inertia in kg m² of each body.
     masses: Vec<(f32, Vec3)>,
     springs: Vec<Entity>,
     gravity: f32,
     /// Seconds from one strike to the next.
     pub pause: f32,
-    /// Strikes it; the number says which strike it is.
+    /// Strikes the scene. The number counts strikes.
     strike: fn(&mut Self, u64),
-    /// How far what should stand as theory says is from there, 0 for exactly; and how much is allowed.
+    /// Returns the error of the scene's pose against theory, and the greatest error allowed.
     stands: fn(&Self) -> (f64, f64),
     strikes: u64,
-    /// Bounds of the ledger's error as a share of the energy that was turned over; none where contacts take energy as well.
+    /// Greatest error of the energy balance as a share of the energy turned over. `None` where contacts dissipate energy as well.
     pub explained: Option<f64>,
 }
 
-/// What happened from one strike to the next.
+/// Results of the time from one strike to the next.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Interval {
-    /// Energy that the strike gave or took, and what dampers took, J.
+    /// Energy that the strike gave or took, and energy that dampers dissipated, J.
     pub turned_over: f64,
-    /// What of it is neither there nor was taken by dampers, beyond the rounding of readouts, J.
+    /// Error of the energy balance beyond the rounding of readouts, J.
     pub unexplained: f64,
-    /// How far it stands from where it should when the next strike comes, and how much is allowed.
+    /// Error of the pose just before the next strike, and the greatest error allowed.
     pub off: (f64, f64),
-    /// Fastest body then, m/s.
+    /// Greatest speed of a body just before the next strike, m/s.
     pub speed: f64,
 }
 
-/// An app with Rapier and springs, and nothing else.
+/// An app with nothing but Rapier and springs.
 fn lab(gravity: f32) -> App {
     let mut app = App::new();
     app.add_plugins((MinimalPlugins, TransformPlugin))
@@ -70,7 +70,7 @@ fn lab(gravity: f32) -> App {
     .insert_resource(TimeUpdateStrategy::ManualDuration(tick));
     app.finish();
     app.cleanup();
-    // One scene runs at a time, and threads cost more than they gain for so little in each system.
+    // One scene runs at a time, and its systems are too small for threads to pay.
     let mut schedules = app.world_mut().resource_mut::<Schedules>();
     for (_, schedule) in schedules.iter_mut() {
         schedule.set_executor(SingleThreadedExecutor::new());
@@ -84,7 +84,7 @@ fn lab(gravity: f32) -> App {
 }
 
 impl Endurance {
-    /// Strikes it, and runs until the next strike.
+    /// Strikes the scene and runs until the next strike.
     pub fn interval(&mut self) -> Interval {
         let before = self.energy();
         (self.strike)(self, self.strikes);
@@ -95,12 +95,12 @@ impl Endurance {
             self.app.update();
         }
         let taken = self.heat() - warm;
-        // Readouts are in f32. After a day, their rounding is more than a weak blow turns over.
+        // Readouts are in f32. After a day their rounding exceeds the energy of a weak blow.
         let rounding = f64::from(f32::EPSILON) * warm;
         let beyond = (self.energy() + taken - struck).abs() - rounding;
         Interval {
             turned_over: (struck - before).abs() + taken,
-            // Not by `max`, which would pass over NaN.
+            // Not by `max`, which would ignore NaN.
             unexplained: if beyond < 0.0 { 0.0 } else { beyond },
             off: (self.stands)(self),
             speed: self.speed(),
@@ -112,7 +112,7 @@ impl Endurance {
         entities.iter().filter_map(|entity| world.get::<T>(*entity))
     }
 
-    /// Kinetic energy, that of height, and that of springs, J.
+    /// Kinetic energy, energy of height and energy stored in springs, J.
     fn energy(&self) -> f64 {
         let moving = |(body, (mass, inertia)): (&Entity, &(f32, Vec3))| {
             let world = self.app.world();
@@ -136,7 +136,7 @@ impl Endurance {
             + stored.sum::<f64>()
     }
 
-    /// What all dampers took so far, J.
+    /// Energy that all dampers have dissipated so far, J.
     fn heat(&self) -> f64 {
         self.of::<SpringReadout>(&self.springs)
             .map(|read| f64::from(read.dissipated_energy))
@@ -164,7 +164,7 @@ impl Endurance {
     }
 }
 
-/// A body of such a mass (kg) and inertia (kg m²).
+/// A body of a mass in kg and a principal inertia in kg m².
 fn body(at: Vec3, (mass, principal_inertia): (f32, Vec3)) -> impl Bundle {
     let properties = MassProperties {
         mass,
@@ -179,7 +179,7 @@ fn body(at: Vec3, (mass, principal_inertia): (f32, Vec3)) -> impl Bundle {
     )
 }
 
-/// A direction that looks random, the same for the same numbers.
+/// A pseudo-random vector, always the same for the same numbers.
 fn direction(strike: u64, body: u64) -> Vec3 {
     let mut x =
         strike.wrapping_mul(0x9E37_79B9_7F4A_7C15) ^ body.wrapping_mul(0xD1B5_4A32_D192_ED03);

@@ -1,4 +1,4 @@
-//! A net of a thousand springs that floats.
+//! A floating net of a thousand springs.
 
 use super::{Endurance, body, direction, lab};
 use bevy::prelude::*;
@@ -6,14 +6,14 @@ use bevy_coilover::prelude::*;
 
 const SIDE: usize = 8;
 const DEEP: usize = 6;
-/// m.
+/// Distance between neighbouring boxes, m.
 const PITCH: f32 = 0.5;
-/// N/m and N s/m.
+/// Stiffness in N/m and damping in N s/m of each spring.
 const STIFFNESS: f32 = 300.0;
 const DAMPING: f32 = 5.0;
 
-/// A lattice of 8 × 8 × 6 boxes of 0.5 to 1 kg, with 1 008 springs from corner to corner. It weighs nothing, so its centre of
-/// mass stays where it is.
+/// A lattice of 8 × 8 × 6 boxes of 0.5 to 1 kg, with 1 008 springs between neighbours. There is no gravity, so its centre
+/// of mass stays where it is.
 pub fn net() -> Endurance {
     let mut app = lab(0.0);
     let world = app.world_mut();
@@ -57,8 +57,8 @@ pub fn net() -> Endurance {
         gravity: 0.0,
         pause: 20.0,
         strike: |scene, strike| {
-            // Bodies that are opposite each other are pushed alike, so that it is not turned, and the next two against
-            // that, so that it does not leave.
+            // Opposite bodies get equal impulses, so that the net does not turn. The next pair gets the opposite impulse,
+            // so that the net does not drift away.
             for pair in 0..scene.bodies.len() / 2 {
                 let by = direction(strike, pair as u64 / 2);
                 let by = if pair % 2 == 0 { by } else { -by };
@@ -69,7 +69,7 @@ pub fn net() -> Endurance {
             }
         },
         stands: |scene| {
-            // How far its centre of mass has wandered, as a share of its size.
+            // Distance of the centre of mass from its first place, m.
             let (mut sum, mut mass) = (Vec3::ZERO, 0.0);
             for (body, (own, _)) in scene.bodies.iter().zip(&scene.masses) {
                 sum += *own * scene.place(*body);

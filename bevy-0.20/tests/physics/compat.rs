@@ -1,11 +1,11 @@
-// What the tests write otherwise with another version of Bevy and Rapier; `tests/physics/compat.rs` is the twin.
+// Code of the tests that differs between versions of Bevy and Rapier. `tests/physics/compat.rs` is the counterpart.
 
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
 use bevy_rapier3d::rapier::dynamics::IntegrationParameters;
 
-/// How a context begins.
+/// Returns how a Rapier context is initialised.
 pub fn begin(parameters: IntegrationParameters, gravity: Vec3) -> RapierContextInitialization {
     RapierContextInitialization::InitializeDefaultRapierContext {
         broad_phase_optimization_strategy: default(),
@@ -17,7 +17,7 @@ pub fn begin(parameters: IntegrationParameters, gravity: Vec3) -> RapierContextI
     }
 }
 
-/// A weight of 1 kg on a spring of 100 N/m below a hook.
+/// Returns a scene with a weight of 1 kg on a spring of 100 N/m below a hook.
 pub fn rig() -> impl Scene {
     bsn! {
         Children [

@@ -1,4 +1,4 @@
-//! A stage in Avian.
+//! Builds a stage in Avian.
 
 use super::stage::{Freedom, Joint, Motion, Part, Shape, Stage};
 use crate::method::Method;
@@ -6,7 +6,7 @@ use crate::rig::avian::spring;
 use avian3d::prelude::*;
 use bevy::prelude::*;
 
-/// Whether it has all joints of a stage: it has none that leaves both a way and all turning free.
+/// Whether Avian has all joint types of a stage. It has no joint that leaves one translation and all rotations free.
 pub fn has(stage: &Stage) -> bool {
     !stage
         .joints
@@ -87,7 +87,7 @@ fn join(world: &mut World, joint: &Joint, [a, b]: [Entity; 2]) {
             let joint = PrismaticJoint::new(a, b).with_slider_axis(Vec3::Y);
             world.spawn(joint.with_local_anchor1(at_a).with_local_anchor2(at_b));
         }
-        // There is none.
+        // Avian has no such joint: `has` leaves these stages out.
         Freedom::Guide => {}
     }
 }

@@ -1,4 +1,4 @@
-//! What a run shows: energy from geometry, sag, wander.
+//! Measures a run: energy (computed from positions and velocities), spring length, speed, and distance moved.
 
 use super::stage::{Motion, Stage};
 use crate::rig::{Rig, State};
@@ -8,7 +8,7 @@ use bevy::math::{DVec3, Vec3};
 /// Steps per second of every scene here.
 pub const RATE: u32 = 60;
 
-/// A stage that runs.
+/// A running stage.
 pub struct Run<'a> {
     pub stage: &'a Stage,
     pub rig: Rig,
@@ -22,12 +22,12 @@ impl Run<'_> {
         }
     }
 
-    /// Energy that the stage has before it runs, J.
+    /// Initial energy, J.
     pub fn first(&self) -> f64 {
         energy(self.stage, |part| self.stage.start(part))
     }
 
-    /// Greatest energy (J) and speed (m/s) over a time.
+    /// Greatest energy (J) and greatest speed of a body (m/s) during the next `seconds`.
     pub fn most(&mut self, seconds: f64) -> [f64; 2] {
         let (mut most, mut fastest) = (f64::NEG_INFINITY, 0.0);
         self.seconds(seconds, |run| {
@@ -43,13 +43,13 @@ impl Run<'_> {
         moving.map(|(i, _)| i)
     }
 
-    /// Greatest speed of a body, m/s.
+    /// Greatest speed among the dynamic bodies, m/s.
     pub fn speed(&self) -> f64 {
         let speeds = self.moving().map(|i| self.rig.state(i).velocity.length());
         speeds.fold(0.0, larger)
     }
 
-    /// How far any body goes from where it is, over a time, m.
+    /// Greatest distance of a dynamic body from its present position during the next `seconds`, m.
     pub fn wander(&mut self, seconds: f64) -> f64 {
         let start: Vec<(usize, DVec3)> = self
             .moving()
@@ -64,7 +64,7 @@ impl Run<'_> {
         far
     }
 
-    /// Mean length of the first spring over a time, m.
+    /// Mean length of the first spring during the next `seconds`, m.
     pub fn mean_length(&mut self, seconds: f64) -> f64 {
         let (mut sum, mut count) = (0.0, 0.0);
         self.seconds(seconds, |run| {
@@ -77,7 +77,7 @@ impl Run<'_> {
     }
 }
 
-/// The larger one, and not a number if either is none.
+/// The larger number, or NaN if either is NaN.
 fn larger(a: f64, b: f64) -> f64 {
     if a.is_nan() || b.is_nan() {
         f64::NAN
@@ -86,7 +86,7 @@ fn larger(a: f64, b: f64) -> f64 {
     }
 }
 
-/// Of motion, of weight above y = 0 and in springs, J.
+/// Kinetic energy, potential energy above y = 0 and energy stored in springs, J.
 fn energy(stage: &Stage, state: impl Fn(usize) -> State) -> f64 {
     let mut sum = 0.0;
     for (i, part) in stage.parts.iter().enumerate() {

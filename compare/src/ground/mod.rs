@@ -1,6 +1,6 @@
-//! What contacts and joints hold: wheels that roll, feet, ragdolls, bridges, cloth and boxes at walls.
+//! Study of scenes with contacts and joints: rolling wheel, dropped foot, ragdoll, bridge, cloth and box at a wall.
 //!
-//! No formula says where bodies should be there, so each scene has a figure of its own.
+//! These scenes have no known true motion, so each scene has its own figures.
 
 mod avian;
 mod figures;
@@ -22,27 +22,27 @@ use stage::Stage;
 use std::error::Error;
 use std::path::Path;
 
-/// Updates before the clock runs: what falls has fallen on something by then.
+/// Number of updates before timing starts: by then the falling bodies have landed.
 const WARM_UP: u32 = 60;
-/// Updates from turn to turn at least: fifteen turns meet what happens in nine seconds.
+/// Fewest updates from one turn to the next: fifteen turns span nine seconds of the scene.
 const APART: u32 = 36;
-/// Most simulated seconds before the clock's scene starts anew.
+/// Simulated time after which a timed scene restarts, s.
 const LONGEST: f64 = 10.0;
 
-/// A scene with a method.
+/// Result of a setting in a scene.
 pub struct Told {
     scene: &'static Scene,
-    /// What is varied.
+    /// Speed that the scene varies, m/s. 0 if it varies none.
     speed: f32,
     setting: Setting,
-    /// As the scene names them.
+    /// Figures in the order of the scene's `heads`.
     figures: Vec<f64>,
     times: Times,
-    /// Whether it was compiled for speed.
+    /// Whether it was measured in a release build.
     release: bool,
 }
 
-/// All scenes with contacts or joints.
+/// The study of all scenes with contacts or joints.
 pub struct Ground;
 
 impl Study for Ground {
@@ -128,7 +128,7 @@ impl Study for Ground {
         })
     }
 
-    /// Its figures are too unlike for a picture.
+    /// Draws nothing: the figures have different units and do not fit into one chart.
     fn draw(&self, _: &Path, _: &[Told]) -> Drawn {
         Ok(())
     }
@@ -138,7 +138,7 @@ impl Study for Ground {
     }
 }
 
-/// The scenes, with what is varied in each.
+/// Pairs of a scene and a speed. A quick run has only the last speed of each quick scene.
 fn cases(quick: bool) -> impl Iterator<Item = (&'static Scene, f32)> {
     let scenes = SCENES.iter().filter(move |s| s.quick || !quick);
     scenes.flat_map(move |scene| {
@@ -153,7 +153,7 @@ fn cases(quick: bool) -> impl Iterator<Item = (&'static Scene, f32)> {
     })
 }
 
-/// A method as it comes, and with a finer dial if contacts and joints are solved more exactly by it.
+/// The default setting of a method, and one with a finer dial if that dial also refines contacts and joints.
 fn settings(method: Method) -> Vec<Setting> {
     let dials = match method {
         Method::Ours => vec![method.default_dial()],
@@ -169,7 +169,7 @@ fn settings(method: Method) -> Vec<Setting> {
     dials.into_iter().map(setting).collect()
 }
 
-/// Whether a method's engine has what a stage is made of.
+/// Whether a method's engine has all joint types of a stage.
 fn can(method: Method, stage: &Stage) -> bool {
     !method.is_avian() || avian::has(stage)
 }

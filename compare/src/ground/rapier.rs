@@ -1,4 +1,4 @@
-//! A stage in Rapier.
+//! Builds a stage in Rapier.
 
 use super::stage::{Freedom, Joint, Motion, Part, Shape, Stage};
 use crate::method::Method;
@@ -35,7 +35,7 @@ fn spawn(world: &mut World, part: &Part) -> Entity {
         let mut locked = LockedAxes::empty();
         locked.set(LockedAxes::ROTATION_LOCKED, part.upright);
         locked.set(LockedAxes::TRANSLATION_LOCKED_Z, part.planar);
-        // A sleeping body would cost nothing, and its time would say nothing.
+        // A sleeping body takes no computing time, so the measured time would mean nothing.
         entity.insert((Sleeping::disabled(), locked));
     }
     if let Some(collider) = part.shape.and_then(collider) {

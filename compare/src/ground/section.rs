@@ -1,4 +1,4 @@
-//! What the report says of it.
+//! The report section of the scenes with contacts and joints.
 
 use super::scenes::{Head, SCENES, Unit};
 use super::{Told, cases, settings};
@@ -6,7 +6,7 @@ use crate::method::{Method, Setting};
 use crate::words::digits;
 use std::fmt::Write;
 
-/// Words, and one table of all scenes and methods.
+/// Introduction, and one table of all scenes and methods.
 pub fn section(told: &[Told]) -> String {
     let release = told.iter().all(|t| t.release);
     let build = if release { "--release " } else { "" };
@@ -72,7 +72,7 @@ fn table(text: &mut String, told: &[Told]) {
     }
 }
 
-/// A figure, and the time with the first of a scene.
+/// Figure `i` of a scene. The first figure is followed by the time per step.
 fn cell(told: &Told, i: usize, head: &Head) -> String {
     let figure = told.figures.get(i).copied().unwrap_or(f64::NAN);
     let figure = tell(figure, head.unit);

@@ -1,4 +1,4 @@
-//! What stands, rolls and hangs in a scene, said without any engine: bodies with shapes, joints, springs.
+//! Describes a scene with contacts and joints without reference to an engine: bodies with shapes, joints, springs.
 
 use crate::problem::Link;
 use bevy::math::{DVec3, Quat, Vec3};
@@ -13,24 +13,24 @@ pub struct Stage {
     pub links: Vec<Link>,
 }
 
-/// Whether forces move it.
+/// How a body moves.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Motion {
     Fixed,
-    /// Moved by the game alone; here it is held where it is.
+    /// Moved by the game only. In these scenes it stays in place.
     Kinematic,
     Dynamic,
 }
 
 #[derive(Clone, Copy)]
 pub enum Shape {
-    /// All below the plane y = 0.
+    /// All space below the plane y = 0.
     HalfSpace,
-    /// Of a radius.
+    /// Radius, m.
     Ball(f32),
-    /// Of half edges.
+    /// Half extents, m.
     Cuboid(Vec3),
-    /// Along y, of a half length between the centres of its caps, and a radius.
+    /// Capsule along y: half the distance between the centres of its caps, and its radius, m.
     Capsule(f32, f32),
 }
 
@@ -44,37 +44,37 @@ pub struct Part {
     pub velocity: Vec3,
     pub spin: Vec3,
     pub friction: f32,
-    /// It cannot turn.
+    /// Whether its rotation is locked.
     pub upright: bool,
-    /// It stays in the plane z = 0.
+    /// Whether it stays in the plane z = 0.
     pub planar: bool,
-    /// Groups that it is in, and groups that it collides with, as bits.
+    /// Collision groups that it is in, and groups that it collides with, as bit masks.
     pub groups: [u32; 2],
 }
 
-/// What a joint leaves free.
+/// Motion that a joint leaves free.
 #[derive(Clone, Copy)]
 pub enum Freedom {
-    /// All turning.
+    /// Rotation about all axes.
     Spherical,
-    /// Turning about z.
+    /// Rotation about z.
     Revolute,
-    /// Moving along y.
+    /// Translation along y.
     Slider,
-    /// Moving along y, and all turning.
+    /// Translation along y, and rotation about all axes.
     Guide,
 }
 
 #[derive(Clone, Copy)]
 pub struct Joint {
     pub ends: [usize; 2],
-    /// In the bodies' frames.
+    /// Anchors in the local frames of the two bodies, m.
     pub anchors: [Vec3; 2],
     pub freedom: Freedom,
 }
 
 impl Part {
-    /// A body that moves, with a shape of this mass.
+    /// A dynamic body of a mass (kg).
     pub fn new(mass: f32, at: Vec3, shape: Option<Shape>) -> Self {
         Self {
             motion: Motion::Dynamic,
@@ -90,7 +90,7 @@ impl Part {
         }
     }
 
-    /// A body that stays where it is.
+    /// A body that is not dynamic and stays in place.
     pub fn held(motion: Motion, at: Vec3, shape: Option<Shape>) -> Self {
         Self {
             motion,
@@ -98,7 +98,7 @@ impl Part {
         }
     }
 
-    /// A plane to stand on.
+    /// The ground plane y = 0.
     pub fn ground(friction: f32) -> Self {
         Self {
             friction,
@@ -121,7 +121,7 @@ impl Part {
         self
     }
 
-    /// Principal moments in its own frame, kg m².
+    /// Principal moments of inertia in the body's frame, kg m².
     pub fn inertia(&self) -> Vec3 {
         match self.shape {
             None | Some(Shape::HalfSpace) => Vec3::splat(0.4 * self.mass),
@@ -134,7 +134,7 @@ impl Part {
         }
     }
 
-    /// 0 for one that is held.
+    /// Inverse mass, 1/kg. 0 for a body that is not dynamic.
     pub fn inverse_mass(&self) -> f32 {
         if self.motion == Motion::Dynamic {
             self.mass.recip()
@@ -154,7 +154,7 @@ fn capsule(mass: f32, half: f32, r: f32) -> Vec3 {
 }
 
 impl Stage {
-    /// Adds a body; its number.
+    /// Adds a body and returns its index.
     pub fn part(&mut self, part: Part) -> usize {
         self.parts.push(part);
         self.parts.len() - 1
@@ -168,7 +168,7 @@ impl Stage {
         });
     }
 
-    /// A spring between two points, at rest as it is unless told otherwise.
+    /// Adds a spring between two anchors, in the local frames of the bodies. The default rest length is the present distance.
     pub fn coil(
         &mut self,
         ends: [usize; 2],
@@ -182,7 +182,7 @@ impl Stage {
         self.links.push(link.anchored(anchors));
     }
 
-    /// Where a body is at first.
+    /// Initial state of a body.
     pub fn start(&self, part: usize) -> crate::rig::State {
         let part = &self.parts[part];
         crate::rig::State {
@@ -193,7 +193,7 @@ impl Stage {
         }
     }
 
-    /// Length of a spring, with bodies where `state` has them, m.
+    /// Length of a spring, with the bodies in the given states, m.
     pub fn length(&self, link: &Link, state: impl Fn(usize) -> crate::rig::State) -> f64 {
         let [a, b]: [DVec3; 2] = [0, 1].map(|end| {
             let s = state(link.ends[end]);

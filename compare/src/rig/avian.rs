@@ -1,8 +1,8 @@
-//! Avian's bodies with its distance joint.
+//! Builds a problem in Avian, with its distance joint as the spring.
 //!
-//! The joint's compliance is 1/k. Its damping is a rate at which the whole relative velocity of the two
-//! centres fades, across the line as well as along it: c divided by the effective mass is the nearest to a
-//! damper of c that it can be told.
+//! The joint's compliance is 1/k. Its damping is a rate (1/s) at which the whole relative velocity of the two centres
+//! decays, across the line of the spring as well as along it. The closest match to a damper of c is c divided by the
+//! effective mass.
 
 use super::State;
 use crate::method::{Dial, Method};
@@ -10,7 +10,7 @@ use crate::problem::{Body, Kind, Link, Problem};
 use avian3d::prelude::*;
 use bevy::prelude::*;
 
-/// Adds the engine.
+/// Adds Avian's plugins, gravity and number of substeps.
 pub fn plug(app: &mut App, gravity: Vec3, dial: Dial) {
     app.add_plugins(PhysicsPlugins::new(FixedUpdate))
         .insert_resource(Gravity(gravity));
@@ -19,7 +19,7 @@ pub fn plug(app: &mut App, gravity: Vec3, dial: Dial) {
     }
 }
 
-/// Spawns bodies and joints.
+/// Spawns the ground, the bodies and the joints. Returns the bodies.
 pub fn fill(world: &mut World, problem: &Problem, method: Method) -> Vec<Entity> {
     if problem.ground {
         world.spawn((
@@ -37,7 +37,7 @@ pub fn fill(world: &mut World, problem: &Problem, method: Method) -> Vec<Entity>
     bodies
 }
 
-/// Spawns a joint between two bodies with such a sum of inverse masses, 1/kg.
+/// Spawns a joint between two bodies. `inverse` is the sum of their inverse masses, 1/kg.
 pub fn spring(world: &mut World, link: &Link, [a, b]: [Entity; 2], inverse: f32, method: Method) {
     let joint = DistanceJoint::new(a, b)
         .with_local_anchor1(link.anchors[0])

@@ -1,4 +1,4 @@
-//! A problem set up in an engine, headless, one step per `tick`.
+//! Sets up a problem in an engine, in a headless app that makes one step per `tick`.
 
 pub mod avian;
 pub mod rapier;
@@ -11,14 +11,14 @@ use bevy::prelude::*;
 use bevy::time::TimeUpdateStrategy;
 use std::time::Duration;
 
-/// An app whose every update is one step.
+/// An app in which every update is one step of the engine.
 pub struct Rig {
     app: App,
     bodies: Vec<Entity>,
     read: fn(&World, Entity) -> Option<State>,
 }
 
-/// Where a body is and how it moves.
+/// Position, rotation, velocity (m/s) and angular velocity (rad/s) of a body in world space.
 #[derive(Clone, Copy, Debug)]
 pub struct State {
     pub position: DVec3,
@@ -39,8 +39,8 @@ impl Rig {
         })
     }
 
-    /// Of whatever is spawned by `fill`, with the natural frequency of contacts with what stands still, Hz, if it is
-    /// not to be the engine's own.
+    /// Builds an app whose bodies and springs are spawned by `fill`. `ground` is the natural frequency of Rapier's contacts
+    /// with bodies that are not dynamic, Hz. With `None` the engine keeps its default.
     pub fn build(
         setting: Setting,
         gravity: Vec3,
@@ -60,12 +60,12 @@ impl Rig {
         }
         app.finish();
         app.cleanup();
-        // Waking worker threads costs more than what these scenes have to do.
+        // Waking worker threads costs more time than these scenes take.
         let mut schedules = app.world_mut().resource_mut::<Schedules>();
         for (_, schedule) in schedules.iter_mut() {
             schedule.set_executor(SingleThreadedExecutor::new());
         }
-        // The first update passes no time, so no step is taken.
+        // No time passes in the first update, so it makes no step.
         app.update();
         let bodies = fill(app.world_mut());
         let read = if avian { avian::read } else { rapier::read };
@@ -76,7 +76,7 @@ impl Rig {
         self.app.update();
     }
 
-    /// Of a body of the problem; not a number where the engine has lost it.
+    /// State of a body of the problem. NaN if the engine no longer has the body.
     pub fn state(&self, body: usize) -> State {
         (self.read)(self.app.world(), self.bodies[body]).unwrap_or(State {
             position: DVec3::NAN,

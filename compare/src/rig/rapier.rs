@@ -1,4 +1,4 @@
-//! Rapier's bodies, with our springs, its own joints, or a force written once per step.
+//! Builds a problem in Rapier, with bevy_coilover's springs, Rapier's own joints, or a force written once per step.
 
 use super::State;
 use crate::method::{Dial, Method, Setting};
@@ -8,15 +8,15 @@ use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
 use bevy_rapier3d::rapier::dynamics::IntegrationParameters;
 
-/// Natural frequency of contacts with the ground, Hz. Rapier's default, 60 Hz, is a spring in series with
-/// the car's own; the reference has a wheel that stands still.
+/// Natural frequency of contacts with the ground, Hz. At Rapier's default, 60 Hz, the contact acts as a second spring in
+/// series with the spring of the quarter car, whose reference solution assumes a wheel that stands still.
 pub const GROUND_FREQUENCY: f32 = 1000.0;
 
-/// The engine's cap on speeds, m/s. Its default of 400 would hold back what a released spring throws through 3 m in a step of
-/// 1/240 s.
+/// Rapier's limit on the speed of bodies, m/s. Its default of 400 m/s would slow a body that a released spring moves by
+/// 3 m in one step of 1/240 s.
 const FASTEST: f32 = 1e4;
 
-/// Adds what the method needs.
+/// Adds Rapier and what the method needs.
 pub fn plug(app: &mut App, gravity: Vec3, ground: Option<f32>, setting: Setting) {
     let mut parameters = IntegrationParameters {
         normalized_max_linear_velocity: FASTEST,
@@ -48,7 +48,7 @@ pub fn plug(app: &mut App, gravity: Vec3, ground: Option<f32>, setting: Setting)
         Method::Ours => {
             let plugin = CoiloverPlugin::default();
             app.add_plugins(match setting.dial {
-                // As a user gets it: as many as stiff springs take by themselves.
+                // The plugin's default, in which stiff springs get more micro-steps by themselves.
                 Dial::Microsteps(1) => plugin,
                 Dial::Microsteps(n) => plugin.with_microsteps(n),
                 Dial::Extrapolated => plugin.with_extrapolation(),
@@ -63,7 +63,7 @@ pub fn plug(app: &mut App, gravity: Vec3, ground: Option<f32>, setting: Setting)
     }
 }
 
-/// Spawns a spring of the method's between two bodies.
+/// Spawns the method's spring between two bodies.
 pub fn spring(world: &mut World, link: &Link, [a, b]: [Entity; 2], method: Method) {
     match method {
         Method::Ours => {
@@ -87,7 +87,7 @@ pub fn spring(world: &mut World, link: &Link, [a, b]: [Entity; 2], method: Metho
             if world.get::<ImpulseJoint>(b).is_none() {
                 world.entity_mut(b).insert(joint);
             } else {
-                // Further ones are children.
+                // An entity holds one `ImpulseJoint`, so further joints of a body are on child entities.
                 world.spawn((joint, ChildOf(b)));
             }
         }
@@ -101,7 +101,7 @@ pub fn spring(world: &mut World, link: &Link, [a, b]: [Entity; 2], method: Metho
     }
 }
 
-/// Spawns bodies and springs.
+/// Spawns the ground, the bodies and the springs. Returns the bodies.
 pub fn fill(world: &mut World, problem: &Problem, method: Method) -> Vec<Entity> {
     if problem.ground
         && let Some(plane) = Collider::halfspace(Vec3::Y)
@@ -141,7 +141,7 @@ fn spawn(world: &mut World, body: &Body) -> Entity {
             linear: body.velocity,
             angular: body.spin,
         },
-        // A sleeping body would cost nothing, and its time would say nothing.
+        // A sleeping body takes no computing time, so the measured time would mean nothing.
         Sleeping::disabled(),
     );
     match body.kind {
@@ -173,14 +173,14 @@ pub fn read(world: &World, entity: Entity) -> Option<State> {
     })
 }
 
-/// A spring as tutorials make it.
+/// A spring as tutorials write it: a force set once per step.
 #[derive(Component)]
 struct Pull {
     ends: [Entity; 2],
     link: Link,
 }
 
-/// tension = k · stretch + c · rate, along the line, as a force for the step to come.
+/// Writes tension = k · stretch + c · rate, plus the cubic term, along the spring as the force for the next step.
 fn pull(
     pulls: Query<&Pull>,
     bodies: Query<(&Transform, &Velocity)>,

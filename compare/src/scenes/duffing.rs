@@ -1,13 +1,13 @@
-//! Duffing's oscillator: a spring that hardens.
+//! Scene: Duffing's oscillator, a body on a hardening spring.
 
 use super::Scene;
 use crate::problem::{Body, Link, Problem, Truth};
 use bevy::math::{DVec3, Vec3};
 
-/// rad/s.
+/// Angular frequency for small amplitudes, rad/s.
 const OMEGA: f64 = 6.0;
 const SECONDS: f64 = 10.0;
-/// Steps of the reference in 1/960 s.
+/// Number of steps of the reference solution per 1/960 s.
 const FINE: u32 = 20;
 
 pub const SCENE: Scene = Scene {
@@ -60,7 +60,8 @@ mod tests {
     #[test]
     fn the_reference_has_the_period_of_the_elliptic_integral_and_the_known_place() {
         let truth = super::truth();
-        // t = 1/ω is not on the grid; a period of 4.768022/ω brings it back within a step's way.
+        // After one period, 4.768022/ω, the body is at x = 1 m again, at rest. The nearest point of the 1/960 s grid
+        // is `near`. There x is smaller by half the acceleration (72 m/s²) times the squared time difference.
         let period = 4.768_022 / super::OMEGA;
         let near = (period * 960.0).round() / 960.0;
         let x = (truth.at)(near).map_or(0.0, |at| at[0].x);

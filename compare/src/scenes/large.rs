@@ -1,4 +1,4 @@
-//! Scenes of many parts: a cloth of ten thousand points, a bridge of a thousand planks, a tower that sways.
+//! Large scenes: a cloth of 10 000 points, a bridge of 1000 planks, and a tower that sways.
 
 use super::praised::{point, problem, sheet};
 use super::{GRAVITY, Scene};

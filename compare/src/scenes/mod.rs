@@ -1,4 +1,4 @@
-//! The scenes, one a file.
+//! The scenes with known motion.
 
 mod duffing;
 mod dumbbell;
@@ -12,14 +12,14 @@ mod star;
 
 use crate::problem::Problem;
 
-/// A scene of which the work–precision picture is drawn.
+/// A scene with a work–precision chart.
 pub struct Scene {
     pub name: &'static str,
     pub title: &'static str,
-    /// A sentence on what moves, and on where the truth comes from.
+    /// Description for the report: what moves, and the source of the true motion.
     pub note: &'static str,
     pub make: fn() -> Problem,
-    /// So large that a few settings at two rates must do.
+    /// Whether the scene is so large that it is run with few settings at two tick rates.
     pub few: bool,
 }
 
@@ -42,5 +42,5 @@ pub const SCENES: [Scene; 16] = [
     large::TOWER,
 ];
 
-/// Standard gravity as the references have it, m/s².
+/// Gravitational acceleration of the reference solutions, m/s².
 pub const GRAVITY: f32 = 9.81;

@@ -1,4 +1,4 @@
-//! Points joined into a chain and into a sheet.
+//! Scenes: point masses joined into a chain and into a sheet.
 
 use super::{GRAVITY, Scene};
 use crate::problem::{Body, Link, Problem, Truth};
@@ -56,7 +56,7 @@ fn lattice() -> Problem {
     net(&at, &[0, SIDE - 1], 0.05, &pairs, truth)
 }
 
-/// Springs that are as long as their points are apart at first.
+/// A network of point masses. Every spring starts at its rest length.
 fn net(at: &[Vec3], fixed: &[usize], mass: f32, pairs: &[(usize, usize)], truth: Truth) -> Problem {
     let body = |(i, at): (usize, &Vec3)| {
         if fixed.contains(&i) {

@@ -1,10 +1,10 @@
-//! One body on one spring, along one line.
+//! Scene: one body on one spring, moving along one line.
 
 use super::Scene;
 use crate::problem::{Body, Link, Problem, Truth};
 use bevy::math::{DVec3, Vec3};
 
-/// First stretch, m.
+/// Initial stretch, m.
 pub const AMPLITUDE: f64 = 0.1;
 
 pub const SCENE: Scene = Scene {
@@ -16,9 +16,9 @@ pub const SCENE: Scene = Scene {
     few: false,
 };
 
-/// A body of 1 kg with this angular frequency (rad/s) and damping ratio.
+/// A body of 1 kg on a spring with an angular frequency (rad/s) and a damping ratio.
 pub fn oscillator(omega: f64, zeta: f64, seconds: f64) -> Problem {
-    // What the engine is given is single precision: the truth is that of the rounded numbers.
+    // The engine gets single-precision numbers, so the truth is computed from the rounded numbers.
     let stiffness = (omega * omega) as f32;
     let damping = (2.0 * zeta * omega) as f32;
     let omega = f64::from(stiffness).sqrt();
@@ -44,12 +44,13 @@ pub fn oscillator(omega: f64, zeta: f64, seconds: f64) -> Problem {
     }
 }
 
-/// y(t) of y'' + 2ζω y' + ω² y = 0 from y(0) = y, y'(0) = v.
+/// Solution y(t) of y'' + 2ζω y' + ω² y = 0 with y(0) = y and y'(0) = v.
 pub fn free(omega: f64, zeta: f64, y: f64, v: f64, t: f64) -> f64 {
     let gamma = zeta * omega;
     let square = omega * omega - gamma * gamma;
     let root = square.abs().sqrt();
-    // (cos, sin/root) of the damped part, each times the decay, kept from overflowing when overdamped.
+    // cos and sin/root, or cosh and sinh/root if overdamped, each times the decay. The overdamped case adds the
+    // exponents before it takes the exponential, because cosh and sinh alone would overflow.
     let (c, s) = if root * t < 1e-9 {
         ((-gamma * t).exp(), t * (-gamma * t).exp())
     } else if square > 0.0 {

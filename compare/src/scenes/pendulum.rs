@@ -1,4 +1,4 @@
-//! The elastic pendulum, soft, damped and stiff.
+//! Scenes: the elastic pendulum, soft, damped and stiff.
 
 use super::{GRAVITY, Scene};
 use crate::problem::{Body, Link, Problem, Truth};
@@ -45,7 +45,7 @@ fn pendulum(stiffness: f32, damping: f32, rows: &str) -> Problem {
         ground: false,
         seconds: 10.0,
         size: 1.0,
-        // What the weight has won a metre further down.
+        // Potential energy of 1 kg over a height of 1 m.
         energy: (damping == 0.0).then_some(f64::from(GRAVITY)),
         truth: Truth::rows(rows, &[1], 2),
     }

@@ -1,7 +1,7 @@
-//! Scenes by which other methods show what they can do: large ratios of stiffness and of mass, and a cloth.
+//! Scenes that other methods use as demonstrations: large ratios of stiffness and of mass, and a cloth.
 //!
-//! Spring Ratio and Heavy Rope are after the demonstration of AVBD, Augmented Vertex Block Descent (Giles, Diaz and Yuksel 2025),
-//! with points in place of boxes and dampers beside the springs: without, their truth is a motion that never rests.
+//! Spring Ratio and Heavy Rope follow the demonstration of AVBD, Augmented Vertex Block Descent (Giles, Diaz and Yuksel
+//! 2025), but with points instead of boxes and with added dampers. Without dampers the true motion never comes to rest.
 
 use super::{GRAVITY, Scene};
 use crate::problem::{Body, Link, Problem, Truth};
@@ -94,7 +94,7 @@ fn cloth() -> Problem {
     sheet::<32>(include_str!("../../data/cloth.csv"), 0.5)
 }
 
-/// A square of so many points each way, hung at two corners, with the truth about its middle and its lower corners.
+/// A square cloth of `SIDE` × `SIDE` points, hung at two corners. Its middle and its lower corners are watched.
 pub(super) fn sheet<const SIDE: usize>(truth: &str, seconds: f64) -> Problem {
     let at: Vec<Vec3> = (0..SIDE * SIDE)
         .map(|p| {

@@ -1,4 +1,4 @@
-//! A chassis on a wheel that stands on the ground.
+//! Scene: a chassis on a spring above a wheel that stands on the ground.
 
 use super::oscillator::free;
 use super::{GRAVITY, Scene};

@@ -1,4 +1,4 @@
-//! Many springs on one hub.
+//! Scene: many springs on one hub.
 
 use super::Scene;
 use crate::problem::{Body, Link, Problem, Truth};

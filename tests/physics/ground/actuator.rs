@@ -1,4 +1,4 @@
-//! An actuator that presses against something: a spring whose rest length is driven.
+//! Actuators that press against an obstacle or lift a load: springs whose rest length is driven.
 
 use super::scenes::*;
 use super::stand::*;
@@ -8,7 +8,7 @@ use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
 use std::f32::consts::TAU;
 
-/// Motion and height, and what elements have stored, turned to heat, and been given: what never changes.
+/// Mechanical energy, stored energy and dissipated heat minus the work put in, J. This sum is constant.
 fn balance(scene: &Stand, elements: &[Entity]) -> f64 {
     let of = |element: &Entity| {
         let seen = scene.lab.readout(*element);
@@ -21,7 +21,8 @@ fn drive(scene: &mut Stand, element: Entity, rest: f32) {
     scene.lab.get_mut::<SpringDamper>(element).rest_length = Some(rest);
 }
 
-/// Drives an element for a time; the greatest change of the balance, and how much work went in and out.
+/// Drives the rest length of the first element for a time in s. Returns the greatest change of the balance and the sum of
+/// the work in and out, J.
 fn driven(
     scene: &mut Stand,
     elements: &[Entity],
@@ -43,8 +44,8 @@ fn driven(
     (off, turnover)
 }
 
-/// An actuator at the origin that presses a box of 5 kg along x against a slab on a stiff spring, which tells the force.
-/// The actuator and that spring.
+/// An actuator at the origin that presses a box of 5 kg along x against a slab. A stiff spring behind the slab measures
+/// the force. Returns the actuator and that spring.
 fn press(scene: &mut Stand, law: [f32; 2]) -> [Entity; 2] {
     let rail = LockedAxes::ROTATION_LOCKED
         | LockedAxes::TRANSLATION_LOCKED_Y
@@ -85,7 +86,7 @@ fn what_an_actuator_says_is_what_the_wall_feels() {
             scene.lab.run(2.0);
             let stroke = 150.0 / law[0];
             let (mut apart, mut range) = (0.0_f32, [f32::INFINITY, f32::NEG_INFINITY]);
-            // The drive goes in steps of a tick, which the boxes take some milliseconds to follow.
+            // The drive changes once a tick. The boxes need some milliseconds to follow each step.
             let step = 150.0 * TAU * hertz * DT;
             let (off, work) = driven(
                 &mut scene,

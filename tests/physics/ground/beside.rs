@@ -1,4 +1,4 @@
-//! Springs along an axis of the world between two bodies that both turn, with ends far apart across the axis.
+//! Springs along a world axis between two bodies that both turn. Their ends are far apart across the axis.
 
 use super::stand::Stand;
 use crate::harness::*;
@@ -8,11 +8,11 @@ use bevy_coilover::prelude::*;
 /// Mass of the load, kg.
 const LOAD: f32 = 5.0;
 
-/// What the spring holds at first, J.
+/// Energy in the spring at first, J.
 const STORED: f32 = 6.0;
 
-/// A load beside a box of `lying` kg on the ground, on an undamped vertical spring that holds some joules. `arm` is the anchor on
-/// the load.
+/// A load beside a box of `lying` kg on the ground, and an undamped vertical spring between them that stores [`STORED`].
+/// `arm` is the anchor on the load.
 fn beside(lying: f32, stiffness: f32, across: f32, arm: Vec3) -> (Stand, [Entity; 2]) {
     let mut scene = Stand::new(CoiloverPlugin::default(), Engine::default());
     scene.ground();
@@ -63,7 +63,7 @@ fn a_load_far_beside_its_spring_keeps_time() {
         let (mut scene, [hung, _]) = beside(4.0 * LOAD, stiffness, 0.6, Vec3::ZERO);
         let height = |scene: &Stand| scene.lab.position(hung).y;
         let start = height(&scene);
-        // It swings about where it hangs in balance.
+        // The load swings about its place of balance.
         let stretch = (2.0 * STORED / stiffness).sqrt();
         let middle = start + stretch - GRAVITY as f32 / (omega * omega);
         let amplitude = start - middle;
@@ -87,7 +87,7 @@ fn a_load_far_beside_its_spring_keeps_time() {
         }
         let left = extreme / amplitude.abs();
         println!("ω·dt {omega_dt}: after {last:.2} s late by {off:.1e}, amplitude × {left:.3}");
-        // At worst as by the midpoint rule, whose substeps damp by ω·dt/64.
+        // Bounds of the midpoint rule, whose substeps damp with a damping ratio of ω·dt/64.
         let latest = f64::from(omega_dt).powi(2) / 12.0 + 1e-3;
         let least = (-5.0 * omega * omega_dt / 50.0).exp();
         assert!(off > -1e-3 && off < latest, "ω·dt {omega_dt}: {off}");

@@ -1,4 +1,4 @@
-//! Pairs that take off and land again and again.
+//! Pairs of bodies on a spring that take off and land again and again.
 
 use super::stand::*;
 use crate::harness::*;
@@ -6,7 +6,7 @@ use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
 
-/// Two balls on a spring of a phase per step, leaning, above the ground.
+/// Two balls of 1 kg on a spring, tilted by `lean` rad, above the ground. `phase` is ω·dt of the pair.
 fn pair(plugin: CoiloverPlugin, phase: f32, zeta: f32, lean: f32, bounce: f32) -> Stand {
     let mut scene = Stand::new(plugin, Engine::default());
     scene.ground();
@@ -35,7 +35,7 @@ fn pair(plugin: CoiloverPlugin, phase: f32, zeta: f32, lean: f32, bounce: f32) -
 
 #[test]
 fn a_pair_that_bounces_for_long_wins_nothing() {
-    // Both balls on the ground.
+    // Energy with both balls on the ground.
     let base = 2.0 * 0.1 * GRAVITY;
     for (name, way) in ways() {
         for bounce in [0.0, 0.9] {

@@ -8,7 +8,8 @@ use bevy_rapier3d::prelude::*;
 
 const PLANKS: usize = 30;
 
-/// Planks of 4 kg between two banks, and three boxes above them.
+/// 30 planks of 4 kg between two banks, and three boxes of `load` kg above them. Springs join the planks. If hinged,
+/// hinges do, and springs are at the banks only.
 pub fn bridge(k: f32, load: f32, hinged: bool) -> Stand {
     let mut scene = Stand::new(CoiloverPlugin::default(), Engine::default());
     let bank = |scene: &mut Stand, x: f32| {

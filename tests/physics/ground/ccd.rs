@@ -1,4 +1,4 @@
-//! Continuous collision detection, and what else a user orders of a body, on the ground.
+//! Continuous collision detection and other Rapier settings of bodies whose element the ground holds.
 
 use super::scenes::*;
 use super::stand::*;
@@ -7,7 +7,7 @@ use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
 
-/// Gives both bodies what a user may want of them.
+/// Gives both bodies the components of a kind of continuous collision detection.
 fn order(scene: &mut Stand, placed: Placed, ccd: &str) {
     for body in [placed.above, placed.below] {
         let world = scene.lab.app.world_mut();
@@ -67,7 +67,7 @@ fn with_continuous_collision_detection_nothing_is_won_either() {
     }
 }
 
-/// What Rapier has of a body: contacts seen ahead, more iterations, and the user's force.
+/// State of a body in Rapier: soft CCD prediction in m, additional solver iterations, and the user's force in N.
 fn ordered(scene: &mut Stand, body: Entity) -> (f32, usize, Vec3) {
     let world = scene.lab.app.world_mut();
     let mut sets = world.query::<&RapierRigidBodySet>();
@@ -102,7 +102,7 @@ fn what_a_user_ordered_of_a_body_is_there_again_afterwards() {
         }
         scene.lab.run(seconds);
         let during = ordered(&mut scene, placed.below);
-        // Changed while the element is there.
+        // The user changes a setting while the element is there.
         scene.lab.get_mut::<SoftCcd>(placed.below).prediction = 0.04;
         scene.lab.run(0.1);
         scene.lab.app.world_mut().despawn(placed.element);

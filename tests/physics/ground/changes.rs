@@ -1,4 +1,5 @@
-//! What a game changes while the ground holds an element: numbers, kinds, places, and the ground itself.
+//! Changes that a game makes to an element on the ground: its coefficients, its component kind, the places of its bodies,
+//! and the removal of the ground.
 
 use super::scenes::*;
 use super::stand::*;
@@ -7,7 +8,7 @@ use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
 
-/// A quarter car that has come to rest.
+/// Puts the bodies of `setup` on the ground and lets them come to rest.
 fn parked(setup: &Footed) -> (Stand, Placed, Entity) {
     let mut scene = Stand::new(CoiloverPlugin::default(), Engine::default());
     let ground = scene.ground();
@@ -131,7 +132,7 @@ fn what_is_put_elsewhere_wins_only_what_its_place_gives() {
                 "{name}: {first:.2} J, at most {most:.2} J, sag × {sag:.5}, {} awake",
                 scene.awake()
             );
-            // At rest there is nothing to compare with but rounding.
+            // Moved sideways, the bodies start at rest with no energy but rounding, so 0.5 J is allowed.
             assert!(most < 1.02 * first + 0.5, "{name}: {first} J, {most} J");
             assert!((sag - 1.0).abs() < 0.01, "{name}: {sag}");
             assert_eq!(scene.awake(), 0, "{name}: it sleeps");
@@ -173,7 +174,7 @@ fn without_its_ground_it_falls_freely() {
 
 #[test]
 fn what_stood_on_the_ground_flies_as_if_it_never_had() {
-    // Without a guide, so that nothing holds it once the ground is gone.
+    // No guide joint, so that nothing holds the bodies once the ground is gone.
     let mut scene = Stand::new(CoiloverPlugin::default(), Engine::default());
     let ground = scene.ground();
     let ball = |at: f32| {
@@ -209,7 +210,7 @@ fn what_stood_on_the_ground_flies_as_if_it_never_had() {
     let late = fall(&mut scene, 0.5);
     let free = (joints(&mut scene), scene.lab.readout(element).method);
     println!("on the ground {held:?}; then {free:?}, fell at {early:.5} g, then at {late:.5} g");
-    // Half a substep of gravity may be off once, where the engine hands them back.
+    // When the bodies return from the engine's solver, half a substep of gravity may be off once.
     assert!((early + 1.0).abs() < 2e-3, "{early}");
     assert!((late + 1.0).abs() < 1e-4, "{late}");
     assert_eq!(

@@ -1,4 +1,4 @@
-//! Balls on a wide cloth of light points.
+//! Heavy balls that fall on a wide cloth of light points.
 
 use super::stand::*;
 use crate::harness::*;

@@ -1,4 +1,4 @@
-//! Laws, stops, ropes and axes of elements that the ground holds.
+//! Companion components of elements that the ground holds: laws, stops, ropes, axes and force limits.
 
 use super::scenes::*;
 use super::stand::*;
@@ -7,13 +7,13 @@ use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
 
-/// Energy with what the elements themselves say they have stored, J.
+/// Energy of the scene, with the stored energy that the element itself reports, J.
 fn energy(scene: &Stand, element: Entity) -> f64 {
     let stored = f64::from(scene.lab.readout(element).stored_energy);
     scene.energy() - scene.stored() + stored
 }
 
-/// A quarter car with a companion; whether it sags by so much, and wins nothing.
+/// Drops a quarter car with a companion component. Returns whether it rests at the given sag in m, gains no energy and sleeps.
 fn stands(name: &str, stiffness: f32, sag: f64, companion: impl Bundle) -> bool {
     let setup = Footed {
         drop: 0.1,
@@ -34,7 +34,7 @@ fn stands(name: &str, stiffness: f32, sag: f64, companion: impl Bundle) -> bool 
         }
         most = most.max(energy(&scene, placed.element));
     }
-    // The load falls by the drop and its sag at least: that is what there is to be won from.
+    // The load falls by at least the drop and the sag. A gain is compared with the energy of that fall.
     let last = energy(&scene, placed.element);
     let most = (most - last) / (first - last);
     let ratio = setup.sag_now(&scene) / sag;
@@ -83,7 +83,7 @@ fn whatever_its_law_a_load_rests_where_statics_say() {
         sag,
         MaxForce(3.0 * weight),
     ));
-    // A soft spring that lies on its bump stop: of the weight each carries half.
+    // A soft spring on its bump stop. Each of them carries half of the weight.
     let soft = half / 0.2;
     let travel = SpringTravel::new(0.31, f32::INFINITY, half / 0.01).with_stop_damping(500.0);
     good.push(stands("on a bump stop", soft, 0.2, travel));
@@ -133,7 +133,7 @@ fn along_an_axis_of_the_world_nothing_turns_what_is_held_by_its_centre() {
         let mut scene = Stand::new(CoiloverPlugin::default(), Engine::default());
         scene.ground();
         let lying = scene.cube(Vec3::new(0.0, 0.25, 0.0), 20.0);
-        // Far beside it: what pushes one where the other is turns it fast.
+        // Far to the side: a force on one body that acts at the place of the other would turn it fast.
         let hung = scene.cube(Vec3::new(0.6, 2.0, 0.0), 5.0);
         let element = scene.coil([hung, lying], [Vec3::ZERO; 2], [k, c], Some(1.75));
         let axis = SpringAxis::World(Vec3::NEG_Y);
@@ -152,14 +152,14 @@ fn along_an_axis_of_the_world_nothing_turns_what_is_held_by_its_centre() {
             let wanted = -weight / c;
             assert!((last / wanted - 1.0).abs() < 0.05, "{c}: {last}");
         } else {
-            // A load that is let go comes to g/ω.
+            // A load released at rest reaches a speed of g/ω.
             let most = GRAVITY as f32 * (5.0 / k).sqrt();
             assert!(speed < 1.02 * most, "{k}, {c}: {speed} of {most}");
         }
     }
 }
 
-/// A box of 5 kg on the ground, and a hand above it that a spring goes to.
+/// A box of 5 kg on the ground, and a spring from it up to a hand. Returns the scene, and the hand, the box and the spring.
 fn hand(k: f32, rest: f32, companion: impl Bundle) -> (Stand, [Entity; 3]) {
     let mut scene = Stand::new(CoiloverPlugin::default(), Engine::default());
     scene.ground();
@@ -197,7 +197,7 @@ fn a_rope_lies_slack_and_then_lifts_its_load() {
         let wanted = f64::from(scene.lab.position(hand).y) - 1.2 - 5.0 * GRAVITY / f64::from(k);
         let off = f64::from(scene.lab.position(load).y) - wanted;
         let force = scene.lab.readout(rope).force();
-        // A load that is lifted off at a speed v swings up to 2 v, and its rope up to m g + v √(k m).
+        // A load that is lifted off at a speed v swings up to a speed of 2 v. The force of its rope swings up to m g + v √(k m).
         let most = 5.0 * GRAVITY as f32 + 0.5 * (k * 5.0).sqrt();
         println!(
             "rope of {k} N/m: slack {slack} N, {still:.1e} m; lifted at up to {fastest:.3} m/s and {highest:.1} N of {most:.1}; hangs {off:.1e} m off, {force:.2} N, {} awake",

@@ -1,4 +1,4 @@
-//! Cars that roll over what roads have.
+//! Cars that roll over kerbs, bumps, a washboard and a ramp, fall, or pull a trailer.
 
 use super::stand::*;
 use crate::harness::*;
@@ -11,7 +11,7 @@ const REST: f32 = 0.5;
 pub const CHASSIS: f32 = 1200.0;
 pub const WHEEL: f32 = 20.0;
 
-/// A car of five bodies that rolls along x.
+/// A chassis and its wheels that roll along x.
 pub struct Car {
     pub scene: Stand,
     pub chassis: Entity,
@@ -30,7 +30,8 @@ fn wheel_shape(kind: &str) -> Collider {
     }
 }
 
-/// Adds a chassis of so many corners, each with a wheel below it, `height` above the ground.
+/// Adds a chassis with a wheel below each corner. `at` is the point of the ground below the chassis, and lifts the car
+/// where its y is positive.
 fn put_car(
     scene: &mut Stand,
     kind: &str,
@@ -100,7 +101,7 @@ pub fn car(plugin: CoiloverPlugin, kind: &str, height: f32, speed: f32, law: [f3
 }
 
 impl Car {
-    /// Something fixed on the road.
+    /// Adds a fixed obstacle to the road.
     fn obstacle(&mut self, at: Transform, collider: Collider) {
         self.scene.lab.spawn((
             RigidBody::Fixed,
@@ -132,7 +133,7 @@ impl Car {
         }
     }
 
-    /// Runs, and gives the greatest energy over that at first.
+    /// Runs for a time. Returns the greatest energy over that after the first tick.
     fn run(&mut self, seconds: f64) -> f64 {
         self.scene.lab.tick();
         let first = self.scene.energy();
@@ -163,14 +164,14 @@ fn a_car_rolls_at_the_height_at_which_it_stands() {
                 );
                 assert!((sag - 1.0).abs() < 0.03, "{kind} {speed}: {sag}");
                 assert!(gain < 1.02, "{kind} {speed}: E × {gain}");
-                // The engine turns no body further than an eighth of a turn in a step: these wheels 15 m/s.
+                // The engine turns no body by more than an eighth of a turn in a step, which limits these wheels to 15 m/s.
                 assert!(now >= 0.95 * speed.min(15.0), "{kind} {speed}: {now} m/s");
             }
         }
     }
 }
 
-/// Rolls over something and is braked; how it went.
+/// Runs a car over its obstacles, brakes it, and asserts that it gains no energy, stands upright and falls asleep.
 fn over(name: &str, mut car: Car, seconds: f64) {
     let gain = car.run(seconds);
     let up = car.up();
@@ -274,7 +275,7 @@ fn with_a_trailer() {
         .local_anchor1(Vec3::NEG_X * 2.2)
         .local_anchor2(Vec3::X * 2.0);
     let world = car.scene.lab.app.world_mut();
-    // A body holds one joint as a component; the trailer's own is free.
+    // An entity holds one joint component, and the trailer's slot is free.
     world
         .entity_mut(trailer)
         .insert(ImpulseJoint::new(car.chassis, hitch));

@@ -1,4 +1,4 @@
-//! Ten kilometres from the origin, where an f32 knows a place to a millimetre.
+//! A quarter car ten kilometres from the origin, where an f32 resolves a position to a millimetre.
 
 use super::scenes::*;
 use super::stand::*;
@@ -7,7 +7,7 @@ use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
 
-/// Distance of neighbouring positions at ten kilometres, m.
+/// Distance between neighbouring f32 numbers at ten kilometres, m.
 const ULP: f64 = 9.765_625e-4;
 
 fn stand(at: Vec3) -> Stand {
@@ -51,7 +51,7 @@ fn a_quarter_car_stands_and_rolls_ten_kilometres_away() {
             println!(
                 "at {at}, {speed} m/s: E × {most:.4}, sag × {ratio:.5}, trembles {tremble:.1e} m, {now:.3} m/s, {awake} awake"
             );
-            // Heights are known exactly unless it is high up.
+            // An f32 resolves heights well unless y itself is large.
             let known = if at.y > 0.0 { 2.0 * ULP } else { 0.0 };
             assert!(most < 1.02, "{at} {speed}: E × {most}");
             let off = (sum - setup.sag()).abs();

@@ -1,4 +1,4 @@
-//! A stiff foot under a heavy body, dropped: nothing is won, and it comes to rest.
+//! A stiff foot under a heavy body, dropped: it gains no energy and comes to rest.
 
 use super::stand::*;
 use crate::harness::*;
@@ -90,7 +90,7 @@ fn it_comes_to_rest_at_the_right_height_and_sleeps() {
     }
 }
 
-/// A small table on four slider feet.
+/// A table of 0.1 kg on four feet of 5 g, each on a prismatic joint and a spring.
 #[test]
 fn a_small_table_on_slider_feet_stands_still() {
     let mut scene = Stand::new(CoiloverPlugin::default(), Engine::default());

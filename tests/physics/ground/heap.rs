@@ -1,4 +1,4 @@
-//! Boxes joined by springs fall on a heap.
+//! A heap of fifty boxes that are joined by springs.
 
 use super::stand::*;
 use crate::harness::*;

@@ -1,4 +1,4 @@
-//! Ends and colliders below a body in the hierarchy, on the ground.
+//! Spring ends and colliders on child entities of a body that stands on the ground.
 
 use super::stand::*;
 use crate::harness::*;
@@ -8,7 +8,7 @@ use bevy_rapier3d::prelude::*;
 
 const LOAD: f32 = 8.0;
 const LAW: [f32; 2] = [800.0, 40.0];
-/// Where the strut stands on the sledge, and takes hold of the load.
+/// Anchors of the strut: on the sledge, and on the load.
 const ENDS: [Vec3; 2] = [Vec3::new(0.125, 0.25, 0.0), Vec3::new(0.125, -0.25, 0.0)];
 const RUNNERS: [Vec3; 2] = [Vec3::new(0.0, 0.0, 0.5), Vec3::new(0.0, 0.0, -0.5)];
 
@@ -20,7 +20,7 @@ struct Way {
     turned: bool,
 }
 
-/// An entity at a point of a body, below two others that turn and turn back.
+/// An entity at a point of a body, the child of an intermediate entity. With `turned`, their two rotations cancel.
 fn nested(scene: &mut Stand, body: Entity, at: Vec3, turned: bool) -> Entity {
     let turn = if turned {
         Quat::from_rotation_y(0.7)
@@ -34,8 +34,8 @@ fn nested(scene: &mut Stand, body: Entity, at: Vec3, turned: bool) -> Entity {
     scene.lab.spawn((second, ChildOf(outer)))
 }
 
-/// A load over a sledge with two runners; sag of its strut at rest over that of statics, greatest energy over that at
-/// first, and bodies that are awake.
+/// A load on a strut over a sledge with two runners. Returns the strut's sag at rest over that of statics, the greatest
+/// energy over the first, and the number of bodies awake.
 fn sledge(way: Way) -> (f64, f64, usize) {
     let mut scene = Stand::new(CoiloverPlugin::default(), Engine::default());
     if way.ground {

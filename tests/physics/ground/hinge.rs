@@ -1,4 +1,4 @@
-//! A spring on a body that a hinge holds.
+//! Springs on a body that a hinge holds.
 
 use super::stand::*;
 use crate::dice::span;
@@ -7,8 +7,8 @@ use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
 
-/// An arm of 1 m and 2 kg on a hinge, level, with a spring from its end up to a hook. `phase` is ω·dt of the arm about
-/// its hinge.
+/// A level arm of 1 m and 2 kg on a hinge, with a spring from its free end up to a hook. `phase`
+/// is ω·dt of the arm about its hinge.
 fn arm(plugin: CoiloverPlugin, phase: f32, zeta: f32) -> Stand {
     let mut scene = Stand::new(plugin, Engine::default());
     let wall = scene.lab.spawn((RigidBody::Fixed, Transform::default()));
@@ -27,7 +27,7 @@ fn arm(plugin: CoiloverPlugin, phase: f32, zeta: f32) -> Stand {
             ),
         ),
     );
-    // What the hinge leaves at its end.
+    // Effective mass of the arm at its free end: inertia about the hinge over length squared.
     let at_the_end = mass / 3.0;
     let omega = phase / DT;
     let (k, c) = (at_the_end * omega * omega, 2.0 * zeta * at_the_end * omega);
@@ -56,7 +56,7 @@ fn a_stiff_spring_on_a_hinged_arm_wins_nothing() {
     }
 }
 
-/// Twist of a torsion bar at rest over what statics say, that carries an arm with a load at its end.
+/// Twist of a torsion bar at rest as a multiple of the twist that statics gives. The bar carries an arm with a load at its end.
 fn loaded_arm(damping: f32, inertia: f32, on_a_body: bool) -> f64 {
     const ARM: f32 = 0.7;
     const LOAD: f32 = 40.0;

@@ -1,4 +1,4 @@
-//! Springs on links of multibodies.
+//! Springs on links of Rapier's multibodies.
 
 use super::stand::Stand;
 use crate::harness::*;
@@ -7,7 +7,7 @@ use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
 use std::f64::consts::PI;
 
-/// An arm of 0.8 kg whose end is on a hinge about Z, as a link of a multibody. It points along X, and its centre is 0.275 m away.
+/// An arm of 0.8 kg along X, a multibody link on a hinge about Z at its end. Its centre is 0.275 m from the hinge.
 fn arm(scene: &mut Stand, post: Entity) -> Entity {
     let hinge = RevoluteJointBuilder::new(Vec3::Z).local_anchor2(Vec3::NEG_X * 0.275);
     let mass = MassProperties {
@@ -28,7 +28,7 @@ fn post(scene: &mut Stand) -> Entity {
     scene.lab.spawn((RigidBody::Fixed, Transform::default()))
 }
 
-/// A stiff spring from the post to a point of the arm, of a direction as told.
+/// Holds the arm by a stiff spring from the post in the direction `up`, and compares its force with that of statics.
 fn holds(name: &str, up: Vec3, companion: impl Bundle) {
     let mut scene = Stand::new(CoiloverPlugin::default(), Engine::default());
     let post = post(&mut scene);
@@ -138,13 +138,13 @@ fn along_an_axis_of_the_world_a_link_and_a_body_that_moves_are_told_that_nothing
         (height + fallen).abs() < 0.1 * fallen,
         "{height}: it falls freely"
     );
-    // With another axis it acts.
+    // Along another axis it acts.
     let axis = SpringAxis::BodyA(Vec3::Y);
     scene.lab.app.world_mut().entity_mut(element).insert(axis);
     scene.lab.run(0.1);
     assert!(scene.lab.app.world().get::<SpringFault>(element).is_none());
     assert!(scene.lab.readout(element).force() != 0.0);
-    // And with the first one again it does not.
+    // Along the world axis again it does not act.
     let axis = SpringAxis::World(Vec3::Y);
     scene.lab.app.world_mut().entity_mut(element).insert(axis);
     scene.lab.tick();

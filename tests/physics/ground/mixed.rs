@@ -1,4 +1,4 @@
-//! Elements of every kind between bodies of which one lies on the ground: whatever is put together wins no energy.
+//! Random scenes with elements of every kind, of which the first body lies on the ground: none gains energy.
 
 use super::stand::Stand;
 use crate::dice::{Dice, seeds};
@@ -8,23 +8,23 @@ use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
 
-/// ω·dt up to which some ball joints here are multibody joints; at 1, two of 150 scenes win up to 9 % of energy.
+/// Largest ω·dt at which some ball joints here are multibody joints. At 1, two of 150 scenes gain up to 9 % of energy.
 const SOFT: f32 = 0.1;
 
-/// ω·dt up to which elements have laws, clamps and stops here. Stiffer ones do not keep what a blow of one step does.
+/// Largest ω·dt at which elements here have laws, clamps and stops. Stiffer ones do not conserve energy in a blow of one step.
 const BENT: f32 = 1.0;
 
-/// ω·dt up to which torsion elements and ball joints are beside them here, and springs along axes of the world between bodies
-/// that turn; at 50, two of 150 scenes with joints and one with such a spring win energy in a blow.
+/// Largest ω·dt at which scenes here have torsion elements, ball joints, and springs along world axes between two moving
+/// bodies. At 50, two of 150 scenes with joints and one with such a spring gain energy in a blow.
 const LINKED: f32 = 10.0;
 
-/// A direction by chance.
+/// A random unit vector.
 fn direction(dice: &mut Dice) -> Vec3 {
     let mut each = || dice.between(-1.0, 1.0);
     Vec3::new(each(), each(), each()).normalize_or(Vec3::Y)
 }
 
-/// A box by chance, which touches nothing but the ground.
+/// Spawns a random cube that collides with the ground only. Returns it and its mass in kg.
 fn cube(scene: &mut Stand, at: Vec3, dice: &mut Dice) -> (Entity, f32) {
     let half = dice.between(0.1, 0.4);
     let mass = dice.between(0.5, 20.0);
@@ -37,7 +37,8 @@ fn cube(scene: &mut Stand, at: Vec3, dice: &mut Dice) -> (Entity, f32) {
     (scene.body(Transform::from_translation(at), body), mass)
 }
 
-/// Most energy that is won for more than a tick, in so many seconds, against what moves or is stored.
+/// Greatest energy gain that lasts for two ticks, as a share of the kinetic and stored energy, or of the energy at first
+/// where that is more.
 fn won(seed: u64, omega_dt: f32, seconds: f64) -> f64 {
     let mut dice = Dice(seed);
     let mut scene = Stand::new(CoiloverPlugin::default(), Engine::default());
@@ -70,7 +71,7 @@ fn won(seed: u64, omega_dt: f32, seconds: f64) -> f64 {
             Some(SpringAxis::World(axis) | SpringAxis::BodyA(axis)) => -apart.dot(axis),
             None => apart.length(),
         };
-        // As far from rest as makes a few metres a second.
+        // Stretch that gives a speed of 2 m/s.
         let stretch = (2.0 / (60.0 * omega_dt)).min(0.3);
         let rest = length + stretch * dice.between(-1.0, 1.0);
         let rest = if axis.is_none() { rest.max(0.05) } else { rest };
@@ -126,7 +127,7 @@ fn won(seed: u64, omega_dt: f32, seconds: f64) -> f64 {
         scene.lab.tick();
         let (now, here) = energies(&scene);
         assert!(now.is_finite(), "seed {seed}, ω·dt {omega_dt}");
-        // A blow can show a spring longer for a tick than it is when it acts.
+        // In a blow a spring can be longer at the end of a tick than where it acts, so a gain of a single tick does not count.
         let share = (now - first) / here.max((first - floor).abs());
         most = most.max(share.min(before));
         before = share;

@@ -1,6 +1,6 @@
-//! Springs on what contacts and joints hold: wheels that roll, feet, nets, heaps, walls, bridges and ragdolls.
+//! Springs on bodies that contacts and joints hold: rolling wheels, feet, nets, heaps, walls, bridges and ragdolls.
 //!
-//! Each scene is one that a game has. Energy is kinetic, of gravity, and stored in springs, all from geometry.
+//! Each scene occurs in games. Its energy is the sum of kinetic, gravitational and spring energy, all computed from geometry.
 
 mod actuator;
 mod beside;

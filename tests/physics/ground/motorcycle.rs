@@ -1,4 +1,4 @@
-//! A motorcycle: a swing arm whose coilover has a lever, and a raked telescopic fork.
+//! A motorcycle with a raked telescopic fork and a swing arm, whose coilover acts on a lever.
 
 use super::stand::*;
 use crate::harness::*;
@@ -7,17 +7,18 @@ use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
 
 const RADIUS: f32 = 0.3;
-/// kg: frame with rider, swing arm, lower fork, and each wheel.
+/// Masses of the frame with rider, the swing arm, the lower fork and each wheel, kg.
 const MASSES: [f32; 4] = [200.0, 6.0, 8.0, 12.0];
-/// In the frame, from its centre of mass: where the arm turns, and where its coilover begins.
+/// Pivot of the arm, in the frame from its centre of mass, m.
 const PIVOT: Vec2 = Vec2::new(-0.25, -0.15);
+/// Upper end of the rear coilover, in the frame from its centre of mass, m.
 const LUG: Vec2 = Vec2::new(-0.35, 0.15);
 const ARM: f32 = 0.5;
-/// From the pivot to where the coilover takes hold of the arm, m.
+/// Distance from the pivot to the coilover's end on the arm, m.
 const HOLD: f32 = 0.25;
 const HEAD: Vec2 = Vec2::new(0.55, 0.1);
 const RAKE: f32 = 0.45;
-/// Angle of the arm below the horizontal, and length of the fork, with both springs at rest.
+/// Angle of the arm below the horizontal in rad, and length of the fork in m, with both springs at rest length.
 const BUILT: [f32; 2] = [0.3, 0.45];
 const REAR: [f32; 2] = [60e3, 3.5e3];
 const FRONT: [f32; 2] = [16e3, 900.0];
@@ -30,7 +31,7 @@ fn along_fork() -> Vec2 {
     Vec2::new(RAKE.sin(), -RAKE.cos())
 }
 
-/// Lengths of both coilovers with the arm and the fork so.
+/// Lengths of both coilovers at an angle of the arm and a length of the fork, m.
 fn lengths([angle, fork]: [f32; 2]) -> [f32; 2] {
     [LUG.distance(PIVOT + HOLD * along_arm(angle)), fork]
 }
@@ -51,7 +52,7 @@ fn potential(shape: [f64; 2]) -> f64 {
     let front = [head[0] + fork * rake.sin(), head[1] - fork * rake.cos()];
     let rear = on_arm(ARM);
     let pitch = -(front[1] - rear[1]).atan2(front[0] - rear[0]);
-    // Height above the wheels' axles of a point of the frame.
+    // Height of a point of the frame above the axles.
     let height = |p: [f64; 2]| {
         let [x, y] = [p[0] - rear[0], p[1] - rear[1]];
         x * pitch.sin() + y * pitch.cos()
@@ -68,7 +69,7 @@ fn potential(shape: [f64; 2]) -> f64 {
         + spring(FRONT, fork - rest[1])
 }
 
-/// Where energy is least: angle of the arm and length of the fork at rest, by Newton's method.
+/// Angle of the arm and length of the fork at rest: the minimum of the energy, by Newton's method.
 fn statics() -> [f64; 2] {
     let mut shape = BUILT.map(f64::from);
     let h = 1e-4;
@@ -89,7 +90,7 @@ fn statics() -> [f64; 2] {
     shape
 }
 
-/// On its wheels with both springs at rest; the scene, and its wheels.
+/// A motorcycle on its wheels with both springs at rest length. Returns the scene and the wheels.
 fn motorcycle(speed: f32) -> (Stand, [Entity; 2]) {
     let mut scene = Stand::new(CoiloverPlugin::default(), Engine::default());
     let ground = scene.ground();
@@ -213,7 +214,7 @@ fn a_motorcycle_sags_by_its_levers_and_sleeps_when_it_has_stopped() {
             || most > 1.02
             || braked > 1.02
             || awake > 0
-            // The engine turns no body further than an eighth of a turn in a step: these wheels 14.1 m/s.
+            // The engine turns no body by more than an eighth of a turn in a step, which limits these wheels to 14.1 m/s.
             || now < 0.95 * speed.min(14.1)
         {
             wrong.push(speed);

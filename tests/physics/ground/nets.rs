@@ -1,4 +1,4 @@
-//! Light balls on stiff springs, dropped.
+//! Nets of light balls joined by stiff springs, dropped on the ground.
 
 use super::stand::*;
 use crate::harness::*;
@@ -6,7 +6,8 @@ use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
 
-/// Balls of 0.2 kg, `n` along each edge, springs to all near neighbours, 0.4 m above the ground.
+/// A net of balls of 0.2 kg, `n` along each axis, with a spring between near neighbours. Its
+/// lowest balls are 0.4 m above the ground.
 fn net(plugin: CoiloverPlugin, n: [usize; 3], k: f32, zeta: f32) -> Stand {
     let mut scene = Stand::new(plugin, Engine::default());
     scene.ground();

@@ -1,4 +1,4 @@
-//! Ten minutes of what a game has: a car that drives, a ragdoll that has fallen, a bridge under a load.
+//! Long runs of scenes from games: a car that drives and a ragdoll that lies for ten minutes, and a bridge that comes to rest.
 
 use super::bridge::bridge;
 use super::drive::{LAW, car};
@@ -10,7 +10,7 @@ use bevy_rapier3d::prelude::*;
 
 const MINUTES: usize = 10;
 
-/// Torque of a driver who holds a speed, on each wheel, N m.
+/// Torque on each wheel that holds the car's speed, N m. `short` is the speed it lacks in m/s.
 fn drive(short: f32) -> Vec3 {
     Vec3::NEG_Z * (400.0 * short).clamp(-300.0, 300.0)
 }
@@ -68,7 +68,7 @@ fn a_ragdoll_that_has_fallen_lies_for_ten_minutes() {
     }
 }
 
-/// Force with which a rope draws the lower of its ends up, N.
+/// Vertical force of a rope on its lower end, N.
 fn lift(scene: &Stand, rope: &SceneSpring) -> f64 {
     let [a, b] = [0, 1].map(|end| {
         let holder = scene.lab.get::<Transform>(rope.ends[end]);
@@ -81,8 +81,8 @@ fn lift(scene: &Stand, rope: &SceneSpring) -> f64 {
 
 #[test]
 fn a_bridge_comes_to_rest_under_its_load() {
-    // Without hinges it falls by half a metre before its springs bear it, and of boxes from 46 to 55 kg one in twelve slides
-    // off it then.
+    // Without hinges the bridge falls by half a metre before its springs bear it. One in twelve
+    // boxes of 46 to 55 kg slides off then.
     for (k, load, hinged, still_after) in [
         (2e4, 100.0, true, 2.0),
         (5e5, 100.0, true, 2.0),
@@ -90,7 +90,7 @@ fn a_bridge_comes_to_rest_under_its_load() {
     ] {
         let mut scene = bridge(k, load, hinged);
         let world = scene.lab.app.world_mut();
-        // The ropes' stretching dies out at once; swinging sideways no rope damps.
+        // This damps the stretching of the ropes at once. No rope damps swinging sideways.
         for mut rope in world.query::<&mut SpringDamper>().iter_mut(world) {
             rope.damping *= 10.0;
         }
@@ -108,11 +108,11 @@ fn a_bridge_comes_to_rest_under_its_load() {
         );
         if hinged {
             assert_eq!(scene.awake(), 0, "{k}: it sleeps");
-            // All its springs are at the banks, and carry together what hangs between them.
+            // All its springs are at the banks. Together they carry everything between the banks.
             let carried: f64 = scene.coils.iter().map(|rope| lift(&scene, rope)).sum();
             let share = carried / ((30.0 * 4.0 + 3.0 * f64::from(load)) * scene.gravity);
             println!("bridge, {k} N/m: its banks carry {share:.5} of its weight");
-            // It falls asleep on its last swing, of millimetres a second.
+            // It falls asleep during its last swing, at a few mm/s, and not exactly in balance.
             assert!((share - 1.0).abs() < 1e-2, "{k}: {share}");
         } else {
             assert!(scene.speed() < 0.02, "{k}: {} m/s", scene.speed());

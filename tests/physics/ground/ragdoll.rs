@@ -1,4 +1,4 @@
-//! A ragdoll of joints, held together by muscles, that falls on the ground.
+//! A ragdoll on ball joints with springs for muscles, which falls on the ground.
 
 use super::stand::*;
 use crate::harness::*;
@@ -6,16 +6,16 @@ use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
 
-/// What its muscles are.
+/// Kind and stiffness of the muscles.
 #[derive(Clone, Copy, Debug)]
 pub enum Muscle {
-    /// N m/rad about the joint.
+    /// Torsion element about the joint, N m/rad.
     Torsion(f32),
-    /// N/m beside the joint.
+    /// Spring beside the joint, N/m.
     Linear(f32),
 }
 
-/// A torso, a head, and arms and legs of two parts each, lying in the air.
+/// A ragdoll in the air: a torso, a head, and arms and legs of two parts each.
 pub fn ragdoll(plugin: CoiloverPlugin, muscle: Muscle) -> Stand {
     let mut scene = Stand::new(plugin, Engine::default());
     scene.ground();
@@ -31,7 +31,7 @@ pub fn ragdoll(plugin: CoiloverPlugin, muscle: Muscle) -> Stand {
         )
     };
     let torso = capsule(&mut scene, Vec3::ZERO, 0.2, 0.12, 30.0);
-    // Parent, place of the part's middle from the torso, half length, radius, mass, its joint from its own middle.
+    // Parent; centre of the part in the torso's frame; half length; radius; mass; y of the joint from the part's centre.
     let mut parts = vec![(torso, Vec3::ZERO)];
     for (parent, at, half, radius, mass, up) in [
         (0, Vec3::new(0.0, 0.50, 0.0), 0.05, 0.1, 5.0, -0.15),

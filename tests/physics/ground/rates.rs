@@ -1,4 +1,4 @@
-//! Other step lengths and substeps of the engine, fixed and from frame to frame, on the ground.
+//! Scenes on the ground at other step lengths and numbers of substeps, with fixed and with varying frame times.
 
 use super::scenes::*;
 use super::stand::*;
@@ -71,7 +71,7 @@ fn at_any_rate_a_box_at_a_wall_does_not_tremble() {
     assert!(wrong.is_empty(), "{wrong:?}");
 }
 
-/// A lab that steps once a frame, as its timestep mode says.
+/// A lab that updates once per frame, in a given timestep mode.
 fn frames(mode: TimestepMode) -> Stand {
     let mut app = App::new();
     let rapier = RapierPhysicsPlugin::<NoUserData>::default()
@@ -92,7 +92,7 @@ fn frames(mode: TimestepMode) -> Stand {
     scene
 }
 
-/// Runs with frames of such times in turn; the greatest energy on the way.
+/// Runs for `seconds` with the given frame times in turn. Returns the greatest energy, J.
 fn run(scene: &mut Stand, times: &[f32], seconds: f32) -> f64 {
     let (mut t, mut most) = (0.0, f64::NEG_INFINITY);
     for time in times.iter().cycle() {
@@ -111,7 +111,7 @@ fn run(scene: &mut Stand, times: &[f32], seconds: f32) -> f64 {
     most
 }
 
-/// Frames from 30 to 144 a second.
+/// Frame times in s, for 30 to 144 frames a second.
 const UNSTEADY: [f32; 6] = [
     1.0 / 30.0,
     1.0 / 144.0,

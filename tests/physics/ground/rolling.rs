@@ -1,4 +1,4 @@
-//! A sprung mass over a rolling wheel stands as over a resting one.
+//! The height of a load on a spring over a rolling wheel: it is that over a wheel at rest.
 
 use super::stand::*;
 use crate::harness::*;
@@ -10,7 +10,7 @@ const RADIUS: f32 = 0.33;
 const LOAD: f32 = 300.0;
 const REST: f32 = 0.5;
 
-/// What the wheel rolls on.
+/// Shape of the ground.
 #[derive(Clone, Copy, Debug)]
 enum Ground {
     HalfSpace,
@@ -41,7 +41,7 @@ fn ground(scene: &mut Stand, kind: Ground) {
         .spawn((collider, Friction::new(1.0), Transform::default()));
 }
 
-/// Mean sag of the spring over what the load asks for, from the third second on.
+/// Mean sag of the spring between the third and the eighth second, over that of statics.
 fn sag(
     plugin: CoiloverPlugin,
     kind: Ground,
@@ -60,7 +60,7 @@ fn sag(
         Transform::from_xyz(0.0, RADIUS + REST, 0.0),
         (
             AdditionalMassProperties::Mass(LOAD),
-            // Edges between triangles push a wheel aside.
+            // Edges between triangles push a wheel sideways.
             LockedAxes::ROTATION_LOCKED | LockedAxes::TRANSLATION_LOCKED_Z,
             Velocity::linear(Vec3::X * speed),
         ),
@@ -138,15 +138,15 @@ fn whatever_it_rolls_on_and_whatever_its_shape() {
                 sag(plain, kind, wheel.clone(), 20.0, speed, [40e3, 3e3])
             });
             println!("{name} on {kind:?}: sag over theory at 3, 12, 25 m/s {sags:.3?}");
-            // The engine corrects how deep a corner has sunk without a speed that a damper could see: a wheel with corners
-            // stands up to 3.3 % of its sag too high.
+            // The engine lifts a sunk corner by position correction, without a velocity that a damper could see. A wheel
+            // with corners therefore stands too high by up to 3.3 % of its sag.
             let most = if *name == "convex" { 0.035 } else { 0.03 };
             assert!(sags.iter().all(|sag| (sag - 1.0).abs() < most), "{sags:?}");
         }
     }
 }
 
-/// A wheel of 48 corners on each side.
+/// Convex hull of a wheel with 48 corners on each side.
 fn convex() -> Collider {
     let corner = |i: usize, z: f32| {
         let angle = i as f32 / 48.0 * std::f32::consts::TAU;
@@ -168,8 +168,8 @@ fn more_micro_steps_make_nothing_worse() {
     }
 }
 
-/// How far below its radius a wheel's centre is while it rolls, m: mean over two seconds. Its load weighs on it, or rests on a
-/// spring above it.
+/// Mean depth by which a rolling wheel sinks into the ground over two seconds, m. Its load is either part of its mass or
+/// rests on a spring above it.
 fn sinks(sprung: bool, speed: f32) -> f32 {
     let mut scene = Stand::new(CoiloverPlugin::default(), Engine::default());
     ground(&mut scene, Ground::HalfSpace);

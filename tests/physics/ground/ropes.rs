@@ -1,4 +1,4 @@
-//! Elements that pull only, push only, or have nothing but stops, where contacts hold their ends.
+//! Ropes, buffers and elements with nothing but stops, whose bodies touch the ground or carry a load.
 
 use super::stand::*;
 use crate::dice::in_turn;
@@ -7,20 +7,20 @@ use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
 
-/// How the links of a chain give way.
+/// Force law of the links of a chain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Link {
-    /// Pulls where it is longer than its rest length.
+    /// Pulls when longer than its rest length, never pushes.
     Rope,
-    /// Pushes where it is shorter.
+    /// Pushes when shorter than its rest length, never pulls.
     Buffer,
-    /// The same by a law that has other numbers for pull and push.
+    /// Pulls only, by a law with separate coefficients for pull and push.
     Sided,
-    /// Stiffer the further it is stretched, and soft to the push, by a table.
+    /// Pulls only, by a table.
     Table,
     /// Pulls and pushes.
     Both,
-    /// Has stops a tenth of its rest length either way, and nothing between.
+    /// Has only stops, at 0.9 and 1.1 of its rest length.
     Loose,
 }
 
@@ -34,7 +34,7 @@ impl Link {
         Self::Loose,
     ];
 
-    /// Energy of a link so stretched, J; what it says itself where it is a curve.
+    /// Energy of a link at a given stretch in m, J. For a table this is `says`, the energy that the element reports.
     fn stored(self, stiffness: f32, rest_length: f64, stretch: f64, says: f32) -> f64 {
         let within = match self {
             Self::Rope | Self::Sided => stretch.max(0.0),
@@ -53,8 +53,8 @@ struct Chain {
     elements: Vec<Entity>,
 }
 
-/// Balls of 1 kg in all, in a level row of 2 m from a hook, 1.5 m above the ground; stretched by 1 % by their own weight if
-/// they hung.
+/// A level row of balls, 2 m long and 1 kg in all, from a hook 1.5 m above the ground. If the chain hung, its weight
+/// would stretch the top link by 1 / `firmness` of its length.
 fn chain(plugin: CoiloverPlugin, link: Link, links: usize, firmness: f32) -> Chain {
     let mut scene = Stand::new(plugin, Engine::default());
     scene.ground();
@@ -119,7 +119,7 @@ impl Chain {
         self.scene.coils.iter().zip(&self.elements).map(of).sum()
     }
 
-    /// Motion, weight and what is stored in links, J.
+    /// Kinetic energy, energy of height and energy stored in the links, J.
     fn energy(&self) -> f64 {
         self.scene.energy() - self.scene.stored() + self.stored()
     }
@@ -149,7 +149,7 @@ fn a_rope_that_falls_on_the_ground_wins_nothing() {
     }
     for (link, (name, way)) in in_turn(cases) {
         let mut line = String::new();
-        // ω·dt of two neighbours 5, 15, 52.
+        // ω·dt of two neighbouring balls: 5, 15, 52.
         for (links, firmness) in [(10, 100.0), (30, 100.0), (10, 1e4)] {
             let mut chain = chain(way, link, links, firmness);
             chain.scene.lab.tick();
@@ -168,8 +168,8 @@ fn a_rope_that_falls_on_the_ground_wins_nothing() {
     }
 }
 
-/// Stiffer than the engine's f32 could tell apart what a link gives and what moves its range: ω·dt 5·10³ and
-/// 5·10⁴, and dampers that all but weld.
+/// Links of ω·dt 5·10³ and 5·10⁴, and nearly rigid dampers. A second motor shifts the range of a one-sided link. Unless
+/// such a link is softened, the difference of the two motors is lost in the engine's f32.
 #[test]
 fn a_rope_that_is_all_but_rigid_falls_as_a_chain_does() {
     let firm = [
@@ -207,7 +207,7 @@ fn a_rope_that_is_all_but_rigid_falls_as_a_chain_does() {
     }
 }
 
-/// A bridge of ropes between planks, and a box of 80 kg that falls on it.
+/// Planks joined by ropes, and a box of 80 kg that falls on them.
 #[test]
 fn a_bridge_of_ropes_holds_what_falls_on_it() {
     const PLANKS: usize = 10;

@@ -1,4 +1,4 @@
-//! Scenes of which several questions are asked.
+//! Scenes that several tests share.
 
 use super::stand::*;
 use crate::harness::*;
@@ -8,23 +8,23 @@ use bevy_rapier3d::prelude::*;
 /// A load above a foot or a wheel, guided vertically, with a spring between them.
 #[derive(Clone)]
 pub struct Footed {
-    /// Where the ground below it is.
+    /// Point of the ground below the foot, m.
     pub at: Vec3,
-    /// kg.
+    /// Mass above the spring, kg.
     pub load: f32,
     pub foot: f32,
     pub collider: Collider,
-    /// From the foot's middle down to its sole, m.
+    /// Distance from the foot's centre down to its sole, m.
     pub reach: f32,
     pub law: [f32; 2],
     pub rest: f32,
-    /// Height above the ground at first, m.
+    /// Height of the sole above the ground at the start, m.
     pub drop: f32,
-    /// Speed along x of a wheel that rolls, m/s; `None` for a foot that does not turn.
+    /// Speed along x of a rolling wheel, m/s. `None` for a foot that does not turn.
     pub speed: Option<f32>,
 }
 
-/// Its entities.
+/// Entities of a [`Footed`].
 #[derive(Clone, Copy)]
 pub struct Placed {
     pub above: Entity,
@@ -100,7 +100,7 @@ impl Footed {
         }
     }
 
-    /// How far the load presses the spring together at rest, m.
+    /// Compression of the spring under the load at rest, m.
     pub fn sag(&self) -> f64 {
         f64::from(self.load) * GRAVITY / f64::from(self.law[0])
     }
@@ -113,13 +113,14 @@ impl Footed {
         GRAVITY * weights + 0.5 * f64::from(self.law[0]) * sag * sag
     }
 
-    /// Sag of the first spring of a scene, m.
+    /// Compression of the scene's first spring now, m.
     pub fn sag_now(&self, scene: &Stand) -> f64 {
         f64::from(self.rest) - scene.length(&scene.coils[0])
     }
 }
 
-/// A box of 5 kg on the ground that a hand inside a wall, at such a height, pulls against it.
+/// Spawns a wall and a box of 5 kg on the ground. A spring from a hand inside the wall, at `height`, pulls the box
+/// against the wall. Returns the box.
 pub fn box_at_wall(scene: &mut Stand, k: f32, height: f32) -> Entity {
     scene.lab.spawn((
         RigidBody::Fixed,
@@ -142,7 +143,7 @@ pub fn box_at_wall(scene: &mut Stand, k: f32, height: f32) -> Entity {
     load
 }
 
-/// Joints that Rapier has in its first context.
+/// Number of impulse joints in Rapier's only context.
 pub fn joints(scene: &mut Stand) -> usize {
     let world = scene.lab.app.world_mut();
     let mut sets = world.query::<&RapierContextJoints>();

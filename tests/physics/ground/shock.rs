@@ -1,4 +1,4 @@
-//! Preload and breaking springs under the shock of a landing.
+//! Preloaded and breakable springs under the shock of a landing.
 
 use super::scenes::*;
 use super::stand::*;
@@ -10,7 +10,7 @@ use bevy_rapier3d::prelude::*;
 #[derive(Resource, Default)]
 struct Broken(Vec<SpringBroke>);
 
-/// Tells of every break.
+/// A scene with ground that records every break in [`Broken`].
 fn stand() -> Stand {
     let mut scene = Stand::new(CoiloverPlugin::default(), Engine::default());
     scene
@@ -22,7 +22,7 @@ fn stand() -> Stand {
     scene
 }
 
-/// Force of a spring without damping that stops what falls on it, N.
+/// Peak force of an undamped spring that stops the load after a fall of `setup.drop`, N.
 fn peak(setup: &Footed) -> f64 {
     let (m, k) = (f64::from(setup.load), f64::from(setup.law[0]));
     let weight = m * GRAVITY;
@@ -49,7 +49,7 @@ fn a_landing_breaks_a_weak_spring_once_and_a_strong_one_never() {
                 }
                 let world = scene.lab.app.world_mut();
                 world.entity_mut(placed.element).insert(limit);
-                // The load lands on the foot when nothing holds it.
+                // After a break nothing holds the load, so it needs a collider to land on the foot.
                 world.entity_mut(placed.above).insert((
                     Collider::cuboid(0.1, 0.1, 0.1),
                     ColliderMassProperties::Mass(0.0),
@@ -113,7 +113,8 @@ fn a_preload_lifts_what_stands_on_it_and_wins_nothing() {
                     + 0.5 * k * sag * sag
                     - preload * sag;
                 scene.lab.tick();
-                // With a preload of just the weight it begins at rest: then what the sag would give is to compare with.
+                // With a preload equal to the weight the scene starts at rest. Its energy is then
+                // compared with that of the plain sag.
                 let least = 0.5 * k * setup.sag().powi(2);
                 let first = (energy(&scene) - floor).max(least);
                 let mut most = f64::NEG_INFINITY;

@@ -7,7 +7,7 @@ use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
 use std::f32::consts::TAU;
 
-/// A load of a natural frequency over a foot of a tenth of it, `size` across.
+/// A load with a natural frequency in Hz over a foot of a tenth of its mass, `size` across.
 fn footed(load: f32, size: f32, frequency: f32) -> Footed {
     let (omega, half) = (TAU * frequency, 0.5 * size);
     Footed {
@@ -35,7 +35,7 @@ fn from_a_gram_to_ten_tonnes_and_from_millimetres_to_half_a_kilometre_it_stands_
                 scene.lab.run(15.0);
                 let (sag, wanted) = (setup.sag_now(&scene), setup.sag());
                 let awake = scene.awake();
-                // What an f32 can tell of where two bodies are.
+                // Resolution of an f32 at the height of the load, m.
                 let ulp = f64::from(scene.lab.position(placed.above).y * f32::EPSILON);
                 let wander = scene.wander(2.0);
                 println!(

@@ -1,4 +1,4 @@
-//! A lab with its bodies and springs kept in mind, so that its energy can be told from geometry alone.
+//! A lab that keeps a list of its bodies and springs, so that their energy follows from geometry alone.
 
 use crate::harness::*;
 use bevy::prelude::*;
@@ -21,7 +21,7 @@ pub struct Stand {
     pub gravity: f64,
 }
 
-/// How elements are stepped: the ways that have to be alike in all that holds them.
+/// The step methods of the plugin. Tests of held elements demand the same result of each.
 pub fn ways() -> [(&'static str, CoiloverPlugin); 5] {
     let plain = CoiloverPlugin::default;
     [
@@ -43,7 +43,7 @@ impl Stand {
         }
     }
 
-    /// A half-space with some friction.
+    /// Spawns a half-space with friction 0.8.
     pub fn ground(&mut self) -> Entity {
         self.lab.spawn((
             Collider::halfspace(Vec3::Y).expect("up"),
@@ -65,14 +65,14 @@ impl Stand {
         entity
     }
 
-    /// A cube of half a metre.
+    /// Spawns a cube with edges of half a metre.
     pub fn cube(&mut self, at: Vec3, mass: f32) -> Entity {
         let mass = ColliderMassProperties::Mass(mass);
         let body = (Collider::cuboid(0.25, 0.25, 0.25), mass);
         self.body(Transform::from_translation(at), body)
     }
 
-    /// A spring between two points, at rest as it is unless told otherwise.
+    /// Spawns a spring between two anchors. Without a `rest_length` it is at rest where it is.
     pub fn coil(
         &mut self,
         ends: [Entity; 2],
@@ -110,7 +110,7 @@ impl Stand {
         f64::from(self.distance(coil.ends, coil.anchors))
     }
 
-    /// Of the bodies' motion, J.
+    /// Kinetic energy of all bodies, J.
     pub fn motion(&self) -> f64 {
         let of = |body: &Entity| {
             let m = self.lab.get::<ReadMassProperties>(*body).get();
@@ -126,7 +126,7 @@ impl Stand {
         self.bodies.iter().map(of).sum()
     }
 
-    /// In all springs, J.
+    /// Energy stored in all springs, J.
     pub fn stored(&self) -> f64 {
         let of = |coil: &SceneSpring| {
             let stretch = self.length(coil) - f64::from(coil.rest_length);
@@ -135,7 +135,7 @@ impl Stand {
         self.coils.iter().map(of).sum()
     }
 
-    /// Motion, weight above the ground and springs together, J.
+    /// Kinetic energy, energy of height above y = 0 and energy of the springs, J.
     pub fn energy(&self) -> f64 {
         let weight = |body: &Entity| {
             let m = self.lab.get::<ReadMassProperties>(*body).get();
@@ -144,7 +144,7 @@ impl Stand {
         self.motion() + self.stored() + self.bodies.iter().map(weight).sum::<f64>()
     }
 
-    /// Runs for a time; the greatest energy on the way.
+    /// Runs for a time in s. Returns the greatest energy after a tick, J.
     pub fn most(&mut self, seconds: f64) -> f64 {
         let mut most = f64::NEG_INFINITY;
         for _ in 0..self.lab.ticks(seconds) {
@@ -154,7 +154,7 @@ impl Stand {
         most
     }
 
-    /// How far any body goes in a time, m.
+    /// Runs for a time in s. Returns the greatest distance of a body from its first place, m.
     pub fn wander(&mut self, seconds: f64) -> f64 {
         let start: Vec<_> = self.bodies.iter().map(|b| self.lab.position(*b)).collect();
         let mut far = 0.0_f32;

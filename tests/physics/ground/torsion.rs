@@ -1,4 +1,4 @@
-//! A torsion element on a body that hangs on a ball joint and spins off its axis.
+//! A torsion element on a body that hangs on a ball joint and also spins about other axes.
 
 use super::stand::*;
 use crate::dice::span;
@@ -7,7 +7,7 @@ use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
 
-/// E at most over E at first, for a limb of 2 kg on a ball joint 0.5 m above its middle.
+/// Greatest energy over the first, of a limb of 2 kg on a ball joint 0.5 m above its centre.
 fn limb(plugin: CoiloverPlugin, phase: f32, zeta: f32, weight: bool, inertia: Vec3) -> f64 {
     let engine = if weight {
         Engine::default()

@@ -1,4 +1,4 @@
-//! A box that a spring pulls against a wall.
+//! A box that a spring pulls against a wall, or lets go before one.
 
 use super::scenes::box_at_wall;
 use super::stand::*;
@@ -13,7 +13,7 @@ fn a_box_held_against_a_wall_does_not_tremble() {
         for (name, way) in ways() {
             let mut scene = Stand::new(way, Engine::default());
             scene.ground();
-            // The hand is inside the wall, and holds the box at its middle.
+            // The hand is inside the wall, 0.15 m above the centre of the box.
             box_at_wall(&mut scene, k, 0.4);
             scene.lab.run(10.0);
             let (wander, speed) = (scene.wander(10.0), scene.speed());
@@ -26,8 +26,8 @@ fn a_box_held_against_a_wall_does_not_tremble() {
     }
 }
 
-/// A spring between a hand inside a wall and a box in front of it is suddenly to be without length: the greatest energy over
-/// that at the release, of what lasts.
+/// The rest length of a spring between a hand inside a wall and a box before it suddenly becomes zero. Returns the
+/// greatest energy that lasts for two ticks, over the energy at the release.
 fn let_go(phase: f32, gap: f32, zeta: f32) -> f64 {
     let mut scene = Stand::new(CoiloverPlugin::default(), Engine::weightless());
     scene.lab.spawn((
@@ -54,8 +54,8 @@ fn let_go(phase: f32, gap: f32, zeta: f32) -> f64 {
     scene.lab.get_mut::<SpringDamper>(spring).rest_length = Some(0.0);
     scene.coils[0].rest_length = 0.0;
     let first = scene.energy();
-    // A body that the engine's continuous collision detection has stopped keeps its speed until the next step: only
-    // what is still there then has been won.
+    // A body that continuous collision detection has stopped keeps its speed until the next step. Only energy that is
+    // still there after that step counts as a gain.
     let mut before = first;
     let mut most = 0.0_f64;
     for _ in 0..scene.lab.ticks(4.0) {
@@ -72,7 +72,8 @@ fn a_stretched_spring_that_is_let_go_before_a_wall_wins_nothing() {
     let mut worst = 0.0_f64;
     for phase in [0.2, 0.33, 0.5, 1.0, 1.67, 3.0] {
         for zeta in [0.05, 0.3] {
-            // Not 2 cm: from Rapier's own prediction distance a constant force of that size sends a body through the wall.
+            // Not 2 cm: that is Rapier's prediction distance, from which even a constant force of
+            // that size sends a body through the wall.
             let most =
                 [0.005, 0.01, 0.03, 0.05, 0.1, 0.2, 0.4, 0.8].map(|gap| let_go(phase, gap, zeta));
             println!("let go before a wall, ω·dt {phase}, ζ {zeta}: E × {most:.3?}");

@@ -1,4 +1,4 @@
-//! Springs along an axis instead of from end to end.
+//! Springs along a fixed axis instead of along the line between their ends.
 
 use crate::harness::*;
 use bevy::prelude::*;
@@ -7,7 +7,7 @@ use bevy_rapier3d::prelude::*;
 
 #[test]
 fn along_an_axis_of_the_world_nothing_is_felt_across_it() {
-    // The tutorial's first spring: up and down only, while the body drifts sideways.
+    // As in the tutorial: the spring acts vertically only, while the body drifts sideways.
     let mut lab = Lab::new();
     let plane = lab.point(Vec3::ZERO);
     let body = lab.moving(
@@ -29,7 +29,7 @@ fn along_an_axis_of_the_world_nothing_is_felt_across_it() {
         across = across.max((at.x - 0.3 - 1.5 * t).abs());
     }
     println!("along y only: within {worst:.1e} m over 10 s, across it within {across:.1e} m of 15");
-    // Across it there is nothing but the engine's own rounding, 15 m from the origin.
+    // The error across the axis is the engine's rounding at 15 m from the origin.
     assert!(worst < 1e-4 && across < 2e-3, "{worst} {across}");
 }
 

@@ -1,11 +1,11 @@
-//! Laws that make no sense are told once, and their elements are inert.
+//! Invalid laws and companions: each is reported once, and its element is inert.
 
 use crate::harness::*;
 use crate::messages::Log;
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 
-/// A spoilt element and a sound neighbour; returns what was said of the element.
+/// Runs an element with a companion, and a valid neighbour. Returns the element's fault and its number of log messages.
 fn spoilt(companion: impl Bundle) -> (Option<SpringFault>, usize) {
     let mut lab = Lab::weightless();
     let hook = lab.point(Vec3::ZERO);
@@ -67,7 +67,7 @@ fn tables_that_are_none() {
     );
 }
 
-/// A companion on an element that has nothing for it to act on.
+/// Asserts the fault of an element with a companion that has nothing to act on.
 fn out_of_place<B: Bundle>(element: impl FnOnce(Entity, Entity) -> B, field: &str, reason: &str) {
     let mut lab = Lab::new();
     let hook = lab.point(Vec3::Y);
@@ -161,7 +161,7 @@ fn a_function_of_ones_own_that_gives_nan() {
         "CustomDampingLaw",
         "at rest",
     );
-    // Sound where it is, NaN where it goes: bounded, and said once it is there.
+    // The law is finite at the start and NaN where the body goes. The state stays finite, and the fault is reported there.
     let (fault, said) = spoilt(CustomSpringLaw::new(|x: f64| {
         if x < 0.2 { f64::NAN } else { 100.0 * x }
     }));

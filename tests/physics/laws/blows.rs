@@ -1,11 +1,11 @@
-//! Stops and ropes of elements that share a body: what a blow takes in comes out again.
+//! Impacts on stops and ropes of elements that share a body: the energy that an element takes in comes out again.
 
 use crate::harness::*;
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
 
-/// A ball between its hook and as many equal springs as share the stiffness.
+/// A ball on equal parallel springs from one hook, which share the stiffness.
 struct Ball {
     lab: Lab,
     ball: Entity,
@@ -13,7 +13,7 @@ struct Ball {
 }
 
 impl Ball {
-    /// 2 kg at rest length, at 2 m/s: 4 J.
+    /// A ball of 2 kg at rest length and at 2 m/s, so with 4 J.
     fn on(count: usize, stiffness: f32, plugin: CoiloverPlugin, law: impl Bundle + Clone) -> Self {
         let mut lab = Lab::with(plugin, Engine::weightless());
         let hook = lab.point(Vec3::ZERO);
@@ -47,7 +47,7 @@ fn settings() -> [(&'static str, CoiloverPlugin); 5] {
 
 #[test]
 fn a_ball_between_two_springs_with_stops_keeps_its_energy_and_goes_as_on_one() {
-    // ω·dt of the stops 0.5, 1.7, 5.3 and 17.
+    // ω·dt of the stops is 0.5, 1.7, 5.3 and 17.
     for stops in [2e3, 2e4, 2e5, 2e6] {
         for (name, plugin) in settings() {
             let travel = |count: f32| SpringTravel::new(0.0, 1.1, stops / count);
@@ -80,7 +80,7 @@ fn a_ball_between_two_springs_with_stops_keeps_its_energy_and_goes_as_on_one() {
 
 #[test]
 fn a_cap_below_what_a_blow_asks_for_is_told() {
-    // A tolerance so wide that nothing but the stops asks for more than one.
+    // The second tolerance is so wide that only the stops need more than one micro-step.
     for plugin in [
         CoiloverPlugin::default(),
         CoiloverPlugin::default().with_tolerance(10.0),
@@ -116,7 +116,7 @@ fn two_ropes_side_by_side_lose_no_more_than_one() {
     }
 }
 
-/// 1200 kg at 3 m/s on four springs of 30 kN/m at its corners, which turn it as well.
+/// A car body of 1200 kg at 3 m/s on four springs of 30 kN/m at its corners. Rotation makes it a network of four elements.
 #[test]
 fn a_car_body_bounces_between_its_stops_for_a_minute() {
     for stops in [10.0, 100.0] {
@@ -154,7 +154,7 @@ fn a_car_body_bounces_between_its_stops_for_a_minute() {
 
 #[test]
 fn a_tolerance_counts_where_every_element_has_a_law() {
-    // Two cubic springs of 4 kN/m³ from both sides of a ball: 2 ẍ = −2·4000·x³, here by the classic Runge–Kutta.
+    // Two cubic springs of 4 kN/m³ on both sides of a ball. Reference: 2 ẍ = −2·4000·x³ by the classic Runge–Kutta method.
     let flow = |[x, v]: [f64; 2]| [v, -4000.0 * x * x * x];
     let mut errors = [0.0_f64; 3];
     for (error, tolerance) in errors.iter_mut().zip([1e-2, 1e-3, 1e-4]) {
@@ -194,7 +194,7 @@ fn a_tolerance_counts_where_every_element_has_a_law() {
     );
 }
 
-/// 2 kg fall 5 cm until two ropes are taut, and hang on them in the end.
+/// A weight of 2 kg falls 5 cm until two ropes are taut. In the end it hangs on them.
 #[test]
 fn a_weight_on_two_ropes_comes_to_rest_and_turns_no_more_to_heat_than_there_was() {
     for (phase, zeta) in [

@@ -1,4 +1,4 @@
-//! What is pulled too hard breaks, and says so.
+//! Breakable springs break at their force or length, and send an event.
 
 use crate::harness::*;
 use bevy::ecs::entity_disabling::Disabled;
@@ -25,7 +25,7 @@ fn rope(limit: Breakable) -> (Lab, Entity, Entity) {
 
 #[test]
 fn at_its_force_it_breaks_once_and_the_body_falls() {
-    // Let go it swings to 2 m g.
+    // Released at rest length, the body swings up to a force of 2 m g, which is 19.6 N.
     let (mut lab, body, element) = rope(Breakable::at_force(15.0));
     lab.run(2.0);
     let broken = &lab.app.world().resource::<Broken>().0;

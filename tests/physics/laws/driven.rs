@@ -1,4 +1,4 @@
-//! Does what a user's torque, a turned holder or a fast spin gives to a spring stay in it?
+//! Torsion elements and springs under a user's torque, with a holder that the game turns, or on a fast spinning body.
 
 use crate::harness::*;
 use bevy::prelude::*;
@@ -8,10 +8,10 @@ use std::f64::consts::{FRAC_PI_4, TAU};
 
 const INERTIA: f64 = 0.2;
 const STIFFNESS: f64 = 0.8;
-/// rad/s.
+/// Natural angular frequency, rad/s.
 const OMEGA: f64 = 2.0;
 
-/// A wheel about z on a torsion spring that a body of such a kind holds at its middle.
+/// A wheel about z on a torsion spring, whose other end is a hub of the given body kind. Returns hub, wheel and element.
 fn wheel(lab: &mut Lab, holder: RigidBody, damping: f32) -> [Entity; 3] {
     let hub = lab.spawn((holder, Transform::default()));
     let wheel = lab.spawn(brick(1.0, Vec3::splat(INERTIA as f32), Vec3::X));
@@ -72,7 +72,7 @@ fn the_heat_of_a_damper_against_a_torque_is_the_work_that_is_missing() {
 
 #[test]
 fn a_torque_spins_up_a_body_on_springs_held_off_its_centre() {
-    // Soft ones, which let it go round: two in a network, and one alone.
+    // The springs are soft enough to let the body rotate: one alone, and two in a network.
     for count in [1, 2] {
         let mut lab = Lab::weightless();
         let body = lab.spawn(brick(1.0, Vec3::splat(INERTIA as f32), Vec3::ZERO));
@@ -101,7 +101,7 @@ fn a_torque_spins_up_a_body_on_springs_held_off_its_centre() {
 fn a_fixed_body_that_the_game_turns_winds_its_torsion_spring() {
     let mut lab = Lab::weightless();
     let [hub, wheel, _] = wheel(&mut lab, RigidBody::Fixed, 0.0);
-    // One rad/s, tick by tick; the wheel follows as θ = t − sin(ωt)/ω.
+    // The game turns the hub at 1 rad/s, tick by tick. The wheel follows as θ = t − sin(ωt)/ω.
     let mut worst = 0.0_f64;
     for i in 1..=lab.ticks(3.0) {
         let t = i as f64 * lab.dt();
@@ -111,7 +111,7 @@ fn a_fixed_body_that_the_game_turns_winds_its_torsion_spring() {
         worst = worst.max((now - (1.0 - (OMEGA * t).cos())).abs());
     }
     println!("wheel behind a turned holder: spin within {worst:.1e} of 2 rad/s");
-    // The steps in which it is turned lead by half a tick.
+    // The hub turns in steps of a tick, which lead by half a tick.
     assert!(worst < 0.03, "{worst}");
 }
 
@@ -133,7 +133,7 @@ fn a_holder_that_begins_to_turn_wakes_what_hangs_on_its_middle() {
 
 #[test]
 fn a_body_may_turn_more_than_half_a_turn_in_a_tick_of_many_substeps() {
-    // 200 rad/s are 191° in a tick, of the 360° that eight steps of the engine allow.
+    // 200 rad/s are 191° per tick. Eight engine steps allow 360°.
     let mut lab = Lab::with(
         CoiloverPlugin::default(),
         Engine {
@@ -160,7 +160,7 @@ fn a_body_may_turn_more_than_half_a_turn_in_a_tick_of_many_substeps() {
 
 #[test]
 fn a_wound_wheel_that_the_engine_keeps_from_turning_so_fast_unwinds_its_way() {
-    // Five turns on a wheel that would whirl round in a fiftieth of a second: 45° a tick are all it gets.
+    // The spring would turn the wheel round in a fiftieth of a second. The engine allows 45° a tick.
     for turns in [1.0, 5.0] {
         let plugin = CoiloverPlugin::default().with_microsteps(4);
         let mut lab = Lab::with(plugin, Engine::weightless());

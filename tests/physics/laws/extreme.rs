@@ -1,4 +1,4 @@
-//! Numbers that no scene has: what is finite stays finite, and the rest of the world goes on.
+//! Parameters of extreme size: every state stays finite, and the rest of the world goes on.
 
 use crate::harness::*;
 use crate::messages::Log;
@@ -6,7 +6,7 @@ use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
 
-/// Evenly spread numbers in 0 to 1 (a linear congruential generator, as in Numerical Recipes).
+/// Uniform random numbers from 0 to 1, by the linear congruential generator of Numerical Recipes.
 struct Dice(u32);
 
 impl Dice {
@@ -15,7 +15,7 @@ impl Dice {
         (self.0 >> 8) as f32 / (1 << 24) as f32
     }
 
-    /// Of any size up to the largest of an `f32`, or of a scene's.
+    /// A random number of any size up to the largest of an `f32`, or of a usual size.
     fn size(&mut self) -> f32 {
         match (4.0 * self.roll()) as u32 {
             0 => 10.0_f32.powf(38.0 * self.roll()),
@@ -30,7 +30,7 @@ impl Dice {
     }
 }
 
-/// A few bodies, some of which lie on the ground, and elements between any two of them.
+/// Four bodies, some of which can touch the ground, and four elements between random pairs. Returns the lab, bodies and elements.
 fn scene(dice: &mut Dice) -> (Lab, Vec<Entity>, Vec<Entity>) {
     let mut lab = Lab::new();
     lab.spawn((
@@ -143,7 +143,7 @@ fn a_torsion_spring_on_bodies_that_cannot_turn_says_so_once() {
     let fault = fault.expect("it is told");
     assert!(fault.reason.contains("turned"), "{fault}");
     assert!(lab.velocity(b).length() > 0.01, "its neighbour swings");
-    // As soon as one of them can turn, it acts.
+    // The element acts as soon as one of the bodies can turn.
     let world = lab.app.world_mut();
     world.entity_mut(b).insert(LockedAxes::empty());
     lab.run(0.5);
@@ -151,7 +151,7 @@ fn a_torsion_spring_on_bodies_that_cannot_turn_says_so_once() {
     assert!(lab.get::<Velocity>(b).angular.length() > 0.1);
 }
 
-/// A joint holds it, so that the engine solves it.
+/// A joint holds the body, so that the engine solves the element.
 #[test]
 fn a_cubic_torsion_spring_wound_beyond_all_numbers_does_no_harm_beside_it() {
     let mut lab = Lab::new();

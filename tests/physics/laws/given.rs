@@ -1,4 +1,4 @@
-//! Is what a game does to bodies and elements beside the physics neither lost nor taken for something else?
+//! What a game does to bodies and elements beside the physics is neither lost nor misread: impulses, forces, moved bodies, locks.
 
 use crate::harness::*;
 use bevy::prelude::*;
@@ -36,7 +36,7 @@ fn what_jumps_off_the_ground_keeps_its_spring_alive() {
         impulse: Vec3::Y * 200.0,
         ..default()
     });
-    // In flight the spring swings at √(k/m), m = 50·5/55 kg.
+    // In flight the spring swings at √(k/m) with the effective mass m = 50·5/55 kg.
     let mut lengths = [f32::INFINITY, 0.0_f32];
     for i in 0..lab.ticks(0.7) {
         lab.tick();
@@ -98,8 +98,8 @@ fn a_users_force_that_turns_round_on_the_ground_acts_wherever_that_is() {
             .sum();
         (momentum, lengths[1] - lengths[0])
     };
-    // Momentum of both: 20 N for half a second, −20 N for one. Half of the force is the spring's: it swings about
-    // −5 cm for half a second and then, of 12.5 cm, about +5 cm: c/m = 1/s takes a seventh of that in half a period.
+    // Momentum of both bodies: 20 N for half a second, then −20 N for one. Half of the force acts on the spring. It swings about
+    // −5 cm for half a second, and then about +5 cm from 12.5 cm off. c/m = 1/s takes a seventh of that in half a period.
     for x in [0.0, 50.0, -50.0] {
         let (momentum, swing) = slide(x);
         println!(
@@ -112,7 +112,7 @@ fn a_users_force_that_turns_round_on_the_ground_acts_wherever_that_is() {
 
 #[test]
 fn what_stands_on_the_ground_swings_the_same_at_any_height_when_gravity_changes() {
-    // 1 kg on a spring of 400 N/m on a block of 20 kg, let go 0.15 m above its rest, gravity halved after a second.
+    // A weight of 1 kg on a spring of 400 N/m on a block of 20 kg starts 0.15 m above its rest. Gravity is halved after a second.
     let swing = |height: f32| {
         let mut lab = Lab::new();
         let up = |y: f32| Transform::from_xyz(0.0, height + y, 0.0);
@@ -160,7 +160,7 @@ fn what_stands_on_the_ground_swings_the_same_at_any_height_when_gravity_changes(
 
 #[test]
 fn a_lift_of_several_substeps_throws_nothing_into_the_air() {
-    // bevy_rapier moves it wholly in the first: what it lifts is pushed then, and no longer in the end.
+    // bevy_rapier moves the lift by its whole way in the first substep. The load is pushed in that substep only.
     for (substeps, stiffness) in [(1, 20.0), (3, 0.0), (3, 400.0), (4, 20.0)] {
         let engine = Engine {
             substeps,
@@ -190,7 +190,7 @@ fn a_lift_of_several_substeps_throws_nothing_into_the_air() {
             lab.tick();
         }
         for body in boxes {
-            // Without springs, too, they hop by some centimetres where the engine takes several steps.
+            // Even without springs the boxes hop by some centimetres with several substeps.
             let above = lab.position(body).y - 2.0;
             assert!(
                 above.abs() < 0.4,
@@ -219,7 +219,8 @@ fn a_torsion_dampers_rate_and_moment_are_shown() {
 
 #[test]
 fn strong_torsion_dampers_brake_no_more_where_axes_are_locked_or_the_holder_turns() {
-    // I = 0.2 kg m², k = 500 N m/rad, c = 6.5: ζ = 0.33; from rest angle at a spin against the holder's.
+    // I = 0.2 kg m², k = 500 N m/rad, c = 6.5 N m s/rad: ζ = 0.33. The wheel starts at rest angle
+    // with a spin relative to the hub.
     let (inertia, k, c) = (0.2_f64, 500.0, 6.5);
     let free = |relative: f64, t: f64| {
         let gamma = c / (2.0 * inertia);
@@ -338,7 +339,7 @@ fn a_rest_length_that_is_found_anew_is_no_work() {
 
 #[test]
 fn a_hook_that_is_put_elsewhere_has_done_work() {
-    // Half a metre away in no time, on a lone spring and on two in a row.
+    // The hook jumps by half a metre, with a lone spring and with two in a row.
     for springs in [1, 2] {
         let mut lab = Lab::weightless();
         let hook = lab.spawn((RigidBody::Fixed, Transform::default()));

@@ -1,11 +1,11 @@
-//! Does a load rest where it was spawned?
+//! Loads rest where they were spawned, by `HoldPose` or by a tuned sag.
 
 use crate::harness::*;
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
 
-/// How far a body goes within three seconds, m.
+/// Greatest distance of a body from its place within three seconds, m.
 fn strays(lab: &mut Lab, body: Entity) -> f32 {
     let start = lab.position(body);
     let mut most = 0.0_f32;
@@ -57,7 +57,7 @@ fn four_springs_share_a_tray_and_hold_it_level() {
     let mut lab = Lab::new();
     let tray = lab.body(8.0, Vec3::ZERO);
     for (x, z) in [(1.0, 0.5), (1.0, -0.5), (-1.0, 0.5), (-1.0, -0.5)] {
-        // Slanted outward, so that the tension is more than the share of the weight.
+        // Slanted outward, so that each tension is more than its share of the weight.
         let hook = lab.point(Vec3::new(1.5 * x, 2.0, z));
         lab.spawn((
             SpringDamper::new(hook, tray)
@@ -71,7 +71,7 @@ fn four_springs_share_a_tray_and_hold_it_level() {
     assert!(moved < 1e-4, "{moved}");
 }
 
-/// A load of 300 kg that only goes up and down, half a metre over a wheel of 20 kg on the ground: `[load, wheel]`.
+/// A load of 300 kg, guided vertically, half a metre over a wheel of 20 kg on the ground. Returns `[load, wheel]`.
 fn chassis_over_wheel(lab: &mut Lab) -> [Entity; 2] {
     lab.spawn((
         Collider::halfspace(Vec3::Y).expect("up"),
@@ -107,7 +107,7 @@ fn a_chassis_over_a_wheel_on_the_ground_stands_at_the_height_it_was_given() {
     );
 }
 
-/// A brick whose end is on a hinge about Z on a post.
+/// A brick on a post, with a hinge about Z at its end. With `is_link` the hinge is a multibody joint.
 fn arm(lab: &mut Lab, post: Entity, mass: f32, inertia: Vec3, at: Vec3, is_link: bool) -> Entity {
     let hinge = RevoluteJointBuilder::new(Vec3::Z).local_anchor2(-at);
     let arm = lab.spawn(brick(mass, inertia, at));
@@ -120,7 +120,7 @@ fn arm(lab: &mut Lab, post: Entity, mass: f32, inertia: Vec3, at: Vec3, is_link:
     arm
 }
 
-/// An arm of 0.8 kg level on a hinge, and an element from 5 cm along it up to a post.
+/// A level arm of 0.8 kg on a hinge, and an element from 5 cm along it up to a post. Returns the arm.
 fn lamp(lab: &mut Lab, is_link: bool, companion: impl Bundle) -> Entity {
     let post = lab.spawn((RigidBody::Fixed, Transform::default()));
     let inertia = Vec3::new(1e-4, 0.02, 0.02);
@@ -238,7 +238,7 @@ fn a_sag_without_a_rest_length_leaves_the_body_where_it_was_spawned() {
     for (height, rest) in [(4.0, 0.88), (6.0, 1.12)] {
         let mut lab = Lab::new();
         let hook = lab.point(Vec3::Y * 5.0);
-        // Hung below the hook, or stood on top of it, as a guided piston is.
+        // The load hangs below the hook, or stands on top of it like a guided piston.
         let load = lab.spawn((
             body(3.0, Vec3::Y * height),
             LockedAxes::TRANSLATION_LOCKED_X | LockedAxes::TRANSLATION_LOCKED_Z,
@@ -282,7 +282,7 @@ fn a_sag_of_a_chassis_over_a_wheel_is_found_once_the_wheel_stands() {
     let mut lab = Lab::new();
     let [load, wheel] = chassis_over_wheel(&mut lab);
     lab.spawn((SpringDamper::new(load, wheel), SpringTuning::sag(0.1, 0.3)));
-    // It falls for one step, which is 3 mm, and comes to rest where it began.
+    // The load falls for one step, which is 3 mm, and comes to rest where it began.
     let moved = strays(&mut lab, load);
     assert!(moved < 0.02, "{moved}");
     let off = lab.position(load).y - 0.8;
@@ -304,13 +304,13 @@ fn a_pose_is_found_anew_after_a_reset() {
         .insert(HoldPose::new());
     let moved = strays(&mut lab, body);
     assert!(moved < 1e-3, "{moved}");
-    // Half a metre more of the spring holds 50 N of it.
+    // The spring is longer by half a metre and bears 50 N of the weight.
     let preload = lab.get::<Preload>(element).0;
     assert!(
         (preload - (3.0 * GRAVITY as f32 - 50.0)).abs() < 0.01,
         "{preload}"
     );
-    // Or at a new rest length, which is captured like the first one.
+    // A new rest length is captured as the first one was.
     lab.get_mut::<Transform>(body).translation.y = 4.0;
     lab.get_mut::<SpringDamper>(element).rest_length = None;
     lab.app
@@ -350,7 +350,7 @@ fn the_spring_force_holds_preload_and_stops_and_a_slack_rope_has_none() {
         Preload(5.0),
         SpringTravel::new(1.1, 2.0, 1000.0),
     ));
-    // A preload of 5 N is worth 5 cm of stretch: the rope goes slack 5 cm below its rest length.
+    // A preload of 5 N equals 5 cm of stretch: the rope goes slack 5 cm below its rest length.
     let taut = lab.spawn((spring(1.04), Preload(5.0), SpringAction::Pull));
     let slack = lab.spawn((spring(1.06), Preload(5.0), SpringAction::Pull));
     lab.run(0.1);

@@ -1,4 +1,4 @@
-//! Where the energy is: stored, moving, high up, turned to heat, or still to be accounted for.
+//! The energy balance: stored, kinetic and potential energy, heat, and work put in.
 
 use crate::dice::Dice;
 use crate::harness::*;
@@ -30,7 +30,7 @@ impl Scene {
         (hook, element)
     }
 
-    /// Everything there is, less what was turned to heat and plus what was put in.
+    /// Mechanical energy and stored energy plus heat minus work put in, J. This sum is constant.
     fn balance(&self) -> f64 {
         let mut sum = 0.0;
         for (body, mass) in &self.bodies {
@@ -102,7 +102,7 @@ fn in_a_scene_with_every_law_nothing_is_lost_in_a_minute() {
     scene.hang(Preload(-8.0), p);
     scene.hang(MaxForce(60.0), p);
     scene.hang(SpringAxis::World(Vec3::Y), p);
-    // Two of them joined: a network with a law.
+    // A tie joins two of the bodies, which makes a network with a law.
     let [a, b] = [scene.bodies[0].0, scene.bodies[1].0];
     let tie = SpringDamper::new(a, b)
         .with_stiffness(30.0)
@@ -111,7 +111,7 @@ fn in_a_scene_with_every_law_nothing_is_lost_in_a_minute() {
         .lab
         .spawn((tie, SpringLaw::polynomial(20.0, 5.0, 5.0)));
     scene.elements.push(tie);
-    // An actuator, and a hook that is moved.
+    // A hook that moves, and an actuator.
     let (hook, _) = scene.hang((), p);
     let (_, actuator) = scene.hang((), p);
     scene.lab.tick();
@@ -162,7 +162,7 @@ fn in_a_scene_with_every_law_nothing_is_lost_in_a_minute() {
 
 #[test]
 fn what_an_actuator_does_is_its_work() {
-    // Drawn in by 0.1 m at once: ½ k Δ² goes in.
+    // Shortening the rest length by Δ = 0.1 m at once puts in ½ k Δ².
     let mut lab = Lab::weightless();
     let hook = lab.point(Vec3::ZERO);
     let body = lab.body(1.0, Vec3::X);
@@ -180,7 +180,7 @@ fn what_an_actuator_does_is_its_work() {
     assert!((seen.stored_energy + motion - 0.4).abs() < 1e-3);
 }
 
-/// 1200 kg at 3 m/s on four dampers and springs at its corners: what is missing in the end is heat.
+/// A car body of 1200 kg at 3 m/s on four springs with dampers at its corners. All energy it loses is heat.
 #[test]
 fn the_heat_of_a_network_is_as_exact_as_its_motion() {
     for (microsteps, bar) in [(1, 1e-2), (4, 1e-3), (16, 1e-4)] {

@@ -1,5 +1,5 @@
-//! Light bodies that springs and stops drive as fast as the engine lets anything fly or spin: what the engine cuts
-//! off never comes back as energy.
+//! Light bodies that springs and stops drive up to the engine's limits of speed and spin. The energy that these limits
+//! remove never comes back.
 
 use crate::dice::{Dice, in_turn, seeds, span};
 use crate::harness::*;
@@ -7,18 +7,18 @@ use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
 
-/// A network by chance: every other body is `light` kilograms, some held off centre, some springs with stops.
+/// A random network. Every other body has a mass of about `light` kg. Some springs are off centre, and some have stops.
 struct Tangle {
     lab: Lab,
-    /// With their masses.
+    /// Bodies and their masses, kg.
     bodies: Vec<(Entity, f32)>,
-    /// Radius of gyration of them all, m.
+    /// Radius of gyration of every body, m.
     gyration: f32,
 }
 
 impl Tangle {
-    /// `phase` is ω·dt of each spring on its own ends; they are stretched or squeezed by so much at most. Without a
-    /// radius of gyration nothing turns.
+    /// `phase` is ω·dt of each spring between its two bodies, and `stretch` in m is the greatest distance from its rest
+    /// length. With a radius of gyration of zero no body turns.
     fn new(seed: u64, kind: [f32; 4], plugin: CoiloverPlugin) -> Self {
         let [light, gyration, phase, stretch] = kind;
         let mut dice = Dice(seed);
@@ -61,7 +61,7 @@ impl Tangle {
             bodies,
             gyration,
         };
-        // Held until the stored energy has been read.
+        // The bodies are fixed until the stored energy has been read.
         tangle.hold(RigidBody::Fixed);
         tangle.lab.tick();
         tangle
@@ -85,8 +85,8 @@ impl Tangle {
         sum + stored.map(|r| f64::from(r.stored_energy)).sum::<f64>()
     }
 
-    /// The most that it ever has of what it had, the last of it, and the fastest that anything turns (rad/s) and flies
-    /// (m/s).
+    /// Lets the network go. Returns the greatest and the last energy over the first, the greatest spin in rad/s and the
+    /// greatest speed in m/s.
     fn let_go(mut self, seconds: f64) -> [f64; 4] {
         let first = self.energy();
         self.hold(RigidBody::Dynamic);
@@ -106,7 +106,7 @@ impl Tangle {
     }
 }
 
-/// As far from rest as makes about 3 m/s.
+/// Parameters with a stretch that gives speeds of about 3 m/s.
 fn mild(light: f32, gyration: f32, phase: f32) -> [f32; 4] {
     [light, gyration, phase, (3.0 / (60.0 * phase)).min(0.5)]
 }
@@ -127,11 +127,11 @@ fn what_spins_as_fast_as_it_may_wins_no_energy() {
         );
         assert!(most < 1.05, "{most}");
     }
-    // An eighth of a turn in a step is the engine's limit.
+    // The engine limits spin to an eighth of a turn in a step, which is 47.1 rad/s.
     assert!(fastest > 47.0, "{fastest} rad/s");
 }
 
-/// The engine may cut off a spin in the one step in which it is about to become energy of a spring.
+/// The engine may limit a spin in the very step in which it becomes energy of a spring, so a short excess is allowed.
 #[test]
 fn at_any_setting_too_much_lasts_no_longer_than_a_moment() {
     let plugin = CoiloverPlugin::default;
@@ -187,7 +187,7 @@ fn a_lone_spring_that_would_fling_its_body_faster_than_it_may_fly_wins_no_energy
                 let plugin = CoiloverPlugin::default().with_microsteps(microsteps);
                 let mut lab = Lab::with(plugin, Engine::weightless());
                 let k = (60.0 * phase).powi(2);
-                // Of such a speed at the middle, where 400 m/s are all it gets.
+                // Stretch that would give this speed at rest length. The engine allows 400 m/s.
                 let out = speed / k.sqrt();
                 let hook = lab.point(Vec3::ZERO);
                 let ball = lab.body(1.0, Vec3::X * (20.0 + out));

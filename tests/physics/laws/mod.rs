@@ -1,4 +1,4 @@
-//! Do springs with a law of their own move as the law says?
+//! Elements with a force law or another companion component move as that law says.
 
 mod axis;
 mod bad;

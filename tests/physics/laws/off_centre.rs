@@ -1,4 +1,4 @@
-//! Force laws at anchors beside the centre of a body that cannot turn.
+//! Force laws at anchors off the centre of a body that cannot turn.
 
 use crate::harness::*;
 use bevy::prelude::*;
@@ -11,7 +11,7 @@ fn a_law_at_the_edge_of_a_body_that_cannot_turn_acts_from_there() {
         linear: 100.0,
         ..default()
     };
-    // The same force as law and as stiffness: the body moves alike, in every direction.
+    // A linear law and an equal stiffness must move the body alike.
     let [by_law, by_stiffness] = [true, false].map(|is_law| {
         let mut lab = Lab::weightless();
         let hook = lab.point(Vec3::new(0.0, 2.0, 0.5));

@@ -1,4 +1,4 @@
-//! Ropes that only pull, buffers that only push.
+//! Ropes, which only pull, and buffers, which only push.
 
 use crate::harness::*;
 use bevy::prelude::*;
@@ -22,7 +22,7 @@ fn a_bungee_is_a_free_fall_while_slack_and_loses_nothing_when_it_goes_taut() {
         let stretch = (-y - 10.0).max(0.0);
         70.0 * (GRAVITY * y + 0.5 * v * v) + 75.0 * stretch * stretch
     };
-    // Nothing of the jump is lost: measured from where she hangs at rest.
+    // Energy is measured from the place where the jumper hangs at rest.
     let sag = 70.0 * GRAVITY / 150.0;
     let lowest = -70.0 * GRAVITY * (10.0 + sag) + 75.0 * sag * sag;
     let first = energy(&lab) - lowest;

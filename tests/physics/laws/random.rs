@@ -1,4 +1,4 @@
-//! Random networks of mixed laws: whatever is put together stays bounded.
+//! Random networks of mixed laws: their energy stays bounded.
 
 use crate::dice::{Dice, seeds};
 use crate::harness::*;
@@ -6,7 +6,7 @@ use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
 
-/// Companions by chance, for a stiffness, a stretch that is usual, and a rest length.
+/// Inserts random companion components for a stiffness `k` in N/m, a usual stretch `s` and a rest length in m.
 pub fn furnish(lab: &mut Lab, element: Entity, [k, s, rest]: [f32; 3], dice: &mut Dice) {
     let mut entity = lab.app.world_mut().entity_mut(element);
     match dice.pick(6) {
@@ -51,7 +51,7 @@ pub fn furnish(lab: &mut Lab, element: Entity, [k, s, rest]: [f32; 3], dice: &mu
     };
 }
 
-/// Most energy that was gained, against what was moving or stored.
+/// Greatest energy gain over the kinetic and stored energy, now or at first, whichever is more.
 fn scene(seed: u64, phase: f32) -> f64 {
     let mut dice = Dice(seed);
     let mut lab = Lab::new();
@@ -59,7 +59,7 @@ fn scene(seed: u64, phase: f32) -> f64 {
     for _ in 0..2 + dice.pick(6) {
         let at = dice.place();
         let mass = dice.between(0.5, 4.0);
-        // Held until the stored energy has been read.
+        // The bodies are fixed until the stored energy has been read.
         let body = lab.body(mass, at);
         lab.app
             .world_mut()
@@ -85,7 +85,7 @@ fn scene(seed: u64, phase: f32) -> f64 {
         } else {
             0.2 * k.sqrt()
         };
-        // As far from rest as makes about 3 m/s of it: far more would be past what the engine lets a body do.
+        // Stretch that gives about 3 m/s. Far more would exceed the engine's speed limits.
         let stretch = (3.0 / k.sqrt()).min(0.5);
         let arm = if dice.pick(3) == 0 {
             dice.place() * 0.1

@@ -1,4 +1,4 @@
-//! A shock absorber: bump and rebound, stops, preload, force limit.
+//! Parts of a shock absorber: bump and rebound damping, stops, preload and force limit.
 
 use crate::harness::*;
 use bevy::prelude::*;
@@ -6,14 +6,14 @@ use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
 use std::f64::consts::TAU;
 
-/// Two carriages on prescribed paths, and a damper of 1 : 3 between them.
+/// A slider on a prescribed path, and a damper from a fixed point whose bump and rebound coefficients are 1 : 3.
 #[test]
 fn the_force_velocity_loop_of_a_driven_damper_is_its_law_and_its_work_the_integral() {
     let (amplitude, frequency) = (0.05, 1.0);
     let (bump, rebound) = (400.0_f64, 1200.0_f64);
     let mut lab = Lab::weightless();
     let wall = lab.point(Vec3::ZERO);
-    // Heavy enough that the damper's drive does not show: the path is the body's own.
+    // Kinematic, so that the damper does not change its path.
     let slider = lab.spawn((
         RigidBody::KinematicPositionBased,
         Transform::from_xyz(0.5, 0.0, 0.0),
@@ -22,7 +22,7 @@ fn the_force_velocity_loop_of_a_driven_damper_is_its_law_and_its_work_the_integr
     let damper = Damper::new(wall, slider).with_damping(1.0);
     let damper = lab.spawn((damper, DampingLaw::sided(bump as f32, rebound as f32)));
     let omega = TAU * frequency;
-    // The engine has to know the slider before it can move it.
+    // The engine must know the slider before it can move it.
     lab.tick();
     let (mut work, mut worst) = (0.0, 0.0_f64);
     let cycles = 4.0;
@@ -37,14 +37,14 @@ fn the_force_velocity_loop_of_a_driven_damper_is_its_law_and_its_work_the_integr
         worst = worst.max((f64::from(seen.damper_force) - wanted).abs());
         work += f64::from(seen.dissipated_power) * lab.dt();
     }
-    // The ledger has it too, all of it the slider's work.
+    // The energy readout agrees. All the heat is work of the slider.
     let seen = lab.readout(damper);
     assert!(
         (f64::from(seen.dissipated_energy) / work - 1.0).abs() < 1e-3,
         "{seen:?}"
     );
     assert!((seen.work - seen.dissipated_energy).abs() < 1e-3 * seen.work);
-    // ∮ c ẋ dx over a half cycle is c π A² ω/2.
+    // ∮ c ẋ dx over half a cycle is c π A² ω/2.
     let exact =
         cycles * 0.5 * (bump + rebound) * std::f64::consts::PI * amplitude * amplitude * omega;
     println!(
@@ -54,7 +54,7 @@ fn the_force_velocity_loop_of_a_driven_damper_is_its_law_and_its_work_the_integr
     assert!(worst < 1e-2 && (work / exact - 1.0).abs() < 0.01);
 }
 
-/// The same with a body that the damper really drives.
+/// A load of 10 kg on a spring with sided damping, driven by a slider on a sine.
 #[test]
 fn a_damped_body_on_a_driven_carriage_loses_what_the_integral_says() {
     let mut lab = Lab::weightless();
@@ -70,7 +70,7 @@ fn a_damped_body_on_a_driven_carriage_loses_what_the_integral_says() {
     let element = lab.spawn((pair, DampingLaw::sided(40.0, 120.0)));
     let omega = TAU * 2.0;
     let path = |t: f64| 0.02 * (omega * t).sin();
-    // The same by the classic Runge–Kutta in a thousand steps a tick's worth: place, speed, heat.
+    // Reference by the classic Runge–Kutta method in 50 steps per tick. The state is position, velocity and heat.
     let flow = |t: f64, [x, v, _]: [f64; 3]| {
         let rate = v - 0.02 * omega * (omega * t).cos();
         let c = if rate < 0.0 { 40.0 } else { 120.0 };
@@ -96,7 +96,7 @@ fn a_damped_body_on_a_driven_carriage_loses_what_the_integral_says() {
     let integral = state[2];
     let seen = lab.readout(element);
     let heat = f64::from(seen.dissipated_energy);
-    // What the drive gave is stored, moving or gone.
+    // The work of the drive is stored energy, kinetic energy and heat.
     let v = f64::from(lab.velocity(load).length());
     let balance = f64::from(seen.work) - heat - f64::from(seen.stored_energy) - 5.0 * v * v;
     println!(
@@ -183,7 +183,7 @@ fn preload_shifts_the_place_of_rest_and_a_force_limit_holds() {
         .remove::<SpringTravel>()
         .insert(MaxForce(5.0));
     lab.spawn_force(cart, Vec3::X * 7.0);
-    // 2 N are left over, whatever the stretch.
+    // The limit leaves 2 N of the load at any stretch.
     lab.run(1.0);
     let speed = lab.velocity(cart).x;
     lab.run(2.0);
@@ -194,7 +194,7 @@ fn preload_shifts_the_place_of_rest_and_a_force_limit_holds() {
 
 #[test]
 fn degressive_quadratic_and_tabled_dampers_brake_as_their_equations_say() {
-    // m v̇ = −f(v) from 4 m/s, by fine steps of the classic Runge–Kutta.
+    // Reference: m v̇ = −f(v) from 4 m/s by the classic Runge–Kutta method in 100 steps per tick.
     let laws: [(&str, DampingLaw, fn(f64) -> f64); 4] = [
         (
             "quadratic",

@@ -1,16 +1,16 @@
-//! Duffing's oscillator and the purely cubic spring, whose periods are complete elliptic integrals.
+//! Duffing's oscillator and the purely cubic spring. Complete elliptic integrals give their periods.
 
 use crate::harness::*;
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 
-/// 1 kg between a fixed point and itself, stretched by one metre past 3 m.
+/// A body of 1 kg on a spring of rest length 3 m from a fixed point, stretched by 1 m.
 fn stretched(law: SpringLaw, stiffness: f32, microsteps: u32) -> (Lab, Entity) {
     let mut lab = Lab::with(
         CoiloverPlugin::default().with_microsteps(microsteps),
         Engine::weightless(),
     );
-    // At rest it stands in the origin, where f32 is finest.
+    // The place of rest is the origin, where f32 is most precise.
     let hook = lab.point(Vec3::NEG_X * 3.0);
     let body = lab.body(1.0, Vec3::X);
     let spring = Spring::new(hook, body)
@@ -20,7 +20,7 @@ fn stretched(law: SpringLaw, stiffness: f32, microsteps: u32) -> (Lab, Entity) {
     (lab, element)
 }
 
-/// Mean time between upward zeros of the stretch, by cubic interpolation.
+/// Mean time between upward zero crossings of the stretch, by cubic interpolation, s.
 fn period(lab: &mut Lab, element: Entity, seconds: f64) -> f64 {
     let mut last = (0.0, 1.0, 0.0);
     let mut crossings = Vec::new();

@@ -7,10 +7,10 @@ use bevy_rapier3d::prelude::*;
 use std::f64::consts::TAU;
 
 const INERTIA: f32 = 0.2;
-/// rad; small enough that at 2 rad per step the engine's cap of 45° a step is far.
+/// Rest angle, rad. It is so small that even at ω·dt = 2 the wheel stays far from the engine's cap of 45° a step.
 const REST: f64 = 0.1;
 
-/// A wheel that turns freely about z, and the wall that holds its spring.
+/// A wheel that turns freely about z, and the wall for its spring. Returns wall and wheel.
 fn wheel(lab: &mut Lab, spin: f32) -> (Entity, Entity) {
     let wall = lab.spawn((RigidBody::Fixed, Transform::default()));
     let wheel = lab.moving(
@@ -58,7 +58,7 @@ fn three_turns_are_wound_up_and_let_go() {
             .with_stiffness(0.8)
             .with_rest_angle(turns as f32),
     );
-    // ω = 2 rad/s: from 0 over 3 turns to 6 turns and back.
+    // ω = 2 rad/s: the angle swings from 0 through 3 turns to 6 turns and back.
     let (mut worst, mut most) = (0.0_f64, 0.0_f64);
     for i in 1..=lab.ticks(20.0) {
         lab.tick();
@@ -72,7 +72,7 @@ fn three_turns_are_wound_up_and_let_go() {
         most / TAU
     );
     assert!(most > 1.99 * turns && worst < 0.02, "{most} {worst}");
-    // The moment is that of the turns, not of the place within one.
+    // The torque counts all turns, not just the angle within one turn.
     let seen = lab.readout(element);
     let moment = 0.8 * (seen.length - turns as f32);
     assert!((seen.spring_force - moment).abs() < 1e-4);
@@ -144,7 +144,7 @@ fn a_turning_shaft_drags_a_wheel_along() {
     let wanted = 3.0 * (1.0 - (-0.4 / f64::from(INERTIA) * 0.5_f64).exp());
     println!("a shaft at 3 rad/s: the wheel has {spin:.5} rad/s, by theory {wanted:.5}");
     assert!((spin - wanted).abs() < 2e-3, "{spin} {wanted}");
-    // The shaft's work is motion and heat.
+    // The work of the shaft is kinetic energy and heat.
     let seen = lab.readout(element);
     let motion = 0.5 * f64::from(INERTIA) * spin * spin;
     let balance = f64::from(seen.work - seen.dissipated_energy) - motion;

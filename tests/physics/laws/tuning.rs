@@ -1,4 +1,4 @@
-//! Parameters that people think in.
+//! Tuning by natural frequency, by sag and by the dimensions of a coil.
 
 use crate::harness::*;
 use bevy::prelude::*;
@@ -27,9 +27,9 @@ fn a_frequency_becomes_stiffness_and_damping_once_and_stays() {
         "{pair:?}"
     );
     assert!(lab.app.world().get::<SpringTuning>(element).is_none());
-    // From the first step on.
+    // The readout shows the tuning from the first step on.
     assert!((lab.readout(element).omega_dt - omega * DT).abs() < 1e-4);
-    // A heavier body does not make it another spring.
+    // A later change of mass does not change the tuned stiffness.
     lab.app
         .world_mut()
         .entity_mut(body)
@@ -70,8 +70,8 @@ fn wire_and_coil_give_the_stiffness_of_the_handbook() {
     assert!((stiffness - 34_257.6).abs() < 1.0, "{stiffness}");
 }
 
-/// The arm of a lamp, 0.4 m and 0.3 kg with 0.5 kg at its end, level on a hinge, and a spring from 5 cm along it up to a
-/// post.
+/// The level arm of a lamp on a hinge, 0.4 m and 0.3 kg with 0.5 kg at its end. Its element goes
+/// from 5 cm along the arm up to a post.
 fn lamp(element: impl FnOnce(Entity, Entity) -> SpringDamper) -> (Lab, Entity, Entity) {
     let mut lab = Lab::new();
     let post = lab.spawn((RigidBody::Fixed, Transform::default()));
@@ -91,7 +91,7 @@ fn lamp(element: impl FnOnce(Entity, Entity) -> SpringDamper) -> (Lab, Entity, E
     (lab, arm, element)
 }
 
-/// Of the arm about its hinge, at the spring.
+/// Effective mass of the arm at the spring, from its inertia about the hinge, kg.
 const LAMP: f32 = (0.3 * 0.4 * 0.4 / 3.0 + 0.5 * 0.4 * 0.4) / (0.05 * 0.05);
 
 #[test]
@@ -129,7 +129,7 @@ fn a_lamp_tuned_to_two_hertz_swings_twice_a_second() {
         "{k}"
     );
     assert!(lab.app.world().get::<SpringTuning>(element).is_none());
-    // Through the middle upward.
+    // Counts the upward crossings of the mean height.
     let mut heights = Vec::new();
     for _ in 0..lab.ticks(4.0) {
         lab.tick();
@@ -148,7 +148,7 @@ fn over_a_wheel_on_the_ground_it_is_the_load_that_swings() {
     }
 }
 
-/// So many other springs come after it, one by one, while the engine rests.
+/// `others` springs spawn one by one after the tuned one, while the engine rests.
 fn over_a_wheel(others: usize) {
     let mut lab = Lab::new();
     lab.spawn((

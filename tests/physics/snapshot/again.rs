@@ -1,15 +1,15 @@
-//! Back to an earlier tick in the same app.
+//! Going back to an earlier tick in the same app.
 
 use super::film::*;
 use super::scenes::*;
 use crate::dice::in_turn;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-/// Ticks until the snapshot, and from there.
+/// Ticks until the snapshot, and ticks compared after it.
 const BEFORE: usize = 200;
 const AFTER: usize = 300;
 
-/// The same future twice, from a snapshot at such a tick.
+/// Takes a snapshot after `before` ticks and asserts that two replays from it equal the first run.
 fn go_back(name: &str, film: &mut Film, before: usize) {
     film.run(before);
     let then = Both::take(film);
@@ -40,7 +40,7 @@ fn what_sleeps_goes_on_sleeping_and_wakes_when_it_did() {
 
 #[test]
 fn a_scene_goes_back_to_its_first_ticks() {
-    // What breaks meanwhile is for the game to spawn again: see `changed`.
+    // The game itself has to spawn elements that break meanwhile again: see `changed`.
     let whole = |(name, ..): &(String, _, _)| !name.starts_with("breaking");
     for (name, plugin, scene) in in_turn(all()).into_iter().filter(whole) {
         for before in [1, 2, 3] {

@@ -1,4 +1,4 @@
-//! The same scenes once more, run otherwise: is it the same to the last bit?
+//! The scenes give the same bits with another executor, and with springs drawn.
 
 use super::film::*;
 use super::scenes::*;

@@ -1,4 +1,4 @@
-//! Into another app, where everything has another id.
+//! Restoring into another app, where every entity has another id.
 
 use super::film::*;
 use super::scenes::*;
@@ -12,7 +12,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 const BEFORE: usize = 200;
 const AFTER: usize = 300;
 
-/// The same scene in an app of its own, a tick old.
+/// A scene in an app of its own with other entity ids, one tick old.
 fn elsewhere(scene: Play, plugin: CoiloverPlugin) -> Film {
     STRANGERS.set(7);
     let mut film = scene(plugin);
@@ -55,7 +55,8 @@ fn a_scene_goes_on_in_another_app_as_in_its_own() {
     assert!(failures.is_empty(), "{failures:#?}");
 }
 
-/// A scene that is only moved to where it was, with what springs remember: nearly the same, and no harm.
+/// Only the transforms and the springs' side of the snapshot are restored. The scene then stays
+/// finite and leaves no extra joints.
 #[test]
 fn without_rapiers_side_a_scene_goes_on_nearly_as_it_did() {
     let (_, plugin, scene) = all()
@@ -83,7 +84,7 @@ fn without_rapiers_side_a_scene_goes_on_nearly_as_it_did() {
     assert_eq!(without, Ok(()));
     film.run(AFTER);
     assert!(film.is_sound());
-    // It makes its joints anew, and takes out those that were there.
+    // The springs make their joints anew and remove the earlier ones.
     let joints = |film: &mut Film| {
         let world = film.lab.app.world_mut();
         let mut sets = world.query::<&RapierContextJoints>();

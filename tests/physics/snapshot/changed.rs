@@ -1,4 +1,4 @@
-//! Back, where elements and bodies have come and gone meanwhile.
+//! Going back after elements and bodies have come, gone or changed.
 
 use super::film::*;
 use super::scenes::*;
@@ -12,7 +12,7 @@ use bevy_rapier3d::prelude::*;
 const BEFORE: usize = 200;
 const AFTER: usize = 300;
 
-/// A scene of these, 200 ticks old.
+/// The scene of a name after 200 ticks.
 fn played(name: &str) -> Film {
     let (_, plugin, scene) = all()
         .into_iter()
@@ -23,7 +23,7 @@ fn played(name: &str) -> Film {
     film
 }
 
-/// Everything there is, by name.
+/// Scenes in which springs are alone, in networks, and held by contacts or joints.
 const NAMES: [&str; 5] = [
     "lone, plain",
     "chain, plain",

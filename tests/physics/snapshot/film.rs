@@ -1,4 +1,4 @@
-//! A scene that is played and watched, tick by tick, to the last bit.
+//! A scene whose complete state is recorded bit by bit after each tick.
 
 use crate::harness::*;
 use bevy::ecs::entity::{EntityHashMap, EntityMapper};
@@ -8,22 +8,22 @@ use bevy_coilover::prelude::*;
 use bevy_rapier3d::plugin::systems;
 use bevy_rapier3d::prelude::*;
 
-/// A lab whose entities are known by the order in which they were spawned: the key that is the same in every app.
+/// A lab that lists its entities in the order in which they were spawned. This order is equal in every app.
 pub struct Film {
     pub lab: Lab,
     pub cast: Vec<Entity>,
     pub tick: usize,
-    /// What the game does before each tick.
+    /// The game's code, called before each tick.
     pub deed: fn(&mut Film),
 }
 
 thread_local! {
-    /// The plugin that draws springs is there.
+    /// Whether new scenes get the plugin that draws springs.
     pub static DRAWN: std::cell::Cell<bool> = const { std::cell::Cell::new(false) };
-    /// Rapier hears of each body, collider and joint as it is spawned. Else it hears of them in the order of Bevy's archetypes, and
-    /// that depends on what else an app has.
+    /// Whether Rapier gets each body, collider and joint as it is spawned. Otherwise it gets them in the order of Bevy's
+    /// archetypes, which depends on what else an app has.
     pub static IN_ORDER: std::cell::Cell<bool> = const { std::cell::Cell::new(false) };
-    /// Entities that an app has before its scene is made, so that those of the scene have other ids.
+    /// Number of entities that an app gets before its scene, so that the scene's entities have other ids.
     pub static STRANGERS: std::cell::Cell<usize> = const { std::cell::Cell::new(0) };
 }
 
@@ -69,7 +69,7 @@ impl Film {
         }
     }
 
-    /// Runs and notes everything after each tick.
+    /// Runs and records the bits after each tick.
     pub fn watch(&mut self, ticks: usize) -> Vec<Vec<u32>> {
         let mut seen = Vec::new();
         for _ in 0..ticks {
@@ -79,7 +79,7 @@ impl Film {
         seen
     }
 
-    /// Everything that a game sees of every entity.
+    /// Bits of every component value of the listed entities that a game can see.
     pub fn bits(&self) -> Vec<u32> {
         let mut bits = Vec::new();
         for entity in &self.cast {
@@ -98,7 +98,7 @@ impl Film {
             bits.resize(bits.len().next_multiple_of(16), 0);
             bits.extend(numbers.iter().map(|x| x.to_bits()));
         };
-        // That of an element is where its coil is drawn.
+        // The transform of an element only says where its coil is drawn.
         let place = entity.get::<Transform>();
         if let Some(place) = place.filter(|_| !entity.contains::<SpringReadout>()) {
             add(&place.translation.to_array());
@@ -141,7 +141,7 @@ impl Film {
         }
     }
 
-    /// Whether every place is a number.
+    /// Whether every position is finite.
     pub fn is_sound(&self) -> bool {
         let places = self.cast.iter().filter_map(|e| {
             let entity = self.lab.app.world().get_entity(*e).ok()?;
@@ -151,10 +151,10 @@ impl Film {
     }
 }
 
-/// Room for the words of an entity.
+/// Words reserved for an entity.
 const WORDS: usize = 16 * 16;
 
-/// Rapier's state and that of springs.
+/// Snapshots of Rapier and of the springs.
 #[derive(Clone)]
 pub struct Both {
     pub engine: RapierSnapshot,
@@ -177,7 +177,7 @@ impl Both {
     }
 }
 
-/// Fails with the first tick and entity where two runs differ.
+/// Panics with the first tick and entity at which two runs differ.
 pub fn assert_same(name: &str, first: &[Vec<u32>], second: &[Vec<u32>]) {
     for (tick, (a, b)) in first.iter().zip(second).enumerate() {
         if a != b {
@@ -195,7 +195,7 @@ pub fn assert_same(name: &str, first: &[Vec<u32>], second: &[Vec<u32>]) {
     }
 }
 
-/// What the game itself has to put back of elements, and of ends that are no bodies.
+/// Components that the game itself has to restore: elements, and transforms of ends without a body.
 pub struct Props(Vec<Option<Prop>>);
 
 type Elements = (
@@ -239,7 +239,7 @@ impl Props {
         Self(film.cast.iter().map(of).collect())
     }
 
-    /// Puts all of it back, under these names.
+    /// Restores all components, with entities mapped by `names`.
     pub fn restore(&self, film: &mut Film, names: &EntityHashMap<Entity>) {
         let mut names = names.clone();
         for (entity, prop) in film.cast.clone().into_iter().zip(&self.0) {
@@ -276,7 +276,7 @@ impl Props {
     }
 }
 
-/// Lets Rapier hear of an entity at once.
+/// Runs Rapier's systems that create the body, collider or joint of a new entity.
 fn introduce(world: &mut World, entity: Entity) {
     let find = move |transforms: TransformHelper| transforms.compute_global_transform(entity).ok();
     if let Ok(Some(at)) = world.run_system_once(find) {

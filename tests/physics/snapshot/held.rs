@@ -1,4 +1,4 @@
-//! Scenes on what contacts and joints hold.
+//! Snapshot scenes with springs on bodies that contacts and joints hold.
 
 use super::film::*;
 use super::scenes::coil;
@@ -7,7 +7,7 @@ use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
 
-/// Weights on well damped springs: in the air, in a network, on a hinge and on the ground. One of each is pushed later.
+/// Weights on well damped springs: in the air, in a network, and above a foot on the ground. At tick 600 one of each is pushed.
 pub fn resting(plugin: CoiloverPlugin) -> Film {
     let mut film = Film::new(plugin);
     film.ground();
@@ -54,7 +54,7 @@ pub fn resting(plugin: CoiloverPlugin) -> Film {
     film
 }
 
-/// Loads on springs above feet that drop on the ground, drum, come to rest and fall asleep.
+/// Loads on springs above feet that drop on the ground, bounce, come to rest and fall asleep.
 pub fn feet(plugin: CoiloverPlugin) -> Film {
     let mut film = Film::new(plugin);
     film.ground();
@@ -79,7 +79,7 @@ pub fn feet(plugin: CoiloverPlugin) -> Film {
     film
 }
 
-/// A ball falls on a cloth of points.
+/// A ball that falls on a cloth of points.
 pub fn cloth(plugin: CoiloverPlugin) -> Film {
     let mut film = Film::new(plugin);
     const SIDE: usize = 7;
@@ -165,7 +165,7 @@ pub fn hinges(plugin: CoiloverPlugin) -> Film {
     film
 }
 
-/// Links of a multibody with a spring between them, beside a free pendulum.
+/// A chain of multibody links with a spring from its root to its end, beside a free pendulum.
 pub fn multibody(plugin: CoiloverPlugin) -> Film {
     let mut film = Film::new(plugin);
     let root = film.spawn((RigidBody::Fixed, Transform::default()));
@@ -193,7 +193,7 @@ pub fn multibody(plugin: CoiloverPlugin) -> Film {
     film
 }
 
-/// A car that rolls, with a hinged trailer arm.
+/// A rolling car with an arm on a hinge behind it.
 pub fn car(plugin: CoiloverPlugin) -> Film {
     let mut film = Film::new(plugin);
     film.ground();
@@ -243,7 +243,7 @@ pub fn car(plugin: CoiloverPlugin) -> Film {
         coil(chassis, arm, 4e3, 50.0),
         Anchors::new(Vec3::new(-1.6, 0.5, 0.0), Vec3::ZERO),
     ));
-    // A step in the road.
+    // A step in the road, which the car meets after the snapshot.
     let step = (
         RigidBody::Fixed,
         Collider::cuboid(0.5, 0.04, 2.0),
@@ -253,7 +253,7 @@ pub fn car(plugin: CoiloverPlugin) -> Film {
     film
 }
 
-/// A spring whose rest length the game drives, that presses a box against a wall, and one that lifts a weight.
+/// Two springs whose rest length the game drives: one presses a box against a wall, the other lifts a weight.
 pub fn actuator(plugin: CoiloverPlugin) -> Film {
     let mut film = Film::new(plugin);
     let rail = LockedAxes::ROTATION_LOCKED
@@ -284,7 +284,7 @@ pub fn actuator(plugin: CoiloverPlugin) -> Film {
     film
 }
 
-/// Threads that have broken before the snapshot, and some that nearly do.
+/// A board on four threads, one of which breaks before the snapshot.
 pub fn breaking(plugin: CoiloverPlugin) -> Film {
     let mut film = Film::new(plugin);
     film.ground();

@@ -1,4 +1,4 @@
-//! Is the future the same after going back to an earlier tick, bit for bit?
+//! After going back to an earlier tick, the future is the same bit for bit.
 
 mod again;
 mod alike;

@@ -1,4 +1,4 @@
-//! Scenes with everything that springs remember something of.
+//! Scenes that cover every state which springs keep between ticks.
 
 use super::film::*;
 use super::held::*;
@@ -7,10 +7,10 @@ use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
 
-/// How a scene is made.
+/// Function that makes a scene.
 pub type Play = fn(CoiloverPlugin) -> Film;
 
-/// Every scene, each with the ways to step that make a difference to it.
+/// Every scene with each plugin setting under test: name, plugin and function.
 pub fn all() -> Vec<(String, CoiloverPlugin, Play)> {
     let plain = CoiloverPlugin::default;
     let ways = [
@@ -42,7 +42,7 @@ pub fn all() -> Vec<(String, CoiloverPlugin, Play)> {
     scenes.into_iter().flat_map(named).collect()
 }
 
-/// Scenes that fall asleep, and are woken by the game.
+/// Scenes whose bodies fall asleep, and are woken by the game.
 pub fn sleepers() -> Vec<(String, CoiloverPlugin, Play)> {
     let ways = [
         ("plain", CoiloverPlugin::default()),
@@ -53,7 +53,7 @@ pub fn sleepers() -> Vec<(String, CoiloverPlugin, Play)> {
 }
 
 impl Film {
-    /// Bodies that sleep.
+    /// Number of sleeping bodies.
     pub fn asleep(&self) -> usize {
         let sleeps = |entity: &&Entity| {
             let sleeping = self.lab.app.world().get::<Sleeping>(**entity);
@@ -91,12 +91,12 @@ impl Film {
         self.lab.app.world_mut().entity_mut(entity).insert(bundle);
     }
 
-    /// The game's own part of going back: what its deeds have written.
+    /// Restores what the game itself drives: calls the deed of the previous tick again.
     pub fn rewind(&mut self) {
         let tick = self.tick;
         let deed = self.deed;
         if tick > 0 {
-            // Deeds say what is to be at a tick, whatever was before.
+            // Most deeds set a state for their tick, whatever was before.
             self.tick = tick - 1;
             deed(self);
             self.tick = tick;
@@ -110,7 +110,7 @@ pub fn coil(a: Entity, b: Entity, stiffness: f32, damping: f32) -> SpringDamper 
         .with_damping(damping)
 }
 
-/// Pendulums, each alone on its body; two bodies that fall with a spring between them.
+/// Pendulums with one spring each, and two falling bodies with a spring between them.
 fn lone(plugin: CoiloverPlugin) -> Film {
     let mut film = Film::new(plugin);
     for (i, stiffness) in [30.0, 400.0, 9e4].into_iter().enumerate() {
@@ -130,7 +130,7 @@ fn lone(plugin: CoiloverPlugin) -> Film {
     film
 }
 
-/// Laws of every kind, on lone elements and on one that turns its body.
+/// Companions of every kind on lone elements, one of which turns its body.
 fn laws(plugin: CoiloverPlugin) -> Film {
     let mut film = Film::new(plugin);
     let mut hang = |i: usize, companion: fn(&mut EntityCommands)| {
@@ -142,7 +142,7 @@ fn laws(plugin: CoiloverPlugin) -> Film {
         companion(&mut world.commands().entity(element));
         world.flush();
     };
-    // Commands come back from each insertion; nobody needs them.
+    // Discards the commands that each insertion returns.
     fn add(_: &mut EntityCommands) {}
     hang(0, |e| add(e.insert(SpringLaw::Cubic)));
     hang(1, |e| add(e.insert(SpringAction::Pull)));
@@ -166,7 +166,7 @@ fn laws(plugin: CoiloverPlugin) -> Film {
     film
 }
 
-/// A flywheel on a torsion spring that is wound up by many turns, free and on a hinge; a twisted pair that tumbles.
+/// Flywheels on a torsion spring that they wind up by many turns, free and on a hinge, and a tumbling pair.
 fn torsion(plugin: CoiloverPlugin) -> Film {
     let mut film = Film::new(plugin);
     for hinged in [false, true] {
@@ -197,7 +197,7 @@ fn torsion(plugin: CoiloverPlugin) -> Film {
     film
 }
 
-/// Few bodies in one network, some held off their centres: solved at once.
+/// A network of few bodies, with springs off their centres: the direct solver.
 fn chain(plugin: CoiloverPlugin) -> Film {
     let mut film = Film::new(plugin);
     let mut last = film.point(Vec3::Y * 3.0);
@@ -209,13 +209,13 @@ fn chain(plugin: CoiloverPlugin) -> Film {
         ));
         last = next;
     }
-    // Beside one of another, which has two that are alike but for their numbers.
+    // Two springs between the same pair of bodies, which differ in their numbers only.
     film.spawn(coil(last, film.cast[1], 40.0, 0.0).with_rest_length(2.0));
     film.spawn(coil(last, film.cast[1], 30.0, 0.0).with_rest_length(2.5));
     film
 }
 
-/// Many bodies that turn, in one network: solved by iterations.
+/// A network of many rotating bodies: the iterative solver.
 fn rods(plugin: CoiloverPlugin) -> Film {
     let mut film = Film::new(plugin);
     let mut last = film.point(Vec3::Y * 3.0);
@@ -231,7 +231,7 @@ fn rods(plugin: CoiloverPlugin) -> Film {
     film
 }
 
-/// Many points in one network, which go from step to step without being read anew.
+/// A network of many points, whose state goes on from step to step without being read anew.
 fn lattice(plugin: CoiloverPlugin) -> Film {
     let mut film = Film::new(plugin);
     const SIDE: usize = 9;
@@ -258,7 +258,7 @@ fn lattice(plugin: CoiloverPlugin) -> Film {
     film
 }
 
-/// A hook, a kinematic body and a child of a body as ends; the game moves them.
+/// A hook, a kinematic body and a child of a body as ends. The game moves the first two.
 fn moved_ends(plugin: CoiloverPlugin) -> Film {
     let mut film = Film::new(plugin);
     let hook = film.point(Vec3::Y * 2.0);
@@ -286,7 +286,7 @@ fn moved_ends(plugin: CoiloverPlugin) -> Film {
     film
 }
 
-/// The game pushes bodies now and then.
+/// Weights, one of which the game pushes in every other 70 ticks.
 fn pushed(plugin: CoiloverPlugin) -> Film {
     let mut film = Film::new(plugin);
     film.ground();

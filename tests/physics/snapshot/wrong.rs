@@ -1,4 +1,4 @@
-//! A snapshot that does not fit says so, and changes nothing.
+//! Restoring a snapshot that does not fit returns an error and changes nothing.
 
 use super::film::*;
 use super::scenes::*;
@@ -7,7 +7,7 @@ use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
 
-/// A car on the road: everything that springs can have in Rapier.
+/// A car on the road after 60 ticks. It has every kind of state that springs keep in Rapier.
 fn played() -> Film {
     let (_, plugin, scene) = all()
         .into_iter()
@@ -117,7 +117,7 @@ fn what_does_not_fit_leaves_the_scene_as_it_was() {
     let then = Both::take(&film);
     film.run(40);
     same.run(40);
-    // The car has left the ground of these joints.
+    // Without an element and after a hop, the joints of the snapshot no longer fit.
     let hop = |film: &mut Film| {
         let chassis = film.cast[1];
         let world = film.lab.app.world_mut();
@@ -144,7 +144,7 @@ fn springs_alone_do_not_fit_a_rapier_that_has_gone_on() {
     let then = Both::take(&film);
     let element = element(&mut film);
     let damper = film.lab.get::<SpringDamper>(element).damping;
-    // Other joints of ours.
+    // This changes the joints that springs have in Rapier.
     film.lab.get_mut::<SpringDamper>(element).damping = 0.0;
     let more = film
         .lab
@@ -167,7 +167,7 @@ fn springs_alone_do_not_fit_a_rapier_that_solves_their_bodies_more_finely_now() 
     let expected = film.watch(60);
     let element = element(&mut film);
     let stiffness = film.lab.get::<SpringDamper>(element).stiffness;
-    // The same joints, in more iterations.
+    // The joints stay the same, but get more solver iterations.
     film.lab.get_mut::<SpringDamper>(element).stiffness = 1e3 * stiffness;
     film.run(5);
     assert_eq!(
@@ -199,7 +199,7 @@ fn springs_alone_do_not_fit_a_rapier_that_solves_other_bodies_more_finely_now() 
 
 #[test]
 fn what_is_not_put_back_makes_another_future() {
-    // Or else nothing that these tests compare would depend on what springs remember.
+    // Otherwise no comparison of these tests would depend on the state that springs keep.
     for name in [
         "torsion, plain",
         "feet, plain",

@@ -1,4 +1,4 @@
-//! Does any network of any stiffness gain energy, and does it come to rest where statics says?
+//! Networks of every stiffness: none gains energy, and each comes to rest where statics says.
 
 mod nets;
 mod statics;
@@ -15,13 +15,13 @@ use statics::Statics;
 const PHASES: [f32; 5] = [0.3, 1.0, 3.0, 10.0, 100.0];
 
 impl Net {
-    /// Stiffness for a phase per step of one spring between two heavy bodies.
+    /// Stiffness that gives a spring between two heavy bodies an ω·dt of `phase`, N/m.
     fn stiffness(phase: f32) -> f32 {
         let omega = phase / DT;
         omega * omega * HEAVY / 2.0
     }
 
-    /// The scene; `drag` is the engine's own damping of all bodies.
+    /// Spawns the network. `drag` is the engine's linear damping of all bodies, 1/s.
     fn build(&self, phase: f32, zeta: f32, drag: f32) -> (Lab, Vec<Entity>) {
         let k = Self::stiffness(phase);
         let c = 2.0 * zeta * (k * HEAVY / 2.0).sqrt();
@@ -58,7 +58,7 @@ impl Net {
             .collect()
     }
 
-    /// Kinetic, stored and gravity's energy, from the engine's own state.
+    /// Kinetic, stored and potential energy from the engine's own state, J.
     fn energy(&self, lab: &Lab, bodies: &[Entity], statics: &Statics) -> f64 {
         let mut sum = statics.energy(&Self::places(lab, bodies));
         for ((_, mass), body) in self.points.iter().zip(bodies) {
@@ -70,11 +70,11 @@ impl Net {
         sum
     }
 
-    /// Comes to rest under drag, and compares with statics; returns the least energy.
+    /// Lets the network come to rest under drag and compares it with statics. Returns the least potential energy, J.
     fn check_rest(&self, phase: f32, seconds: f64) -> f64 {
         let (mut lab, bodies) = self.build(phase, 0.1, 2.0);
         let statics = Statics::new(self, f64::from(Self::stiffness(phase)));
-        // A lattice that has folded can linger where it only seems to rest, as a needle on its point.
+        // A lattice that has folded can linger near an unstable equilibrium, so it gets more time.
         for last in [false, false, false, true] {
             lab.run(seconds);
             let settled = statics.settle(Self::places(&lab, &bodies));
@@ -87,7 +87,7 @@ impl Net {
         unreachable!("the last one returns or fails")
     }
 
-    /// Error of strains in the mean of the next second, and what it may be.
+    /// Greatest error of the mean strains over the next second, and its bar.
     fn compare(&self, phase: f32, lab: &mut Lab, bodies: &[Entity], settled: &[DVec3]) -> [f64; 2] {
         let strains = |at: &[DVec3]| -> Vec<f64> {
             let strain = |(a, b, rest): &(usize, usize, f32)| {
@@ -95,7 +95,7 @@ impl Net {
             };
             self.links.iter().map(strain).collect()
         };
-        // The mean of a second: the roundings of f32 keep the stiffest trembling.
+        // A mean over a second, because f32 rounding keeps the stiffest networks trembling.
         let ticks = lab.ticks(1.0);
         let mut mean = vec![0.0; self.links.len()];
         for _ in 0..ticks {
@@ -108,8 +108,8 @@ impl Net {
         let largest = wanted.iter().fold(0.0_f64, |most, s| most.max(s.abs()));
         let (mut worst, mut far) = (0.0_f64, 0.0_f64);
         for ((mean, wanted), link) in mean.iter().zip(wanted).zip(&self.links) {
-            // The engine adds to a position four times a step, and half a rounding can be lost each time;
-            // a length has two positions; half as much again for the trembling that comes of it.
+            // The engine adds to a position four times a step, and each addition can lose half a rounding. A length has
+            // two positions. Trembling from these roundings adds half as much again.
             far = far.max(
                 settled[link.0]
                     .abs()
@@ -122,8 +122,8 @@ impl Net {
         let masses = self.points.iter().filter_map(|(_, mass)| *mass);
         let lightest = f64::from(masses.fold(f32::MAX, f32::min)) * GRAVITY;
         let blow = f64::from(Self::stiffness(phase) * f32::EPSILON) * far;
-        // A rounding of a position that is a blow of ten times a body's weight keeps it trembling for
-        // ever; there all that can be asked is that lengths are right.
+        // Where the rounding of a position makes a force of ten times a body's weight, the body trembles for ever. There
+        // the bar only asks for correct lengths.
         let bar = if blow < 10.0 * lightest {
             0.01 * largest
         } else {
@@ -136,7 +136,7 @@ impl Net {
         [worst, bar]
     }
 
-    /// Runs free and watches the energy.
+    /// Runs without drag and asserts that the energy never rises by more than 5 %.
     fn check_energy(&self, phase: f32, zeta: f32, least: f64, seconds: f64) {
         let statics = Statics::new(self, f64::from(Self::stiffness(phase)));
         let (mut lab, bodies) = self.build(phase, zeta, 0.0);
@@ -161,8 +161,8 @@ impl Net {
     }
 }
 
-/// Every stiffness and damping, with equal masses or one to ten thousand; where not all are taken, each net begins with another
-/// stiffness.
+/// Checks a network with several stiffnesses and dampings. `unequal` makes masses differ by one to ten thousand. `turn`
+/// chooses the first stiffness, so that a run of some cases covers others in each network.
 fn check(turn: usize, net: fn(bool, f32) -> Net, unequal: bool, seconds: f64) {
     let phases = PHASES.into_iter().cycle().skip(turn).take(PHASES.len());
     for phase in some(phases) {

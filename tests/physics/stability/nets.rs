@@ -1,8 +1,8 @@
-//! The networks: as drawn, before anything is spawned.
+//! Descriptions of the networks, before any entity is spawned.
 
 use bevy::prelude::*;
 
-/// A network as drawn: bodies with masses (kg, none for a fixed point), and links with rest lengths.
+/// A network: points with masses in kg (`None` for a fixed point), and links of two points with a rest length in m.
 pub struct Net {
     pub name: &'static str,
     pub points: Vec<(Vec3, Option<f32>)>,
@@ -11,7 +11,7 @@ pub struct Net {
 
 pub const HEAVY: f32 = 1.0;
 
-/// Mass of the i-th body: all alike, or every other one ten thousand times lighter.
+/// Mass of the i-th body, kg: all alike, or every other one ten thousand times lighter.
 fn mass(i: usize, unequal: bool) -> Option<f32> {
     Some(if unequal && i % 2 == 1 {
         1e-4 * HEAVY
@@ -20,7 +20,7 @@ fn mass(i: usize, unequal: bool) -> Option<f32> {
     })
 }
 
-/// Twenty springs in a zigzag between two hooks, let go without strain: they fall, whip and swing.
+/// Twenty springs in a zigzag between two hooks, released without strain. They fall, whip and swing.
 pub fn chain(unequal: bool, _: f32) -> Net {
     let n = 20;
     let points: Vec<_> = (0..=n)
@@ -39,7 +39,7 @@ pub fn chain(unequal: bool, _: f32) -> Net {
     }
 }
 
-/// A cube of 6 × 6 × 6 bodies hung at the four corners of its top.
+/// A cube of 6 × 6 × 6 bodies that hangs at the four corners of its top.
 pub fn lattice(unequal: bool, _: f32) -> Net {
     let n = 6;
     let index = |x: usize, y: usize, z: usize| (x * n + y) * n + z;
@@ -66,8 +66,8 @@ pub fn lattice(unequal: bool, _: f32) -> Net {
     }
 }
 
-/// A hub held all round by fifty spokes in tension, each with a weight in its middle; the hub is let go a
-/// little off its place. The stiffer, the less, so that speeds stay below the engine's cap.
+/// A hub with fifty spokes in tension on all sides, each with a weight in its middle. The hub starts a little off its
+/// place, and less so for stiffer networks, so that speeds stay below the engine's cap.
 pub fn star(unequal: bool, phase: f32) -> Net {
     let n = 50;
     let strain = 0.02 / phase;
@@ -75,7 +75,7 @@ pub fn star(unequal: bool, phase: f32) -> Net {
     let mut points = vec![(Vec3::new(2.0, 1.0, 0.0) * strain, Some(hub))];
     let mut links = Vec::new();
     for i in 0..n {
-        // A spiral from pole to pole.
+        // The spokes follow a spiral from pole to pole.
         let y = 1.0 - 2.0 * (i as f32 + 0.5) / n as f32;
         let around = 2.4 * i as f32;
         let r = (1.0 - y * y).sqrt();
@@ -91,8 +91,8 @@ pub fn star(unequal: bool, phase: f32) -> Net {
     }
 }
 
-/// Three struts that do not touch and six cables on three fixed feet: a twisted prism under its own
-/// tension, let go a little off its place.
+/// Three struts that do not touch and six cables on three fixed feet: a twisted prism under its own tension. It starts a
+/// little off its place.
 pub fn tensegrity(unequal: bool, phase: f32) -> Net {
     let strain = 0.02 / phase;
     let ring = |y: f32, turn: f32| {
@@ -102,13 +102,13 @@ pub fn tensegrity(unequal: bool, phase: f32) -> Net {
         })
     };
     let mut points: Vec<(Vec3, Option<f32>)> = ring(0.0, 0.0).map(|p| (p, None)).collect();
-    // Turned by 150° against the bottom the prism holds itself.
+    // Turned by 150° against the bottom, the prism is in equilibrium.
     let top = ring(1.5, 150.0_f32.to_radians());
     points.extend(top.enumerate().map(|(i, p)| (p, mass(i, unequal))));
     let mut links = Vec::new();
     for i in 0..3 {
         let (own, next) = (3 + i, 3 + (i + 1) % 3);
-        // The cable of the top, the slanting one, and the strut.
+        // The cable of the top, the slanting cable, and the strut.
         for (a, b, part) in [
             (own, next, 1.0 - strain),
             (i, next, 1.0 - strain),

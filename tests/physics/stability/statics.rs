@@ -1,15 +1,15 @@
-//! Where a network comes to rest: the least of its potential energy.
+//! The place of rest of a network: the minimum of its potential energy.
 
 use super::nets::Net;
 use crate::harness::GRAVITY;
 use bevy::math::DVec3;
 use nalgebra::{DMatrix, DVector};
 
-/// Potential energy of springs and weight, with everything else that a minimiser needs.
+/// Potential energy of springs and weight, and the indices that a minimiser needs.
 pub struct Statics<'a> {
     net: &'a Net,
     k: f64,
-    /// Index among the unknowns of each point that can move.
+    /// Index of each point's first coordinate among the unknowns. `None` for a fixed point.
     slots: Vec<Option<usize>>,
     unknowns: usize,
 }
@@ -47,7 +47,7 @@ impl<'a> Statics<'a> {
         sum
     }
 
-    /// Newton's method from `at`, kept to descent by a multiple of the identity.
+    /// Newton's method from `at`. A multiple of the identity in the Hessian keeps it descending.
     pub fn settle(&self, mut at: Vec<DVec3>) -> Vec<DVec3> {
         let mut shift = 1e-3 * self.k;
         for _ in 0..400 {

@@ -1,7 +1,7 @@
-//! Rapier's soft bodies on the scenes that `compare --describe` writes; prints rows of `peers.csv`.
+//! Runs the scenes that `compare --describe` writes with Rapier's soft bodies, and prints rows of `peers.csv`.
 //!
-//! `cargo run --release -- FOLDER`. A spring is an edge of a soft body of particles. It is stated as a frequency and a damping
-//! ratio of the mass that it moves, so both are worked out from stiffness, damping and the two point masses.
+//! `cargo run --release -- FOLDER`. A spring is an edge of a soft body of particles. Rapier takes its frequency and damping
+//! ratio, which are computed from the stiffness, the damping and the two point masses.
 
 use rapier3d::prelude::*;
 use std::collections::BTreeMap;
@@ -9,21 +9,21 @@ use std::error::Error;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-/// Substeps of a step: Rapier's default, and more.
+/// Numbers of substeps per step: Rapier's default, and more.
 const SUBSTEPS: [usize; 3] = [4, 16, 64];
 const RATES: [u32; 3] = [60, 240, 960];
 
-/// A scene of points.
+/// A scene of point masses.
 #[derive(Default)]
 struct Scene {
     gravity: Vector,
     seconds: f32,
     size: f32,
-    /// Mass (0 when fixed), place and velocity.
+    /// Mass (kg, 0 if fixed), position (m) and velocity (m/s) of each body.
     bodies: Vec<(f32, Vector, Vector)>,
     links: Vec<Link>,
     watched: Vec<usize>,
-    /// Where the watched ones are, by the number of 1/240 s.
+    /// True positions of the watched bodies. The key is the time in units of 1/240 s.
     truth: BTreeMap<u32, Vec<Vector>>,
 }
 
@@ -77,14 +77,14 @@ impl Scene {
         }
     }
 
-    /// Places at which every edge has its rest length, for a soft body takes that from where it is made. None if they cannot be
-    /// found by going from end to end.
+    /// Positions at which every edge has its rest length: a soft body takes the rest lengths from its initial positions.
+    /// `None` if walking from link to link finds no such positions.
     fn places_at_rest(&self) -> Option<Vec<Vector>> {
         let mut places: Vec<Vector> = self.bodies.iter().map(|body| body.1).collect();
         let mut set = vec![false; places.len()];
         for link in &self.links {
             let [a, b] = link.ends.map(|end| end as usize);
-            // The end that is placed already stays.
+            // An end that has its position already keeps it.
             let (stays, goes) = if set[b] && !set[a] { (b, a) } else { (a, b) };
             let along = self.bodies[goes].1 - self.bodies[stays].1;
             if !set[goes] {
@@ -117,7 +117,8 @@ impl Scene {
         SpringCoefficients::new(omega / std::f32::consts::TAU, link.damping * inverse_mass / (2.0 * omega))
     }
 
-    /// Largest error (m), whether it is ten times the motion's size, and the median time of a step.
+    /// Returns the largest error (m), whether the run diverged (an error above ten times the motion's size, or NaN), and the
+    /// median time of a step. `None` if there is no soft body for the scene.
     fn follow(&self, substeps: usize, rate: u32) -> Option<(f32, bool, Duration)> {
         let (mut bodies, mut colliders) = (RigidBodySet::new(), ColliderSet::new());
         let (mut joints, mut links) = (ImpulseJointSet::new(), MultibodyJointSet::new());

@@ -1,4 +1,4 @@
-//! A bridge of hinged planks, hung by springs at its ends.
+//! Scene: a bridge of hinged planks, held by springs at its ends.
 
 use super::{GREATEST, Head, Scene, Unit};
 use crate::ground::stage::{Freedom, Motion, Part, Shape, Stage};
@@ -7,7 +7,7 @@ use bevy::math::Vec3;
 const PLANKS: usize = 30;
 const MASS: f32 = 4.0;
 const STIFFNESS: f32 = 5e5;
-/// Where the boxes are along it, m.
+/// Positions of the boxes along the bridge (x), m.
 const BOXES: [f32; 3] = [4.0, 7.0, 10.0];
 
 pub const SCENE: Scene = Scene {

@@ -1,4 +1,4 @@
-//! Balls on a wide cloth of light points.
+//! Scene: balls on a wide cloth of light points.
 
 use super::{Head, Scene, Unit};
 use crate::ground::stage::{Motion, Part, Shape, Stage};
@@ -40,7 +40,7 @@ fn cloth() -> Stage {
         stage.part(if is_rim(i) {
             Part::held(Motion::Fixed, at, None)
         } else {
-            // Points collide with balls alone.
+            // The points of the cloth collide with balls only.
             let point = Part::new(0.05, at, Some(Shape::Ball(0.04)));
             point.upright().grouped(1, 2)
         });
@@ -48,7 +48,7 @@ fn cloth() -> Stage {
     for i in 0..SIDE * SIDE {
         let (x, z) = (i % SIDE, i / SIDE);
         for (fits, j) in [(x + 1 < SIDE, i + 1), (z + 1 < SIDE, i + SIDE)] {
-            // Between two fixed points there is nothing to pull.
+            // A spring between two fixed points would have no effect.
             if fits && !(is_rim(i) && is_rim(j)) {
                 stage.coil([i, j], [Vec3::ZERO; 2], [3e3, 1.0], Some(0.8 * PITCH));
             }

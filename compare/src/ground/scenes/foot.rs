@@ -1,4 +1,4 @@
-//! A stiff foot under a heavy load, dropped.
+//! Scene: a heavy load on a stiff spring above a light foot, dropped onto a plane.
 
 use super::{GREATEST, Head, Scene, Unit};
 use crate::ground::figures::RATE;
@@ -8,10 +8,10 @@ use bevy::math::Vec3;
 
 const FOOT: f32 = 10.0;
 const LOAD: f32 = 300.0;
-/// Of the two without ground, radians per step.
+/// Phase ω·dt of load and foot in free flight, rad per step.
 const PHASE: f32 = 3.0;
 const ZETA: f32 = 0.3;
-/// Their distance at rest, m.
+/// Rest length of the spring between load and foot, m.
 const APART: f32 = 0.6;
 
 pub const SCENE: Scene = Scene {
@@ -43,7 +43,7 @@ pub const SCENE: Scene = Scene {
     quick: true,
 };
 
-/// Stiffness and damping.
+/// Stiffness (N/m) and damping (N s/m) of the spring.
 fn law() -> [f32; 2] {
     let effective = FOOT * LOAD / (FOOT + LOAD);
     let omega = PHASE * RATE as f32;

@@ -1,4 +1,4 @@
-//! The scenes, one a file, and what is told of each.
+//! The scenes with contacts and joints, and the figures measured in each.
 
 mod bridge;
 mod cloth;
@@ -14,15 +14,15 @@ use super::stage::Stage;
 pub struct Scene {
     pub name: &'static str,
     pub title: &'static str,
-    /// What happens in it, and what is told of it.
+    /// Description for the report: what happens, and what the figures mean.
     pub note: &'static str,
-    /// What is varied, in m/s; a single 0 where nothing is.
+    /// Speeds to run the scene with, m/s. A single 0 if the scene varies no speed.
     pub speeds: &'static [f32],
-    /// What is told, with its unit: one or two figures.
+    /// Names and units of its one or two figures.
     pub heads: &'static [Head],
     pub make: fn(f32) -> Stage,
     pub figures: fn(&mut Run) -> Vec<f64>,
-    /// So small that a quick look has it too.
+    /// Whether a quick run includes the scene.
     pub quick: bool,
 }
 
@@ -50,7 +50,7 @@ pub const SCENES: [Scene; 6] = [
     wall::SCENE,
 ];
 
-/// A ratio without a name of its own.
+/// Greatest energy during a run, divided by the initial energy. Shared by several scenes.
 const GREATEST: Head = Head {
     name: "greatest energy over first",
     unit: Unit::Ratio,

@@ -1,4 +1,4 @@
-//! A ragdoll of joints, held together by muscles, that falls on the ground.
+//! Scene: a ragdoll of jointed capsules with springs as muscles, which falls onto the ground.
 
 use super::{GREATEST, Head, Scene, Unit};
 use crate::ground::stage::{Freedom, Part, Shape, Stage};
@@ -36,11 +36,12 @@ fn ragdoll() -> Stage {
     let capsule = |at: Vec3, half: f32, radius: f32, mass: f32| {
         let shape = Some(Shape::Capsule(half, radius));
         let part = Part::new(mass, tilt * at + Vec3::Y * 2.0, shape);
-        // It collides with the ground, not with itself.
+        // Its parts collide with the ground, but not with each other.
         part.turned(tilt).grouped(2, 1)
     };
     let torso = stage.part(capsule(Vec3::ZERO, 0.2, 0.12, 30.0));
-    // Holder, middle of the part from that of the torso, half length, radius, mass, its joint from its own middle.
+    // Index of the holder, centre relative to the torso's centre, half length, radius, mass, and height of the joint above the
+    // part's own centre.
     let mut parts = vec![(torso, Vec3::ZERO)];
     for (holder, at, half, radius, mass, up) in [
         (0, Vec3::new(0.0, 0.50, 0.0), 0.05, 0.1, 5.0, -0.15),

@@ -1,4 +1,4 @@
-//! A box that a spring pulls against a wall.
+//! Scene: a box that a spring pulls against a wall.
 
 use super::{Head, Scene, Unit};
 use crate::ground::stage::{Motion, Part, Shape, Stage};

@@ -1,4 +1,4 @@
-//! A load on a wheel that rolls.
+//! Scene: a load on a rolling wheel.
 
 use super::{Head, Scene, Unit};
 use crate::ground::stage::{Freedom, Part, Shape, Stage};
