@@ -100,7 +100,8 @@ fn kind(wrong: &str) -> String {
 
 /// Shrinks a scene while it fails in the same way. Returns the smallest failing scene that was tried, and its verdict.
 fn shrink(tree: &mut impl ValueTree<Value = attack::plan::Plan>, wanted: &str) -> String {
-    let mut best = String::new();
+    // If no smaller scene fails, the scene itself is shown.
+    let mut best = format!("{:#?}", tree.current());
     let mut fails = true;
     for _ in 0..SHRINKS {
         if !(if fails {

@@ -104,7 +104,7 @@ pub(crate) fn tell_strays(
         if drawn.is_none() {
             log::warn!(
                 "bevy_coilover: there is a Coil, a Telescope or a TorsionCoil, but CoiloverVisualPlugin is missing, so nothing \
-                 is drawn; add CoiloverPlugins instead of CoiloverPlugin"
+                 is drawn; add CoiloverPlugins instead of CoiloverPlugin (without a window, ignore this)"
             );
         }
     }

@@ -9,8 +9,13 @@ use bevy_rapier3d::prelude::*;
 const PLANKS: usize = 30;
 
 /// 30 planks of 4 kg between two banks, and three boxes of `load` kg above them. Springs join the planks. If hinged,
-/// hinges do, and springs are at the banks only.
+/// hinges do, and springs are at the banks only. The springs are lightly damped.
 pub fn bridge(k: f32, load: f32, hinged: bool) -> Stand {
+    damped_bridge([k, 0.1 * (k * 4.0).sqrt()], load, hinged)
+}
+
+/// As [`bridge`], with springs of stiffness `k` and damping `c`.
+pub fn damped_bridge([k, c]: [f32; 2], load: f32, hinged: bool) -> Stand {
     let mut scene = Stand::new(CoiloverPlugin::default(), Engine::default());
     let bank = |scene: &mut Stand, x: f32| {
         scene.lab.spawn((
@@ -21,7 +26,6 @@ pub fn bridge(k: f32, load: f32, hinged: bool) -> Stand {
     };
     let near = bank(&mut scene, -0.5);
     let far = bank(&mut scene, PLANKS as f32 * 0.5);
-    let c = 0.1 * (k * 4.0).sqrt();
     let mut last = near;
     for i in 0..=PLANKS {
         let next = if i < PLANKS {

@@ -10,6 +10,7 @@ mod ccd;
 mod changes;
 mod cloth;
 mod companions;
+mod dampers;
 mod drive;
 mod far;
 mod feet;

@@ -106,6 +106,14 @@ impl Stand {
         a.distance(b)
     }
 
+    /// Positions of both ends of a spring, m.
+    pub fn places(&self, coil: &SceneSpring) -> [Vec3; 2] {
+        [0, 1].map(|end| {
+            let body = self.lab.get::<Transform>(coil.ends[end]);
+            body.transform_point(coil.anchors[end])
+        })
+    }
+
     pub fn length(&self, coil: &SceneSpring) -> f64 {
         f64::from(self.distance(coil.ends, coil.anchors))
     }

@@ -28,7 +28,11 @@ fn a_bungee_is_a_free_fall_while_slack_and_loses_nothing_when_it_goes_taut() {
     let first = energy(&lab) - lowest;
     let (mut bounces, mut rising, mut worst, mut worst_fall) = (0, false, 0.0_f64, 0.0_f64);
     let mut last: Option<(f64, f64)> = None;
-    while bounces < 20 {
+    for tick in 0.. {
+        if bounces == 20 {
+            break;
+        }
+        assert!(tick < 60_000, "{bounces} bounces only");
         lab.tick();
         let (y, v) = (
             f64::from(lab.position(jumper).y),

@@ -5,8 +5,8 @@
 //! many substeps as it needs.
 //!
 //! A [`step`] runs [`touch`] → [`plan`] → [`mod@write`] → (Rapier steps) → [`arrive`]. [`order`] computes the joints of one
-//! element, and [`linkage`] the inverse mass that contacts and joints leave. [`crate::scene::held`] has the data of an element
-//! inside the solver; [`joint`] and [`lend`] write it to Rapier.
+//! element, [`sweeps`] the number of sweeps over all joints, and [`linkage`] the inverse mass that contacts and joints leave.
+//! [`crate::scene::held`] has the data of an element inside the solver; [`joint`] and [`lend`] write it to Rapier.
 
 mod ahead;
 mod arrive;
@@ -19,6 +19,7 @@ mod plan;
 mod pushes;
 mod stand_in;
 mod step;
+mod sweeps;
 mod touch;
 mod write;
 

@@ -116,6 +116,24 @@ impl Frame {
 }
 
 impl Order {
+    /// Damping with which it acts in substeps of `substep` seconds, N s/m or N m s/rad.
+    pub(crate) fn acting_damping(&self, substep: f64) -> f64 {
+        let modes = [self.omega, self.lively];
+        let pieces = self.pieces.iter();
+        pieces
+            .map(|piece| soft::damping(&piece.tangent, modes, substep))
+            .sum()
+    }
+
+    /// For each end that elements can move: the index of its body, and the root of its inverse mass along the line.
+    pub(crate) fn mobilities(&self) -> impl Iterator<Item = (usize, f64)> {
+        let holds = self.line.holds.iter();
+        holds.filter_map(|hold| {
+            let inverse_mass = hold.inverse_mass_along(self.line.direction);
+            Some((hold.body?, inverse_mass.sqrt()))
+        })
+    }
+
     /// Makes the order of an element. [`Plan`](super::plan::Plan) completes it.
     pub(crate) fn new(
         row: usize,

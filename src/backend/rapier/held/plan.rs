@@ -6,7 +6,7 @@ use crate::backend::rapier::held::linkage::{Holding, inverse_mass};
 use crate::backend::rapier::held::order::Order;
 use crate::dynamics::body::Body;
 use crate::dynamics::guide::Guide;
-use crate::dynamics::pieces::{Piece, Pieces};
+use crate::dynamics::pieces::Pieces;
 use crate::input::check::Fault;
 use crate::scene::element::element;
 use crate::scene::held::Turn;
@@ -26,12 +26,14 @@ pub(crate) struct Plan {
     pub disturbed: bool,
     /// For each body, the sum over its elements of stiffness times inverse mass, 1/s².
     sums: Vec<f64>,
+    /// For each body, the sum over its elements of damping times the root of the inverse mass along the element.
+    pub(super) drags: Vec<f64>,
     /// For each body, the effect of springs and external forces.
     pulls: Vec<Pull>,
     /// Whether a joint of the game holds some body of the component.
-    jointed: bool,
+    pub(super) jointed: bool,
     /// Whether springs pull some body with far more than its weight while contacts press on the component; see [`TENSE`].
-    tense: bool,
+    pub(super) tense: bool,
 }
 
 /// Effect of springs and external forces on a body.
@@ -49,11 +51,6 @@ struct Pull {
 /// the example `tensegrity` and by `ground::play`.
 const TENSE: f64 = 100.0;
 
-/// Number of sweeps over all joints and contacts per substep, for a tense component without joints of the game, or one with
-/// one-sided forces. With two sweeps the bridge still trembles; with one, stiff ropes that fall on the ground gain energy
-/// (`ground::ropes`). Sweeps cost little compared with the set-up of joints in each substep.
-const TENSE_SWEEPS: usize = 4;
-
 /// Net force on a body, as a share of the sum of all forces on it, below which the forces count as balanced. Pinned by
 /// `ground::heap`.
 const BALANCE: f64 = 5e-3;
@@ -61,16 +58,6 @@ const BALANCE: f64 = 5e-3;
 /// Greatest creep speed at which a body on a joint counts as carried along, as a multiple of the creep speed of the fastest
 /// body that contacts press. Pinned by `ground::ragdoll`.
 const ALONG: f32 = 2.0;
-
-/// Share of a damper's inverse mass that joints leave, below which one sweep over all joints per substep is not enough, if
-/// the damper alone would remove more than the share [`DAMPED`] of its ends' speed in a substep. Pinned by `ground::hinge`.
-const LIGHT: f64 = 0.7;
-/// See [`LIGHT`].
-const DAMPED: f64 = 0.02;
-
-/// Number of sweeps per substep for dampers on light bodies; see [`LIGHT`]. With one, the arm of a lamp stops in a place where
-/// its damper still pushes. With four, a bridge on hinges does not come to rest. Pinned by `ground::hinge` and `ground::play`.
-const LIGHT_SWEEPS: usize = 2;
 
 /// Change of length for which an element is prepared, as a multiple of the distance that its ends can move in the step.
 /// Pinned by `ground::ropes`.
@@ -327,25 +314,6 @@ impl Plan {
             })
             .map(|order| order.lively)
             .fold(0.0, f64::max)
-    }
-
-    /// Number of sweeps over joints and contacts that a substep of `substep` seconds needs. With too few, a damper does not see
-    /// what joints leave of an impulse, or what other springs do.
-    pub(crate) fn sweeps(&self, substep: f64) -> usize {
-        let light = |order: &Order| {
-            let damping = order.pieces.iter().map(|piece| piece.tangent.damping);
-            let damped = damping.sum::<f64>() * order.line.inverse_mass * substep;
-            // Where something touches, the engine's warm start already contains the reaction of the contacts.
-            order.jointed < LIGHT && damped > DAMPED && !order.touched
-        };
-        let mut pieces = self.orders.iter().flat_map(|order| order.pieces.iter());
-        if pieces.any(Piece::ends) || (self.tense && !self.jointed) {
-            TENSE_SWEEPS
-        } else if self.orders.iter().any(light) {
-            LIGHT_SWEEPS
-        } else {
-            1
-        }
     }
 
     /// Whether joints made for substeps of `substep` seconds still have positive damping in finer ones of `finest` seconds.
