@@ -92,10 +92,11 @@ fn is_sound(mut scene: Endurance, hours: f64) -> bool {
             .max(size(one.unexplained / one.turned_over));
         worst.off = (worst.off.0.max(size(one.off.0)), one.off.1);
         worst.speed = worst.speed.max(size(one.speed));
-        if number % every == 0 {
+        if number % every == 0 || number == intervals {
             let memory = in_use(&region);
             let grown = memory - *first.get_or_insert(memory);
-            let ticks = every as f64 * f64::from(scene.pause) * 60.0;
+            let played = number - (number - 1) / every * every;
+            let ticks = played as f64 * f64::from(scene.pause) * 60.0;
             println!(
                 "{}, {:.2} h: {:.1} us a tick, {grown:+} bytes, unexplained {:.1e} of {:.3} J, off by {:.1e}, {:.1e} m/s left",
                 scene.title,

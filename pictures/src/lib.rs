@@ -37,7 +37,9 @@ fn built(root: &Path, scene: &str) -> Option<PathBuf> {
         .map(|folder| folder.join("examples").join(&name))
         .find(|built| built.exists())?;
     let age = built.metadata().ok()?.modified().ok()?;
-    let sources = newest(&root.join("src")).max(newest(&root.join("examples")));
+    // Shaders are compiled in.
+    let folders = ["src", "examples", "assets"].map(|folder| newest(&root.join(folder)));
+    let sources = folders.into_iter().max().flatten();
     (age >= sources?).then_some(built)
 }
 
