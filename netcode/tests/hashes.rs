@@ -270,7 +270,7 @@ fn each_scene_ends_in_the_bits_that_are_noted() {
             "on the ground",
             on_the_ground,
             default(),
-            0xbe89_2454_bbb4_3932,
+            0xbbd8_8f75_22c0_072e,
         ),
         (
             "cloth, by a tolerance",
