@@ -8,6 +8,12 @@ use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
 
+/// Resistance of the air, which ends the swinging across the springs.
+const AIR: Damping = Damping {
+    linear_damping: 1.0,
+    angular_damping: 1.0,
+};
+
 /// Largest share of its weight that the springs of a body do not carry, among `bodies`, which touch nothing.
 fn uncarried(scene: &Stand, bodies: &[Entity]) -> f64 {
     let lacks = |body: &Entity| {
@@ -17,14 +23,16 @@ fn uncarried(scene: &Stand, bodies: &[Entity]) -> f64 {
         for coil in &scene.coils {
             for (end, sign) in [1.0, -1.0].into_iter().enumerate() {
                 if coil.ends[end] == *body {
-                    let [a, b] = scene.places(coil);
+                    let [a, b] = scene.places(coil.ends, coil.anchors);
                     let stretch = scene.length(coil) - f64::from(coil.rest_length);
                     let direction = (b - a).normalize().as_dvec3();
                     force += sign * f64::from(coil.stiffness) * stretch * direction;
                 }
             }
         }
-        force.length() / weight
+        let lacks = force.length() / weight;
+        assert!(lacks.is_finite(), "{body}: {force}");
+        lacks
     };
     bodies.iter().map(lacks).fold(0.0, f64::max)
 }
@@ -36,11 +44,7 @@ fn springs_with_strong_dampers_carry_each_plank_at_rest() {
     for share in [0.1, 1.0, 3.0, 7.0] {
         let mut scene = damped_bridge([k, share * (k * 4.0).sqrt()], 20.0, false);
         for body in scene.bodies.clone() {
-            let air = Damping {
-                linear_damping: 1.0,
-                angular_damping: 1.0,
-            };
-            scene.lab.app.world_mut().entity_mut(body).insert(air);
+            scene.lab.app.world_mut().entity_mut(body).insert(AIR);
         }
         scene.most(30.0);
         // Boxes lie on some of the others.
@@ -74,11 +78,7 @@ fn a_net_with_strong_dampers_carries_its_knots_under_a_ball() {
                     .spawn((RigidBody::Fixed, Transform::from_translation(at)))
             } else {
                 let mass = ColliderMassProperties::Mass(mass);
-                let air = Damping {
-                    linear_damping: 1.0,
-                    angular_damping: 1.0,
-                };
-                let body = (Collider::ball(0.05), mass, LockedAxes::ROTATION_LOCKED, air);
+                let body = (Collider::ball(0.05), mass, LockedAxes::ROTATION_LOCKED, AIR);
                 let knot = scene.body(Transform::from_translation(at), body);
                 if at.xz().length() > 0.8 {
                     free.push(knot);
@@ -95,11 +95,7 @@ fn a_net_with_strong_dampers_carries_its_knots_under_a_ball() {
                 }
             }
         }
-        let air = Damping {
-            linear_damping: 1.0,
-            angular_damping: 1.0,
-        };
-        let ball = (Collider::ball(0.4), ColliderMassProperties::Mass(5.0), air);
+        let ball = (Collider::ball(0.4), ColliderMassProperties::Mass(5.0), AIR);
         scene.body(Transform::from_xyz(0.0, 3.5, 0.0), ball);
         scene.most(20.0);
         let (lacks, speed) = (uncarried(&scene, &free), scene.speed());

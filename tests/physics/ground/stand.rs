@@ -98,19 +98,15 @@ impl Stand {
     }
 
     pub fn distance(&self, ends: [Entity; 2], anchors: [Vec3; 2]) -> f32 {
-        let [a, b] = [0, 1].map(|end| {
-            self.lab
-                .get::<Transform>(ends[end])
-                .transform_point(anchors[end])
-        });
+        let [a, b] = self.places(ends, anchors);
         a.distance(b)
     }
 
-    /// Positions of both ends of a spring, m.
-    pub fn places(&self, coil: &SceneSpring) -> [Vec3; 2] {
+    /// Positions of two anchors, m.
+    pub fn places(&self, ends: [Entity; 2], anchors: [Vec3; 2]) -> [Vec3; 2] {
         [0, 1].map(|end| {
-            let body = self.lab.get::<Transform>(coil.ends[end]);
-            body.transform_point(coil.anchors[end])
+            let body = self.lab.get::<Transform>(ends[end]);
+            body.transform_point(anchors[end])
         })
     }
 
