@@ -7,7 +7,7 @@
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
-use stage::{Begin, Finding, Paint, PictureAt, Shape, Stage, Track, Upright, tracks};
+use stage::{Begin, Finding, Paint, PictureAt, Shape, Stage, Track, Upright, larger, tracks};
 use std::f32::consts::TAU;
 
 const MASS: f32 = 300.0;
@@ -85,7 +85,7 @@ fn height(x: f32) -> f32 {
         let aside = (x - bar).abs().min(reach);
         BUMP - BAR + (reach * reach - aside * aside).sqrt()
     };
-    BARS.iter().map(on).fold(RADIUS, f32::max)
+    BARS.iter().map(on).fold(RADIUS, larger)
 }
 
 fn cars(mut commands: Commands) {

@@ -6,7 +6,7 @@
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
-use stage::{Begin, Finding, Paint, PictureAt, Shape, Stage, Track, Upright, tracks};
+use stage::{Begin, Finding, Paint, PictureAt, Shape, Stage, Track, Upright, larger, tracks};
 
 const MASS: f32 = 70.0;
 const STIFFNESS: f32 = 400.0;
@@ -103,9 +103,9 @@ fn check(world: &mut World) -> Vec<Finding> {
     };
     let first = MASS * GRAVITY * (REST - START + 0.5 * sag);
     let gone = track.0.iter().map(|(_, r)| (energy(r) / first - 1.0).abs());
-    let gone = gone.fold(0.0, f32::max);
+    let gone = gone.fold(0.0, larger);
     let pushed = track.0.iter().map(|(_, r)| -r.force());
-    let pushed = pushed.fold(0.0, f32::max);
+    let pushed = pushed.fold(0.0, larger);
     let bounces = track
         .0
         .windows(2)
@@ -113,7 +113,7 @@ fn check(world: &mut World) -> Vec<Finding> {
         .count();
     // k s²/2 = m g (rest − start + s)
     let lowest = REST + sag + (sag * sag + 2.0 * sag * (REST - START)).sqrt();
-    let deepest = track.0.iter().map(|(_, r)| r.length).fold(0.0, f32::max);
+    let deepest = track.0.iter().map(|(_, r)| r.length).fold(0.0, larger);
     vec![
         Finding::small("off the parabola in the first fall", off, 1e-3, "m"),
         Finding::close("lowest", deepest, lowest, "m", 2e-3),

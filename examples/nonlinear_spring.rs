@@ -5,7 +5,7 @@
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
-use stage::{Begin, Finding, Paint, PictureAt, Shape, Stage, Track, tracks};
+use stage::{Begin, Finding, Paint, PictureAt, Shape, Stage, Track, larger, tracks};
 use std::f32::consts::TAU;
 
 /// Stiffness, N/m³.
@@ -88,13 +88,13 @@ fn check(world: &mut World) -> Vec<Finding> {
         let name = format!("period at {amplitude} m");
         out.push(Finding::close(&name, measured, theory, "s", 1.5e-3));
         let reach = track.0.iter().map(|(_, r)| r.length - REST);
-        let reach = reach.fold(0.0, f32::max);
+        let reach = reach.fold(0.0, larger);
         out.push(Finding::close("  swings to", reach, amplitude, "m", 1e-3));
         let wrong = track.0.iter().map(|(_, r)| {
             let stretch = r.length - REST;
             (r.spring_force - STIFFNESS * stretch.powi(3)).abs()
         });
-        let wrong = wrong.fold(0.0, f32::max);
+        let wrong = wrong.fold(0.0, larger);
         out.push(Finding::small("  force beside the law", wrong, 1e-3, "N"));
     }
     out

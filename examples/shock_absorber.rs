@@ -9,7 +9,9 @@ use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
 use image::Rgb;
-use stage::{Begin, DT, Finding, Paint, PictureAt, Plot, Shape, Stage, Track, Upright, tracks};
+use stage::{
+    Begin, DT, Finding, Paint, PictureAt, Plot, Shape, Stage, Track, Upright, smaller, tracks,
+};
 use std::f32::consts::{PI, TAU};
 
 const STIFFNESS: f32 = 6_000.0;
@@ -240,7 +242,7 @@ fn check(world: &mut World) -> Vec<Finding> {
     }
     let rest = tracks[1].last();
     let lengths = tracks[1].0.iter().map(|(_, r)| r.length);
-    let deepest = SHORTEST - lengths.fold(f32::MAX, f32::min);
+    let deepest = SHORTEST - lengths.fold(f32::MAX, smaller);
     if let Some(file) = stage::plot_path() {
         match plot(seen).save(&file) {
             Ok(()) => println!("  force over velocity is in {}", file.display()),

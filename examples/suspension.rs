@@ -6,7 +6,9 @@
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
-use stage::{Begin, DT, Finding, Paint, PictureAt, Shape, Stage, Track, Upright, tracks};
+use stage::{
+    Begin, DT, Finding, Paint, PictureAt, Shape, Stage, Track, Upright, larger, smaller, tracks,
+};
 use std::f32::consts::TAU;
 
 const CHASSIS: f32 = 1_200.0;
@@ -178,7 +180,7 @@ fn record(
     for transform in &chassis {
         ride.lean = ride.lean.max(transform.up().angle_between(Vec3::Y));
     }
-    ride.fastest = moving.iter().map(|v| v.linear.length()).fold(0.0, f32::max);
+    ride.fastest = moving.iter().map(|v| v.linear.length()).fold(0.0, larger);
 }
 
 fn check(world: &mut World) -> Vec<Finding> {
@@ -202,7 +204,7 @@ fn check(world: &mut World) -> Vec<Finding> {
     let sag = CHASSIS * GRAVITY / (4.0 * STIFFNESS);
     for track in tracks(world) {
         let lengths = track.0.iter().map(|(_, readout)| readout.length);
-        let shortest = lengths.fold(f32::MAX, f32::min);
+        let shortest = lengths.fold(f32::MAX, smaller);
         out.push(Finding::between(
             "shortest coilover",
             shortest,

@@ -6,7 +6,7 @@
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
-use stage::{Begin, Finding, Paint, PictureAt, Shape, Stage};
+use stage::{Begin, Finding, Paint, PictureAt, Shape, Stage, larger};
 
 /// Length of a strut, m.
 const STRUT: f32 = 1.6;
@@ -162,11 +162,11 @@ fn check(world: &mut World) -> Vec<Finding> {
         .iter()
         .zip(&set_down)
         .map(|(a, b)| (a / b - 1.0).abs());
-    let worst = differences.fold(0.0, f32::max);
+    let worst = differences.fold(0.0, larger);
     let mean = dropped.iter().sum::<f32>() / dropped.len() as f32;
     let mut speeds = world.query_filtered::<&Velocity, With<Ball>>();
     let fastest = speeds.iter(world).map(|v| v.linear.length());
-    let fastest = fastest.fold(0.0, f32::max);
+    let fastest = fastest.fold(0.0, larger);
     let energy = world.resource::<Energy>();
     let first = energy.first.unwrap_or(f32::NAN);
     let drop = 6.0 * MASS * GRAVITY * FALL;

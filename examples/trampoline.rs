@@ -6,7 +6,7 @@
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
-use stage::{Begin, DT, Finding, Paint, PictureAt, Shape, Stage};
+use stage::{Begin, DT, Finding, Paint, PictureAt, Shape, Stage, smaller};
 
 /// Number of points along an edge. The outermost points are fixed to the frame.
 const SIDE: usize = 16;
@@ -179,7 +179,7 @@ fn record(
     let t = time.elapsed_secs();
     if t < DROP {
         let lowest = knots.iter().map(|(at, _)| at.translation.y);
-        let sag = HEIGHT - lowest.fold(HEIGHT, f32::min);
+        let sag = HEIGHT - lowest.fold(HEIGHT, smaller);
         // Mean over the last second before the release.
         if t > DROP - 1.0 - 0.5 * DT {
             seen.sag += DT * sag;

@@ -142,7 +142,9 @@ pub fn best_of(rows: &[Row], method: Method) -> Option<Row> {
     }
     let other = find(rows, Setting::default_of(Method::AvianBare, 60));
     match (one, other) {
-        (Some(a), Some(b)) if b.strayed.error < a.strayed.error => Some(b),
+        (Some(a), Some(b)) if a.strayed.error.is_nan() || b.strayed.error < a.strayed.error => {
+            Some(b)
+        }
         (one, other) => one.or(other),
     }
 }

@@ -4,7 +4,7 @@ use super::load::*;
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
-use stage::{DT, Finding};
+use stage::{DT, Finding, larger};
 use std::f32::consts::TAU;
 
 /// Time span in which forces are averaged while the crate stands at first, s.
@@ -71,7 +71,7 @@ pub fn record(
     seen.faults += faults.iter().count();
     let all = cables.iter().map(|(_, readout)| readout).chain(&slings);
     let pushed = all.clone().map(|readout| -readout.force());
-    seen.pushed = pushed.fold(seen.pushed, f32::max);
+    seen.pushed = pushed.fold(seen.pushed, larger);
     let t = time.elapsed_secs() % ROUND;
     let there = ((time.elapsed_secs() / ROUND) as u32).is_multiple_of(2);
     let is_at = |moment: f32| (t - moment).abs() < 0.5 * DT;
@@ -89,14 +89,14 @@ pub fn record(
     now.air += AIR * DT * squares;
     if is_in(STANDS) {
         now.stands += share(STANDS) * lift;
-        now.slack = slings.iter().map(|r| r.force()).fold(now.slack, f32::max);
+        now.slack = slings.iter().map(|r| r.force()).fold(now.slack, larger);
     }
     if is_in(HANGS) {
         now.hangs += share(HANGS) * lift;
     }
     if is_in(DOWN) {
         now.down += share(DOWN) * lift;
-        now.slack = slings.iter().map(|r| r.force()).fold(now.slack, f32::max);
+        now.slack = slings.iter().map(|r| r.force()).fold(now.slack, larger);
         now.speed = now.speed.max(rate.linear.length());
     }
     for (i, moment) in [STANDS[1], HANGS[1]].into_iter().enumerate() {

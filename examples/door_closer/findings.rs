@@ -4,7 +4,7 @@ use super::doors::{CLOSER, Closer, HANDLE, SIZE, SWING};
 use super::person::PUSHES;
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
-use stage::{Finding, tracks};
+use stage::{Finding, larger, smaller, tracks};
 use std::f32::consts::PI;
 
 /// Angle just before the door meets its frame, rad.
@@ -105,7 +105,7 @@ fn closes(track: &[Moment]) -> Vec<Finding> {
         Finding::close("  it shuts in", took, due, "s", 5e-3),
         Finding::small(
             "  largest error of its angle",
-            errors.fold(0.0, f32::max),
+            errors.fold(0.0, larger),
             2e-3,
             "rad",
         ),
@@ -125,16 +125,11 @@ fn closes(track: &[Moment]) -> Vec<Finding> {
         ),
         Finding::small(
             "  it presses the frame in by",
-            pressed.fold(0.0, f32::max),
+            pressed.fold(0.0, larger),
             5e-3,
             "rad",
         ),
-        Finding::small(
-            "  it comes back by",
-            bounced.fold(0.0, f32::max),
-            1e-3,
-            "rad",
-        ),
+        Finding::small("  it comes back by", bounced.fold(0.0, larger), 1e-3, "rad"),
         Finding::close("  work of the hand", work, spent, "J", 0.01),
     ]
 }
@@ -151,7 +146,7 @@ fn swings(track: &[Moment]) -> Vec<Finding> {
         .map(|(t, r)| (r.length - theory(t - begun)).abs());
     // Amplitude on the far side, relative to the start.
     let far = door.iter().map(|(_, r)| r.length);
-    let over = -far.fold(f32::INFINITY, f32::min) / start.length;
+    let over = -far.fold(f32::INFINITY, smaller) / start.length;
     let turn = (1.0 - SWING.ratio * SWING.ratio).sqrt();
     let crossings: Vec<f32> = door
         .windows(2)
@@ -184,7 +179,7 @@ fn swings(track: &[Moment]) -> Vec<Finding> {
         ),
         Finding::small(
             "  largest error of its angle",
-            errors.fold(0.0, f32::max),
+            errors.fold(0.0, larger),
             5e-3,
             "rad",
         ),

@@ -6,7 +6,7 @@ use super::driver::{CIRCLE, CORNER_SPEED, FAST, Leg, SLOW};
 use super::log::{Log, Sample};
 use super::tyre::load_at_rest;
 use bevy::prelude::*;
-use stage::{DT, Finding};
+use stage::{DT, Finding, larger};
 use std::f32::consts::TAU;
 
 /// Returns the mean, or NaN without values.
@@ -23,7 +23,7 @@ fn spread(values: impl Iterator<Item = f32>) -> f32 {
 }
 
 fn most(values: impl Iterator<Item = f32>) -> f32 {
-    values.fold(f32::NEG_INFINITY, f32::max)
+    values.fold(f32::NEG_INFINITY, larger)
 }
 
 /// Sum of mass times height above the road over chassis and wheels, kg m.

@@ -5,7 +5,7 @@ use super::{GUST, SECONDS};
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
-use stage::{DT, Finding};
+use stage::{DT, Finding, larger, smaller};
 
 const GRAVITY: f32 = 9.81;
 /// Time spans of the means, s: before the gust and after it.
@@ -45,7 +45,7 @@ pub fn record(
         let edges = threads.iter().filter(|(thread, ..)| thread.over.is_empty());
         let longest = edges
             .map(|(_, spring, readout)| readout.length / spring.rest_length.unwrap_or(f32::NAN));
-        seen.longest = longest.fold(seen.longest, f32::max);
+        seen.longest = longest.fold(seen.longest, larger);
     }
     for (i, [from, to]) in CALM.into_iter().enumerate() {
         if !(from..to).contains(&t) {
@@ -68,7 +68,7 @@ pub fn record(
         seen.pole[i][1] += share * should;
         if i == 1 {
             let speeds = points.iter().map(|v| v.linear.length());
-            seen.fastest = speeds.fold(seen.fastest, f32::max);
+            seen.fastest = speeds.fold(seen.fastest, larger);
         }
     }
 }
@@ -77,7 +77,7 @@ pub fn check(world: &mut World) -> Vec<Finding> {
     let left = world.query::<&Point>().iter(world).count() as f32;
     let seen = world.resource::<Seen>();
     let [whole, torn] = seen.pole;
-    let least = seen.broke.iter().copied().fold(f32::INFINITY, f32::min);
+    let least = seen.broke.iter().copied().fold(f32::INFINITY, smaller);
     vec![
         Finding::close(
             "drag in the breeze, at the pole",

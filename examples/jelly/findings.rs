@@ -8,7 +8,7 @@ use bevy::math::DVec3;
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
-use stage::{DT, Finding};
+use stage::{DT, Finding, larger};
 
 const GRAVITY: f32 = 9.81;
 /// Time at which the first free fall ends, s.
@@ -87,9 +87,9 @@ pub fn record(
         }
     }
     if t > BALL {
-        let top = heights.fold(f32::NEG_INFINITY, f32::max);
+        let top = heights.fold(f32::NEG_INFINITY, larger);
         if let Some(Rest { places, .. }) = &seen.rests[0] {
-            let was = places.iter().map(|p| p.y).fold(f32::NEG_INFINITY, f32::max);
+            let was = places.iter().map(|p| p.y).fold(f32::NEG_INFINITY, larger);
             seen.deepest = seen.deepest.max(was - top);
         }
     }
@@ -118,7 +118,7 @@ fn look(
         -readout.force() * (a - b).normalize_or_zero().y.abs()
     });
     Some(Rest {
-        fastest: speeds.fold(0.0, f32::max),
+        fastest: speeds.fold(0.0, larger),
         carried: [carried.sum(), above],
         places,
     })
@@ -131,10 +131,10 @@ fn against_statics(places: &[Vec3]) -> [f32; 2] {
     let exact: Vec<DVec3> = places.iter().map(|p| p.as_dvec3()).collect();
     let should = rest(exact.clone(), &stays);
     let errors = should.iter().zip(&exact).map(|(a, b)| a.distance(*b));
-    let high = |places: &[DVec3]| places.iter().map(|p| p.y).fold(f64::MIN, f64::max);
+    let high = |places: &[DVec3]| places.iter().map(|p| p.y).fold(f64::MIN, larger);
     let side = f64::from(super::lattice::PITCH) * (super::lattice::SIDE - 1) as f64;
     let sag = side + f64::from(RADIUS) - high(&should);
-    [errors.fold(0.0, f64::max) as f32, sag as f32]
+    [errors.fold(0.0, larger) as f32, sag as f32]
 }
 
 pub fn check(world: &mut World) -> Vec<Finding> {
@@ -144,7 +144,7 @@ pub fn check(world: &mut World) -> Vec<Finding> {
     };
     let [error, sag] = against_statics(&before.places);
     let [error_after, _] = against_statics(&after.places);
-    let high = |rest: &Rest| rest.places.iter().map(|p| p.y).fold(f32::MIN, f32::max);
+    let high = |rest: &Rest| rest.places.iter().map(|p| p.y).fold(f32::MIN, larger);
     vec![
         Finding::small("error of the free fall", seen.fall, 1e-4, "m"),
         Finding::small("energy from nothing in the fall", seen.most, 0.5, "J"),

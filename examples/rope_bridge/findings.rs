@@ -5,7 +5,7 @@ use super::walker::{FOOT, HALF, MASS, QUARTER, ROUND, Walker};
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
-use stage::{DT, Finding};
+use stage::{DT, Finding, larger};
 
 /// Time span of the means while the walker stands in the middle, s.
 const MIDDLE: [f32; 2] = [20.0, 22.0];
@@ -100,7 +100,7 @@ pub fn record(
             }
         }
         let speeds = planks.iter().map(|(_, v)| v.linear.length());
-        now.speed = speeds.fold(now.speed, f32::max);
+        now.speed = speeds.fold(now.speed, larger);
         seen.now = now;
         // The last tick of the time span.
         if t > to - 0.5 * DT {

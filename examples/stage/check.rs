@@ -4,6 +4,24 @@ use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use std::fmt;
 
+/// Returns the larger of two numbers, or NaN if one is NaN. `f32::max` would pass over a NaN.
+pub fn larger<T: PartialOrd>(a: T, b: T) -> T {
+    if b <= a || a.partial_cmp(&a).is_none() {
+        a
+    } else {
+        b
+    }
+}
+
+/// Returns the smaller of two numbers, or NaN if one is NaN.
+pub fn smaller<T: PartialOrd>(a: T, b: T) -> T {
+    if b >= a || a.partial_cmp(&a).is_none() {
+        a
+    } else {
+        b
+    }
+}
+
 /// A measured value compared with theory.
 pub struct Finding {
     text: String,
@@ -76,13 +94,7 @@ impl Track {
     /// Returns the largest difference of the length from a function of time (s), m.
     pub fn error(&self, theory: impl Fn(f32) -> f32) -> f32 {
         let errors = self.0.iter().map(|(t, r)| (r.length - theory(*t)).abs());
-        // Unlike `f32::max`, this keeps a NaN.
-        errors.fold(
-            0.0,
-            |most, e| {
-                if most.is_nan() || e <= most { most } else { e }
-            },
-        )
+        errors.fold(0.0, larger)
     }
 
     /// Returns the last read-out.

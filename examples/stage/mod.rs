@@ -23,7 +23,7 @@ mod skin;
 mod strip;
 
 pub use again::{Again, Begin, fresh, tick};
-pub use check::{Finding, Track, tracks};
+pub use check::{Finding, Track, larger, smaller, tracks};
 pub use keys::SpaceIsTaken;
 pub use living::{Lasting, Upright};
 pub use look::{Paint, Shape, floor};

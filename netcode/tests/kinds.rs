@@ -121,6 +121,7 @@ fn ends_are_mapped(client: &Client, kinds: &Kinds) {
 fn drawn_alike(hosted: &Hosted, client: &Client, kinds: &Kinds) {
     for element in kinds.all() {
         let there = parts(hosted.server.world(), element);
+        assert!(!there.is_empty(), "nothing of {element} is drawn");
         let called = client.here(element).expect("it is known");
         let here = parts(client.app.world(), called);
         assert_eq!(here.len(), there.len(), "{element}");

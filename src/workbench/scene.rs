@@ -27,6 +27,7 @@ const BALL: f32 = 0.008;
 
 /// Gizmos that mark the chosen element.
 #[derive(GizmoConfigGroup, Reflect, Clone, Debug, Default)]
+#[type_path = "bevy_coilover"]
 pub(super) struct Mark;
 
 /// Adds the gizmos that mark the chosen element, if the app has gizmos.

@@ -120,9 +120,8 @@ fn a_small_table_on_slider_feet_stands_still() {
     scene.lab.tick();
     let first = scene.energy();
     let most = scene.most(10.0);
-    println!(
-        "table: {first:.4} J, at most {most:.4} J, wanders {:.1e} m",
-        scene.wander(2.0)
-    );
+    let wander = scene.wander(2.0);
+    println!("table: {first:.4} J, at most {most:.4} J, wanders {wander:.1e} m");
     assert!(most < 1.02 * first, "{first} {most}");
+    assert!(wander < 1e-4, "{wander} m");
 }
