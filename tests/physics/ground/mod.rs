@@ -6,7 +6,6 @@ mod actuator;
 mod beside;
 mod bounce;
 mod bridge;
-mod burdens;
 mod ccd;
 mod changes;
 mod cloth;
