@@ -2,7 +2,7 @@
 
 use bevy::app::ScheduleRunnerPlugin;
 use bevy::asset::RenderAssetUsages;
-use bevy::camera::RenderTarget;
+use bevy::camera::{RenderTarget, Viewport};
 use bevy::image::Image;
 use bevy::log::LogPlugin;
 use bevy::prelude::*;
@@ -18,6 +18,8 @@ use std::time::{Duration, Instant};
 const PATIENCE: Duration = Duration::from_secs(120);
 /// Number of updates without a shader compilation after which a picture is complete.
 const QUIET: u32 = 4;
+/// Number by which width and height of the picture are divided while shaders are compiled.
+const SMALLER: u32 = 8;
 
 /// Returns the name of an adapter that can render, including software adapters.
 pub fn adapter() -> Option<String> {
@@ -61,8 +63,28 @@ pub fn target(image: &Handle<Image>) -> RenderTarget {
 #[derive(Resource, Default)]
 struct Picture(Option<Image>);
 
-/// Updates until nothing is missing from the picture: shaders are compiled in the background.
+/// Updates until nothing is missing from the picture: shaders are compiled in the background. Until then the cameras draw small
+/// pictures, because nobody looks at them and a software adapter takes long for each pixel.
 pub fn settle(app: &mut App) {
+    view(app, |size| {
+        Some(Viewport {
+            physical_size: (size / SMALLER).max(UVec2::ONE),
+            ..default()
+        })
+    });
+    compile(app);
+    view(app, |_| None);
+}
+
+/// Sets the part of its target that each camera draws into. `part` gets the size of the target, pixels.
+fn view(app: &mut App, part: impl Fn(UVec2) -> Option<Viewport>) {
+    let mut cameras = app.world_mut().query::<&mut Camera>();
+    for mut camera in cameras.iter_mut(app.world_mut()) {
+        camera.viewport = camera.physical_target_size().and_then(&part);
+    }
+}
+
+fn compile(app: &mut App) {
     let begun = Instant::now();
     let mut quiet = 0;
     while quiet < QUIET && begun.elapsed() < PATIENCE {
