@@ -34,11 +34,12 @@ pub fn load(
         return;
     }
     commands.spawn((
+        // Without `Ccd`: it moves 0.15 m in a tick, and the boxes are 0.5 m thick. With `Ccd`, Rapier can stop it for most of a
+        // tick where it leaves the cup.
         RigidBody::Dynamic,
         Collider::ball(RADIUS),
         ColliderMassProperties::Mass(WEIGHT),
         Friction::coefficient(0.4),
-        Ccd::enabled(),
         Velocity::default(),
         Transform::from_translation(arm.transform_point(Vec3::new(RADIUS + 0.02, LENGTH, 0.0))),
         Shape::Ball(RADIUS, Paint::Iron),
