@@ -270,7 +270,7 @@ fn each_scene_ends_in_the_bits_that_are_noted() {
             "on the ground",
             on_the_ground,
             default(),
-            0xbbd8_8f75_22c0_072e,
+            0x76d1_8ce9_46a9_3da4,
         ),
         (
             "cloth, by a tolerance",

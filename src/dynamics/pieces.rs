@@ -296,21 +296,24 @@ impl Outreach {
         }
     }
 
-    /// Share to which a piece with this range is scaled down, at most 1. A second motor, as strong as the greatest force
+    /// Share to which a spring with this range is scaled down, at most 1. A second motor, as strong as the greatest force
     /// of a one-sided piece, shifts the middle of its range. In a firmer piece the difference of the two motors would be
     /// lost in f32.
     fn share(&self, tangent: &Tangent, [least, greatest]: [f64; 2]) -> f64 {
         if least.is_finite() == greatest.is_finite() {
             return 1.0;
         }
-        let [stiffness, damping] = self.firmest;
-        let over = (tangent.stiffness.abs() / stiffness).max(tangent.damping / damping);
+        let over = tangent.stiffness.abs() / self.firmest[0];
         over.max(1.0).recip()
     }
 
     /// Makes a piece. If its range is one-sided, the open side gets a bound of [`ROOM`] times the force that the piece
-    /// can reach in the step.
-    fn piece(&self, tangent: Tangent, [least, greatest]: [f64; 2]) -> Piece {
+    /// can reach in the step, and its damping is at most the firmest. A spring carries its load with any damping, so the
+    /// spring stays as it is.
+    fn piece(&self, mut tangent: Tangent, [least, greatest]: [f64; 2]) -> Piece {
+        if least.is_finite() != greatest.is_finite() {
+            tangent.damping = tangent.damping.min(self.firmest[1]);
+        }
         let now = tangent.elastic(self.way[0]).abs();
         let more = tangent.stiffness.abs() * self.change + tangent.damping * self.speed;
         let most = (ROOM * (now + more)).max(f64::MIN_POSITIVE);

@@ -106,3 +106,41 @@ fn a_net_with_strong_dampers_carries_its_knots_under_a_ball() {
         assert!(speed < 2e-3, "{share}: {speed} m/s");
     }
 }
+
+#[test]
+fn sliders_on_a_rail_with_strong_dampers_carry_one_another() {
+    let (k, mass) = (5e3_f32, 1.0_f32);
+    for share in [0.1, 1.0, 3.0, 7.0] {
+        let mut scene = Stand::new(CoiloverPlugin::default(), Engine::default());
+        let rail = (RigidBody::Fixed, Transform::from_xyz(0.0, 9.0, 0.0));
+        let rail = scene.lab.spawn(rail);
+        let mut last = rail;
+        for i in 1..=16 {
+            let below = Vec3::NEG_Y * (0.5 * i as f32);
+            let guide = PrismaticJointBuilder::new(Vec3::Y).local_anchor1(below);
+            let slider = (
+                AdditionalMassProperties::MassProperties(MassProperties {
+                    mass,
+                    principal_inertia: Vec3::splat(0.01),
+                    ..default()
+                }),
+                ImpulseJoint::new(rail, guide),
+                AIR,
+            );
+            let next = scene.body(Transform::from_translation(Vec3::Y * 9.0 + below), slider);
+            let damping = share * (k * mass).sqrt();
+            scene.coil([last, next], [Vec3::ZERO; 2], [k, damping], None);
+            last = next;
+        }
+        scene.most(20.0);
+        let (lacks, speed) = (uncarried(&scene, &scene.bodies.clone()), scene.speed());
+        println!(
+            "on a rail, damping {share} √(k m): {lacks:.1e} of a slider's weight not carried, {speed:.1e} m/s"
+        );
+        if std::env::var("ALL").is_ok() {
+            continue;
+        }
+        assert!(lacks < 0.15, "{share}: {lacks}");
+        assert!(speed < 2e-3, "{share}: {speed} m/s");
+    }
+}

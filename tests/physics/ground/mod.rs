@@ -6,6 +6,7 @@ mod actuator;
 mod beside;
 mod bounce;
 mod bridge;
+mod burdens;
 mod ccd;
 mod changes;
 mod cloth;

@@ -43,9 +43,13 @@ const DRIFTS: [f64; 2] = [0.1, 1.0];
 /// of a millimetre under the weight of its ends. Pinned by `ground::ropes`: with 10⁴ a rope gains energy.
 const FIRMEST: f64 = 2.5e3;
 
-/// Greatest damping · dt / mass of a force that only pulls or only pushes; more is reduced to it. Then its ends creep at 8 mm/s
-/// under their weight. Pinned by `ground::ropes`: with 50, a rope with a firmer damper reaches 20 m/s in its fall.
+/// Greatest damping · dt / mass of a force that only pulls or only pushes; more is reduced to it. Pinned by `ground::ropes`: with 50,
+/// a rope with a firmer damper reaches 20 m/s in its fall.
 const DAMPEST: f64 = 20.0;
+
+/// Least share of its inverse mass that joints leave to an element, for [`FIRMEST`] and [`DAMPEST`]. A rope on a hook of 0.1 kg that
+/// carries 15 kg on a joint may be as firm as one on 15 kg. The bound keeps both limits finite where joints leave nothing.
+const LIGHTEST: f64 = 1e-4;
 
 /// One element that acts in this step.
 pub(crate) struct Order {
@@ -69,8 +73,6 @@ pub(crate) struct Order {
     pub omega: f64,
     /// Upper bound on the frequency of that mode if bodies under contact pressure do not move, rad/s.
     pub lively: f64,
-    /// Whether something touches a body at one of its ends.
-    pub touched: bool,
     /// Whether its damper is a joint of its own that is solved before all springs. Other joints react to a spring only after it
     /// is solved, so a damper must not see the velocities that springs give to bodies on joints. Contacts are warm-started, so
     /// they have already reacted.
@@ -140,7 +142,7 @@ impl Order {
         inside: &Inside,
         (element, line, turn): (Element, Line, Option<Turn>),
         bodies: &[Body],
-        [touched, is_linked]: [bool; 2],
+        is_linked: bool,
         time: f64,
     ) -> Self {
         // After a slip, the twist of a torsion element differs from the rotation of its bodies.
@@ -178,11 +180,10 @@ impl Order {
                 change: 0.0,
                 speed: rate.abs(),
                 firmest: [FIRMEST / (time * time), DAMPEST / time]
-                    .map(|most| most / line.inverse_mass),
+                    .map(|most| most / (line.inverse_mass * inside.leeway.jointed.max(LIGHTEST))),
             },
             omega: 0.0,
             lively: 0.0,
-            touched,
             apart: false,
             turn,
             jointed: inside.leeway.jointed,

@@ -13,6 +13,7 @@ use crate::scene::held::Turn;
 use crate::scene::rows::{BodyFlags, BodyRow, ElementFlags, ElementRow, Held, Members};
 use crate::scene::step::Step;
 use bevy::math::DVec3;
+use bevy_rapier3d::rapier::geometry::ContactPair;
 
 /// A held component before its step.
 #[derive(Default)]
@@ -32,6 +33,8 @@ pub(crate) struct Plan {
     pulls: Vec<Pull>,
     /// Whether a joint of the game holds some body of the component.
     pub(super) jointed: bool,
+    /// Whether there are contacts in the world of a component with such a joint.
+    pub(super) contacts: bool,
     /// Whether springs pull some body with far more than its weight while contacts press on the component; see [`TENSE`].
     pub(super) tense: bool,
 }
@@ -94,6 +97,9 @@ impl Plan {
             let row = &bodies[*b as usize];
             row.has(BodyFlags::JOINTED)
         });
+        // What rests on a jointed body may be many joints away from the component.
+        let mut pairs = all.narrow.contact_pairs();
+        self.contacts = self.jointed && pairs.any(ContactPair::has_any_active_contact);
         for e in members.elements {
             self.read_element(*e as usize, step, members, elements, bodies, all);
         }
@@ -179,7 +185,7 @@ impl Plan {
             inside,
             (element, line, turn),
             &self.bodies,
-            [touched, is_linked],
+            is_linked,
             time,
         );
         order.apart = self.jointed && !touched;

@@ -1,64 +1,59 @@
 //! Number of sweeps over all joints and contacts that Rapier's solver takes in each substep. A sweep solves one joint after the
 //! other (Gauss–Seidel), so a damper sees bodies that some joints have pushed already and others not yet.
 
-use crate::backend::rapier::held::order::Order;
 use crate::backend::rapier::held::plan::Plan;
 use crate::dynamics::pieces::Piece;
 
-/// Number of sweeps over all joints and contacts per substep, for a tense component without joints of the game, or one with
-/// one-sided forces. With two sweeps the bridge still trembles; with one, stiff ropes that fall on the ground gain energy
+/// Number of sweeps per substep for a tense component without joints of the game, or a component with joints in which a one-sided
+/// force acts. With two sweeps the bridge still trembles; with one, stiff ropes that fall on the ground gain energy
 /// (`ground::ropes`). Sweeps cost little compared with the set-up of joints in each substep.
 const TENSE_SWEEPS: usize = 4;
+/// Number of sweeps per substep for a component without joints of the game in which a one-sided force acts. With four, a chain of
+/// all but rigid stops that falls on the ground reaches 16 m/s (`ground::ropes`).
+const ONE_SIDED_SWEEPS: usize = 8;
 
-/// Share of a damper's inverse mass that joints leave, below which one sweep over all joints per substep is not enough, if
-/// the damper alone would remove more than the share [`DAMPED`] of its ends' speed in a substep. Pinned by `ground::hinge`.
-const LIGHT: f64 = 0.7;
-/// See [`LIGHT`].
-const DAMPED: f64 = 0.02;
-
-/// Number of sweeps per substep for dampers on light bodies; see [`LIGHT`]. With one, the arm of a lamp stops in a place where
-/// its damper still pushes. With four, a bridge on hinges does not come to rest. Pinned by `ground::hinge` and `ground::play`.
-const LIGHT_SWEEPS: usize = 2;
-
-/// Number of sweeps per substep for each unit of the coupling of dampers, beside the first sweep; see [`Plan::sweeps`].
-/// Pinned by `ground::dampers`: with 0.75, the springs of a net with strong dampers are off by 1.7 times a knot's weight.
-const SWEEPS_PER_COUPLING: f64 = 2.0;
+/// Error that the sweeps of a substep may leave, as a share of what a damper changes. Pinned by `ground::dampers`: with 0.01, a
+/// quarter of the weight of one of 16 sliders is missing.
+const SMALL: f64 = 3e-3;
+/// As [`SMALL`], for a component with joints of the game in a world with contacts. With more sweeps Rapier holds contacts worse
+/// there: with four, a parked car on cylinders sags 0.6 % too little, and a rolling one 2 %. Pinned by `ground::drive` and
+/// `ground::play`.
+const ROUGH: f64 = 0.15;
+/// Greatest number of sweeps for such a component. With more, a bridge on hinges under boxes does not come to rest. Pinned by
+/// `ground::play`.
+const ROUGH_SWEEPS: f64 = 2.0;
 /// Greatest number of sweeps for dampers. With 32, the bridge of `ground::dampers` comes no closer to statics.
 const MOST_SWEEPS: f64 = 16.0;
 
 impl Plan {
     /// Number of sweeps over joints and contacts that a substep of `substep` seconds needs. With too few, a damper does not see
-    /// what joints leave of an impulse, or what other springs do.
+    /// what joints leave of an impulse, or what other dampers do.
     pub(crate) fn sweeps(&mut self, substep: f64) -> usize {
-        let light = |order: &Order| {
-            let damping = order.pieces.iter().map(|piece| piece.tangent.damping);
-            let damped = damping.sum::<f64>() * order.line.inverse_mass * substep;
-            // Where something touches, the engine's warm start already contains the reaction of the contacts.
-            order.jointed < LIGHT && damped > DAMPED && !order.touched
+        let others = match (self.is_any_one_sided(), self.jointed) {
+            (true, false) => ONE_SIDED_SWEEPS,
+            (true, true) => TENSE_SWEEPS,
+            (false, false) if self.tense => TENSE_SWEEPS,
+            _ => 1,
         };
-        let any_ends = {
-            let mut pieces = self.orders.iter().flat_map(|order| order.pieces.iter());
-            pieces.any(Piece::ends)
-        };
-        let others = if any_ends || (self.tense && !self.jointed) {
-            TENSE_SWEEPS
-        } else if self.orders.iter().any(light) {
-            LIGHT_SWEEPS
-        } else {
-            1
-        };
-        if self.jointed {
-            // Joints of the game need other numbers: see `LIGHT_SWEEPS`. With that for dampers, the car of the example `drive`
-            // jumps differently.
-            return others;
-        }
         others.max(self.damper_sweeps(substep))
     }
 
-    /// Number of sweeps that dampers which share bodies need. A sweep solves one element after the other. So a damper sees bodies
-    /// that some springs have pushed already and others not yet, and resists that motion too. At rest, its force would be wrong by
-    /// a share that grows with its coupling to the others: what they change of its rate in a substep. More sweeps (Gauss–Seidel)
-    /// reduce that error by a factor that depends on the coupling.
+    /// Whether a one-sided force acts in this step, as far as the rates predict. Stops that are out of reach do not count: with more
+    /// sweeps Rapier carries a rolling wheel worse.
+    fn is_any_one_sided(&self) -> bool {
+        self.orders.iter().any(|order| {
+            let acts = |piece: &Piece| {
+                let tension = |length: &f64| piece.tension(*length, 0.0) != 0.0;
+                piece.ends() && order.reach.way.iter().any(tension)
+            };
+            order.pieces.iter().any(acts)
+        })
+    }
+
+    /// Number of sweeps that dampers need. A sweep solves one element after the other. So a damper sees bodies that some springs
+    /// have pushed already and others not yet, and that the joints of the game have not held back yet. It resists that motion too,
+    /// so at rest its force would be wrong. Each further sweep (Gauss–Seidel) multiplies that error by about the square of the
+    /// damper's coupling: what the others change of its rate in a substep, as a share of what it changes itself.
     fn damper_sweeps(&mut self, substep: f64) -> usize {
         self.drags.clear();
         self.drags.resize(self.bodies.len(), 0.0);
@@ -71,13 +66,30 @@ impl Plan {
         let coupling = self.orders.iter().map(|order| {
             let damping = order.acting_damping(substep);
             let others = order.mobilities();
-            others
+            let others: f64 = others
                 .map(|(body, root)| root * (self.drags[body] - damping * root))
-                .sum::<f64>()
+                .sum();
+            let own = damping * order.line.inverse_mass * substep;
+            // Where something touches, the engine's warm start already contains the reaction of joints and contacts.
+            let joints = if order.apart {
+                1.0 - order.jointed
+            } else {
+                0.0
+            };
+            let joints = joints.max(0.0) * own / (1.0 + own);
+            others * substep / (1.0 + own) + joints.sqrt()
         });
-        let coupling = substep * coupling.fold(0.0, f64::max);
-        1 + (SWEEPS_PER_COUPLING * coupling)
-            .round()
-            .min(MOST_SWEEPS - 1.0) as usize
+        let coupling = coupling.fold(0.0, f64::max);
+        let (left, most) = if self.jointed && self.contacts {
+            (ROUGH, ROUGH_SWEEPS)
+        } else {
+            (SMALL, MOST_SWEEPS)
+        };
+        if coupling >= 1.0 {
+            return most as usize;
+        }
+        // Without any coupling, the number is zero.
+        let sweeps = left.ln() / (2.0 * coupling.ln());
+        sweeps.ceil().clamp(1.0, most) as usize
     }
 }
