@@ -15,6 +15,7 @@ mod dampers;
 mod drive;
 mod far;
 mod feet;
+mod fitted_cars;
 mod heap;
 mod hierarchy;
 mod hinge;

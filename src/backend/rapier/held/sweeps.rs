@@ -15,11 +15,11 @@ const ONE_SIDED_SWEEPS: usize = 8;
 /// Error that the sweeps of a substep may leave, as a share of what a damper changes. Pinned by `ground::dampers`: with 0.01, a
 /// quarter of the weight of one of 16 sliders is missing.
 const SMALL: f64 = 3e-3;
-/// As [`SMALL`], for a component with joints of the game in a world with contacts. With more sweeps Rapier holds contacts worse
-/// there: with four, a parked car on cylinders sags 0.6 % too little, and a rolling one 2 %. Pinned by `ground::drive` and
-/// `ground::play`.
-const ROUGH: f64 = 0.15;
-/// Greatest number of sweeps for such a component. With more, a bridge on hinges under boxes does not come to rest. Pinned by
+/// As [`SMALL`], for a component with joints of the game in a world with contacts. Pinned by `ground::fitted_cars`: with 0.15, the
+/// springs of a parked car with knuckles carry 2 % too little.
+const ROUGH: f64 = 0.03;
+/// Greatest number of sweeps for such a component. With more, Rapier holds contacts worse there: with four, a parked car on cylinders
+/// sags 0.6 % too little, a rolling one 2 %, and a bridge on hinges under boxes does not come to rest. Pinned by `ground::drive` and
 /// `ground::play`.
 const ROUGH_SWEEPS: f64 = 2.0;
 /// Greatest number of sweeps for dampers. With 32, the bridge of `ground::dampers` comes no closer to statics.

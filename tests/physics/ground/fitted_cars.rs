@@ -1,0 +1,115 @@
+//! Rolling cars whose springs have bump stops, or whose wheels turn on knuckles: their springs carry what those of a plain car
+//! carry.
+
+use super::drive::{Car, LAW, car};
+use bevy::prelude::*;
+use bevy_coilover::prelude::*;
+use bevy_rapier3d::prelude::*;
+
+const SPEEDS: [f32; 6] = [0.0, 3.0, 5.0, 8.0, 11.0, 14.0];
+
+/// Mean sag from the third to the eighth second, over that of statics.
+fn sag(mut car: Car) -> f64 {
+    car.scene.lab.run(3.0);
+    let mut sum = 0.0;
+    for _ in 0..300 {
+        car.scene.lab.tick();
+        sum += car.sag() / 300.0;
+    }
+    sum / car.theory()
+}
+
+/// A car whose springs have been changed by `fit`, which gets the car and the entity of each spring.
+fn fitted(kind: &str, speed: f32, law: [f32; 2], fit: impl Fn(&mut Car, usize, Entity)) -> Car {
+    let mut car = car(CoiloverPlugin::default(), kind, 0.0, speed, law);
+    let world = car.scene.lab.app.world_mut();
+    let mut springs = world.query::<(Entity, &SpringDamper)>();
+    let springs: Vec<_> = springs
+        .iter(world)
+        .map(|(at, spring)| (at, spring.body_b))
+        .collect();
+    for at in 0..car.wheels.len() {
+        let (spring, _) = *springs
+            .iter()
+            .find(|(_, b)| *b == car.wheels[at])
+            .expect("its spring");
+        fit(&mut car, at, spring);
+    }
+    car
+}
+
+/// Puts a knuckle between a wheel and the chassis. A motor holds its steering angle, and the spring ends on it.
+fn put_knuckle(car: &mut Car, at: usize, spring: Entity) {
+    let wheel = car.wheels[at];
+    let level = JointAxesMask::LIN_X | JointAxesMask::LIN_Z | JointAxesMask::ANG_X;
+    let guide = GenericJointBuilder::new(level | JointAxesMask::ANG_Z)
+        .local_anchor1(car.scene.coils[at].anchors[0])
+        .motor_model(JointAxis::AngY, MotorModel::ForceBased)
+        .motor_position(JointAxis::AngY, 0.0, 2e4, 1e3);
+    let inertia = MassProperties {
+        mass: 10.0,
+        principal_inertia: Vec3::splat(0.4),
+        ..default()
+    };
+    let place = *car.scene.lab.get::<Transform>(wheel);
+    let velocity = Velocity::linear(car.scene.lab.velocity(wheel));
+    let knuckle = car.scene.body(
+        place,
+        (
+            AdditionalMassProperties::MassProperties(inertia),
+            velocity,
+            ImpulseJoint::new(car.chassis, TypedJoint::GenericJoint(guide.build())),
+        ),
+    );
+    let axle = GenericJointBuilder::new(level | JointAxesMask::LIN_Y | JointAxesMask::ANG_Y);
+    let axle = ImpulseJoint::new(knuckle, TypedJoint::GenericJoint(axle.build()));
+    let world = car.scene.lab.app.world_mut();
+    world.entity_mut(wheel).insert(axle);
+    world
+        .get_mut::<SpringDamper>(spring)
+        .expect("a spring")
+        .body_b = knuckle;
+    car.scene.coils[at].ends[1] = knuckle;
+}
+
+#[test]
+fn a_rolling_car_with_stops_that_it_does_not_reach_stands_as_high_as_without() {
+    for kind in ["ball", "cylinder"] {
+        for speed in SPEEDS {
+            let sag = sag(fitted(kind, speed, LAW, |car, _, spring| {
+                let stops = SpringTravel::new(0.25, 0.7, 2e5).with_stop_damping(2e3);
+                car.scene
+                    .lab
+                    .app
+                    .world_mut()
+                    .entity_mut(spring)
+                    .insert(stops);
+            }));
+            println!("{kind} wheels, stops, {speed} m/s: sag × {sag:.4}");
+            assert!((sag - 1.0).abs() < 0.01, "{kind} {speed}: {sag}");
+        }
+    }
+}
+
+#[test]
+fn a_parked_car_with_knuckles_rests_where_statics_say_however_strong_its_dampers() {
+    for kind in ["ball", "cylinder"] {
+        for damping in [300.0, 1e3, 1.5e3, 2e3, 3e3, 6e3, 12e3] {
+            let sag = sag(fitted(kind, 0.0, [LAW[0], damping], put_knuckle));
+            println!("{kind} wheels, knuckles, {damping} N s/m: sag × {sag:.4}");
+            assert!((sag - 1.0).abs() < 5e-3, "{kind} {damping}: {sag}");
+        }
+    }
+}
+
+/// Within a tick, Rapier lifts a rolling wheel and drops it again, by a millimetre at 14 m/s. A tick ends when it is lowest.
+#[test]
+fn a_rolling_car_with_knuckles_stands_as_high_as_the_limits_say() {
+    for kind in ["ball", "cylinder"] {
+        for speed in SPEEDS {
+            let sag = sag(fitted(kind, speed, LAW, put_knuckle));
+            println!("{kind} wheels, knuckles, {speed} m/s: sag × {sag:.4}");
+            assert!((sag - 1.0).abs() < 0.025, "{kind} {speed}: {sag}");
+        }
+    }
+}
