@@ -197,24 +197,29 @@ impl Stage {
                 body.insert(mass(*kilograms));
             }),
             Deed::Stiffen(e, stiffness) if with_springs => self.on_element(*e, |mut element| {
-                if let Some(mut spring) = element.get_mut::<Spring>() {
-                    spring.stiffness = *stiffness;
+                macro_rules! stiffen {
+                    ($($kind:ty)*) => {$(
+                        if let Some(mut spring) = element.get_mut::<$kind>() {
+                            spring.stiffness = *stiffness;
+                        }
+                    )*};
                 }
-                if let Some(mut pair) = element.get_mut::<SpringDamper>() {
-                    pair.stiffness = *stiffness;
-                }
-                if let Some(mut torsion) = element.get_mut::<TorsionSpringDamper>() {
-                    torsion.stiffness = *stiffness;
-                }
+                stiffen!(Spring SpringDamper TorsionSpring TorsionSpringDamper);
             }),
             Deed::Retie(e, ends) if with_springs => {
                 let [Some(a), Some(b)] = ends.map(|end| Self::of(&self.bodies, end)) else {
                     return;
                 };
                 self.on_element(*e, |mut element| {
-                    if let Some(mut pair) = element.get_mut::<SpringDamper>() {
-                        (pair.body_a, pair.body_b) = (a, b);
+                    macro_rules! retie {
+                        ($($kind:ty)*) => {$(
+                            if let Some(mut tied) = element.get_mut::<$kind>() {
+                                (tied.body_a, tied.body_b) = (a, b);
+                            }
+                        )*};
                     }
+                    retie!(Spring Damper SpringDamper);
+                    retie!(TorsionSpring TorsionDamper TorsionSpringDamper);
                 });
             }
             Deed::Accompany(e, companion) if with_springs => {

@@ -174,36 +174,62 @@ fn ends_coincide() {
     }
 }
 
+/// A body of 1 kg that passes a hook at 5 m/s, with a damper between them. Returns its energy after two seconds, J. Its energy
+/// never grows.
+fn passed(anchor: Vec3, damping: f32, dt: f32) -> f32 {
+    let mut lab = Lab::with(
+        CoiloverPlugin::default(),
+        Engine {
+            dt,
+            ..Engine::weightless()
+        },
+    );
+    let hook = lab.point(Vec3::ZERO);
+    let body = lab.body(1.0, Vec3::new(-10.0 * DT, 0.3, 0.0));
+    lab.get_mut::<Velocity>(body).linear = Vec3::X * 5.0;
+    lab.spawn((
+        Damper::new(hook, body).with_damping(damping),
+        Anchors::new(Vec3::ZERO, anchor),
+    ));
+    let mut before = 12.5_f32;
+    for tick in 0..lab.ticks(2.0) {
+        lab.tick();
+        let v = *lab.get::<Velocity>(body);
+        let energy = 0.5 * (v.linear.length_squared() + 0.4 * v.angular.length_squared());
+        assert!(
+            energy <= before * 1.001,
+            "{anchor}, {damping} N s/m, tick {tick}: {energy} J after {before} J"
+        );
+        before = energy;
+    }
+    before
+}
+
 #[test]
 fn a_damper_passed_at_speed_only_takes_energy() {
-    // The line turns by more than a radian within the step in which the damper stops the body.
+    // With the strongest one, the line turns by more than a radian within the step in which it stops the body.
     for anchor in [Vec3::ZERO, Vec3::new(0.05, 0.1, 0.0)] {
-        let mut lab = Lab::weightless();
-        let hook = lab.point(Vec3::ZERO);
-        let body = lab.body(1.0, Vec3::new(-10.0 * DT, 0.3, 0.0));
-        lab.get_mut::<Velocity>(body).linear = Vec3::X * 5.0;
-        lab.spawn((
-            Damper::new(hook, body).with_damping(1000.0 / DT),
-            Anchors::new(Vec3::ZERO, anchor),
-        ));
-        let mut before = 12.5_f32;
-        for tick in 0..120 {
-            lab.tick();
-            let v = *lab.get::<Velocity>(body);
-            let energy = 0.5 * (v.linear.length_squared() + 0.4 * v.angular.length_squared());
-            assert!(
-                energy <= before * 1.001,
-                "{anchor}, tick {tick}: {energy} J after {before} J"
+        for share in [0.1, 1.0, 10.0, 100.0, 1000.0] {
+            let damping = share / DT;
+            let [left, fine] = [DT, DT / 16.0].map(|dt| passed(anchor, damping, dt));
+            println!(
+                "a damper of {share} masses a step passed at speed, anchor {anchor}: {left:.3} J of 12.5 left, {fine:.3} J in steps of 1/960 s"
             );
-            before = energy;
+            // Stronger dampers leave too little or too much: see `docs/limits.md`.
+            if share <= 100.0 {
+                assert!(
+                    (left - fine).abs() < 0.06 * 12.5,
+                    "{share}, {anchor}: {left} J"
+                );
+            }
         }
     }
 }
 
 #[test]
-fn a_needle_held_at_its_tip_keeps_its_energy() {
+fn a_needle_held_at_its_tip_wins_no_energy() {
     // A rod of 1 m and 1 kg. The ratio of its inertias is 1 : 1660. A step cannot resolve its rotation about its
-    // own axis.
+    // own axis. On the stiff spring it loses nearly all its energy.
     for (k, microsteps) in [(5.0, 1), (500.0, 1), (500.0, 4)] {
         let plugin = CoiloverPlugin::default().with_microsteps(microsteps);
         let mut lab = Lab::with(plugin, Engine::weightless());
@@ -225,12 +251,15 @@ fn a_needle_held_at_its_tip_keeps_its_energy() {
         };
         lab.tick();
         let (start, mut most) = (energy(&lab), 0.0_f32);
+        let mut least = f32::INFINITY;
         for _ in 0..900 {
             lab.tick();
-            most = most.max(energy(&lab));
+            let now = energy(&lab);
+            (least, most) = (least.min(now), most.max(now));
         }
         println!(
-            "needle, k {k} ×{microsteps}: energy ≤ {:.4} of the first",
+            "needle, k {k} ×{microsteps}: energy {:.4} to {:.4} of the first",
+            least / start,
             most / start
         );
         assert!(

@@ -38,8 +38,10 @@ impl Scene {
     }
 
     /// Averages the energy of motion over intervals of two seconds. Returns the last average and the one that
-    /// deviates most, as a fraction of the first average.
+    /// deviates most, as a fraction of the energy after the first tick.
     fn watch(&mut self, seconds: f64) -> (f64, f64) {
+        self.lab.tick();
+        let first = self.energy();
         let mut means = Vec::new();
         for _ in 0..(seconds / 2.0) as usize {
             let mut sum = 0.0;
@@ -49,7 +51,7 @@ impl Scene {
             }
             means.push(sum / 120.0);
         }
-        let mut relative = means.iter().map(|mean| mean / means[0]);
+        let mut relative = means.iter().map(|mean| mean / first);
         let far = |a: f64, b: f64| {
             if (b - 1.0).abs() > (a - 1.0).abs() {
                 b
