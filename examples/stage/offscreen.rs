@@ -66,21 +66,20 @@ struct Picture(Option<Image>);
 /// Updates until nothing is missing from the picture: shaders are compiled in the background. Until then the cameras draw small
 /// pictures, because nobody looks at them and a software adapter takes long for each pixel.
 pub fn settle(app: &mut App) {
-    view(app, |size| {
-        Some(Viewport {
+    each_camera(app, |camera| {
+        camera.viewport = camera.physical_target_size().map(|size| Viewport {
             physical_size: (size / SMALLER).max(UVec2::ONE),
             ..default()
-        })
+        });
     });
     compile(app);
-    view(app, |_| None);
+    each_camera(app, |camera| camera.viewport = None);
 }
 
-/// Sets the part of its target that each camera draws into. `part` gets the size of the target, pixels.
-fn view(app: &mut App, part: impl Fn(UVec2) -> Option<Viewport>) {
+fn each_camera(app: &mut App, change: impl Fn(&mut Camera)) {
     let mut cameras = app.world_mut().query::<&mut Camera>();
     for mut camera in cameras.iter_mut(app.world_mut()) {
-        camera.viewport = camera.physical_target_size().and_then(&part);
+        change(&mut camera);
     }
 }
 
@@ -130,15 +129,9 @@ pub fn shoot(app: &mut App, image: &Handle<Image>) -> Option<Image> {
 
 /// Calls `act` without drawing: software adapters take long for a picture that nobody looks at.
 pub fn undrawn<T>(app: &mut App, act: impl FnOnce(&mut App) -> T) -> T {
-    let draw = |app: &mut App, is_active: bool| {
-        let mut cameras = app.world_mut().query::<&mut Camera>();
-        for mut camera in cameras.iter_mut(app.world_mut()) {
-            camera.is_active = is_active;
-        }
-    };
-    draw(app, false);
+    each_camera(app, |camera| camera.is_active = false);
     let out = act(app);
-    draw(app, true);
+    each_camera(app, |camera| camera.is_active = true);
     out
 }
 

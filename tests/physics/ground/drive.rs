@@ -117,6 +117,16 @@ impl Car {
         f64::from(REST) - lengths / self.scene.coils.len() as f64
     }
 
+    /// Mean sag over the next five seconds, over that of statics.
+    pub fn mean_sag(&mut self) -> f64 {
+        let mut sum = 0.0;
+        for _ in 0..300 {
+            self.scene.lab.tick();
+            sum += self.sag() / 300.0;
+        }
+        sum / self.theory()
+    }
+
     pub fn theory(&self) -> f64 {
         let share = self.wheels.len() as f64 / 4.0;
         f64::from(CHASSIS) * share * GRAVITY / (self.wheels.len() as f64 * f64::from(self.law[0]))
@@ -152,12 +162,7 @@ fn a_car_rolls_at_the_height_at_which_it_stands() {
             for speed in [0.0, 3.0, 6.0, 12.0, 25.0] {
                 let mut car = car(CoiloverPlugin::default(), kind, 0.0, speed, law);
                 let gain = car.run(3.0);
-                let mut sum = 0.0;
-                for _ in 0..300 {
-                    car.scene.lab.tick();
-                    sum += car.sag() / 300.0;
-                }
-                let sag = sum / car.theory();
+                let sag = car.mean_sag();
                 let now = car.scene.lab.velocity(car.chassis).x;
                 println!(
                     "car on {kind} wheels, {law:?}, {speed} m/s: sag × {sag:.3}, E × {gain:.4}, {now:.2} m/s after 8 s"

@@ -11,12 +11,7 @@ const SPEEDS: [f32; 6] = [0.0, 3.0, 5.0, 8.0, 11.0, 14.0];
 /// Mean sag from the third to the eighth second, over that of statics.
 fn sag(mut car: Car) -> f64 {
     car.scene.lab.run(3.0);
-    let mut sum = 0.0;
-    for _ in 0..300 {
-        car.scene.lab.tick();
-        sum += car.sag() / 300.0;
-    }
-    sum / car.theory()
+    car.mean_sag()
 }
 
 /// A car whose springs have been changed by `fit`, which gets the car and the entity of each spring.

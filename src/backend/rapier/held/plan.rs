@@ -13,7 +13,6 @@ use crate::scene::held::Turn;
 use crate::scene::rows::{BodyFlags, BodyRow, ElementFlags, ElementRow, Held, Members};
 use crate::scene::step::Step;
 use bevy::math::DVec3;
-use bevy_rapier3d::rapier::geometry::ContactPair;
 
 /// A held component before its step.
 #[derive(Default)]
@@ -29,12 +28,12 @@ pub(crate) struct Plan {
     sums: Vec<f64>,
     /// For each body, the sum over its elements of damping times the root of the inverse mass along the element.
     pub(super) drags: Vec<f64>,
+    /// For each order, the damping with which it acts, N s/m or N m s/rad.
+    pub(super) dampings: Vec<f64>,
     /// For each body, the effect of springs and external forces.
     pulls: Vec<Pull>,
     /// Whether a joint of the game holds some body of the component.
     pub(super) jointed: bool,
-    /// Whether there are contacts in the world of a component with such a joint.
-    pub(super) contacts: bool,
     /// Whether springs pull some body with far more than its weight while contacts press on the component; see [`TENSE`].
     pub(super) tense: bool,
 }
@@ -97,9 +96,6 @@ impl Plan {
             let row = &bodies[*b as usize];
             row.has(BodyFlags::JOINTED)
         });
-        // What rests on a jointed body may be many joints away from the component.
-        let mut pairs = all.narrow.contact_pairs();
-        self.contacts = self.jointed && pairs.any(ContactPair::has_any_active_contact);
         for e in members.elements {
             self.read_element(*e as usize, step, members, elements, bodies, all);
         }

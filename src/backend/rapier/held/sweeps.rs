@@ -27,15 +27,16 @@ const MOST_SWEEPS: f64 = 16.0;
 
 impl Plan {
     /// Number of sweeps over joints and contacts that a substep of `substep` seconds needs. With too few, a damper does not see
-    /// what joints leave of an impulse, or what other dampers do.
-    pub(crate) fn sweeps(&mut self, substep: f64) -> usize {
+    /// what joints leave of an impulse, or what other dampers do. `touching` tells whether something in the world touches something
+    /// else.
+    pub(crate) fn sweeps(&mut self, substep: f64, touching: bool) -> usize {
         let others = match (self.is_any_one_sided(), self.jointed) {
             (true, false) => ONE_SIDED_SWEEPS,
             (true, true) => TENSE_SWEEPS,
             (false, false) if self.tense => TENSE_SWEEPS,
             _ => 1,
         };
-        others.max(self.damper_sweeps(substep))
+        others.max(self.damper_sweeps(substep, touching))
     }
 
     /// Whether a one-sided force acts in this step, as far as the rates predict. Stops that are out of reach do not count: with more
@@ -54,17 +55,22 @@ impl Plan {
     /// have pushed already and others not yet, and that the joints of the game have not held back yet. It resists that motion too,
     /// so at rest its force would be wrong. Each further sweep (Gauss–Seidel) multiplies that error by about the square of the
     /// damper's coupling: what the others change of its rate in a substep, as a share of what it changes itself.
-    fn damper_sweeps(&mut self, substep: f64) -> usize {
+    fn damper_sweeps(&mut self, substep: f64, touching: bool) -> usize {
+        let dampings = self
+            .orders
+            .iter()
+            .map(|order| order.acting_damping(substep));
+        self.dampings.clear();
+        self.dampings.extend(dampings);
         self.drags.clear();
         self.drags.resize(self.bodies.len(), 0.0);
-        for order in &self.orders {
-            let damping = order.acting_damping(substep);
+        for (order, damping) in self.orders.iter().zip(&self.dampings) {
             for (body, root) in order.mobilities() {
                 self.drags[body] += damping * root;
             }
         }
-        let coupling = self.orders.iter().map(|order| {
-            let damping = order.acting_damping(substep);
+        let each = self.orders.iter().zip(&self.dampings);
+        let coupling = each.map(|(order, damping)| {
             let others = order.mobilities();
             let others: f64 = others
                 .map(|(body, root)| root * (self.drags[body] - damping * root))
@@ -80,7 +86,7 @@ impl Plan {
             others * substep / (1.0 + own) + joints.sqrt()
         });
         let coupling = coupling.fold(0.0, f64::max);
-        let (left, most) = if self.jointed && self.contacts {
+        let (left, most) = if self.jointed && touching {
             (ROUGH, ROUGH_SWEEPS)
         } else {
             (SMALL, MOST_SWEEPS)

@@ -15,7 +15,7 @@ use crate::scene::step::Step;
 use bevy::math::Vec3;
 use bevy_rapier3d::prelude::RapierContextJoints;
 use bevy_rapier3d::rapier::dynamics::{IslandManager, RigidBody as RapierBody, RigidBodySet};
-use bevy_rapier3d::rapier::geometry::{ColliderSet, NarrowPhase};
+use bevy_rapier3d::rapier::geometry::{ColliderSet, ContactPair, NarrowPhase};
 use std::sync::atomic::Ordering;
 
 /// Least number of substeps per tick. With Rapier's own four, the contact forces of a wheel that rolls at 12 m/s are wrong by a
@@ -58,13 +58,15 @@ pub(crate) struct Solver {
     wanted: Vec<Option<Wanted>>,
     /// Number of sweeps over all joints and contacts per substep.
     sweeps: usize,
+    /// Whether something in the world touches something else. Only found if a component needs it.
+    touching: Option<bool>,
     /// Speed that springs can add to each body of the present component in the step, m/s.
     pub(crate) pushes: Vec<f32>,
 }
 
 impl Solver {
     pub(crate) fn clear(&mut self) {
-        (self.used, self.sweeps) = (0, 1);
+        (self.used, self.sweeps, self.touching) = (0, 1, None);
     }
 
     /// Whether there are components to write.
@@ -103,6 +105,15 @@ impl Solver {
             gravity: engine.gravity,
         };
         let there = plan.read(step, members, elements, bodies, all, stale);
+        if plan.jointed {
+            // What rests on a jointed body may be many joints away from the component.
+            let any = || {
+                narrow
+                    .contact_pairs()
+                    .any(ContactPair::has_any_active_contact)
+            };
+            self.touching.get_or_insert_with(any);
+        }
         let (omega, disturbed) = (plan.omega as f32, plan.disturbed);
         let world = &mut engine.world();
         let (awake, must_rouse) = if there {
@@ -156,7 +167,8 @@ impl Solver {
             let members = groups.members(group);
             let h = substep(chosen);
             let substeps = chosen as u32 * calls;
-            self.sweeps = self.sweeps.max(plan.sweeps(h));
+            let touching = self.touching == Some(true);
+            self.sweeps = self.sweeps.max(plan.sweeps(h, touching));
             if !group.inside {
                 stagger(plan, -0.5 * h, step, &members, bodies, engine);
             }
