@@ -111,6 +111,7 @@ fn networks(c: &mut Criterion) {
         (Scene::Chain, &sizes[..3]),
         (Scene::Lattice, &sizes),
         (Scene::Cloth, &sizes),
+        (Scene::Bridge, &sizes),
         (Scene::Cars, &sizes[..1]),
     ] {
         let mut group = c.benchmark_group(format!("own/{scene:?}"));

@@ -1,5 +1,6 @@
 //! Scenes of many springs, and a clock around our own systems.
 
+mod bridge;
 mod road;
 
 use bevy::ecs::schedule::SingleThreadedExecutor;
@@ -79,6 +80,8 @@ pub enum Scene {
     Lattice,
     /// A flat square lattice, with fewer springs for each body.
     Cloth,
+    /// A rope bridge of planks that turn, two springs in each gap.
+    Bridge,
     /// Many chassis, each on four springs at its corners, with a wheel below each spring.
     Cars,
     /// Cars of five bodies that roll on a road, `count` of them.
@@ -137,6 +140,7 @@ impl Scene {
                 let [n, deep] = self.bodies_along(count);
                 2 * n * (n - 1) * deep + n * n * (deep - 1)
             }
+            Self::Bridge => 2 * (count / 2 + 1),
             Self::Rolling | Self::Parked => 4 * count,
             _ => count,
         }
@@ -217,6 +221,7 @@ impl Scene {
                 body(app.world_mut(), Vec3::NEG_Y * 10.0, Vec3::NEG_Y);
             }
             Self::Chain => chain(app.world_mut(), count, link),
+            Self::Bridge => bridge::bridge(app.world_mut(), count / 2),
             Self::Cars => cars(app.world_mut(), count),
             Self::Rolling => road::cars(app.world_mut(), count, link, 3.0),
             Self::Parked => road::cars(app.world_mut(), count, link, 0.0),

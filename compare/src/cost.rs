@@ -44,9 +44,10 @@ pub fn section(scenes: &Measured) -> String {
     let mut text = String::from(
         "## What truth costs\n\n\
          ![For each scene the cheapest setting of every method](speed_vs_error/cost.svg)\n\n\
-         For each scene and each error, the cheapest setting of every method that stays within that error, of all settings at 60 to \
-         960 steps a second. The numbers are computing time per 1/60 s of the scene in µs, the whole frame \
-         of a small app included: without any spring it takes about 9 µs. A dash means that no setting gets there, or that the method has no such spring. \
+         For each scene and each error, the cheapest setting of every method that stays within that error, of all \
+         settings at 60 to 960 steps a second. The numbers are computing time per 1/60 s of the scene in µs. It is \
+         that of the whole frame of a small app, which takes about 9 µs without any spring. A dash means that no \
+         setting has so small an error, or that the method has no such spring. \
          The settings are in the CSV files of the scenes, beside the chart.\n\n\
          | scene | within | bevy_coilover | Rapier SpringJoint | Avian distance joint | force once per step |\n\
          |---|---|---|---|---|---|\n",

@@ -18,11 +18,11 @@ pub fn opening() -> String {
          - **Methods.** bevy_coilover at 1 to 16 micro-steps, extrapolated, and by tolerance; the tutorial's \
          force `k·stretch + c·rate` written once per step into `ExternalForce`; Rapier's `SpringJoint` at 4 to 32 \
          solver iterations; Avian 0.7's `DistanceJoint` with compliance 1/k and `JointDamping` c/m at 6 to 48 \
-         substeps. That damping brakes motion across the line too, and there is none along it alone, so Avian is \
-         run without it as well, and the better of the two is quoted.\n\
-         - **Error** is the largest distance of a watched body from where an analytic solution or DOP853 (1e-10 \
-         to 1e-12) has it, over the whole time that the scene's description names. A method that is ten times \
-         the motion's size away has diverged.\n\
+         substeps. That damping also brakes motion across the line, and Avian has none along the line alone. So Avian \
+         is run with and without it, and the smaller error is given.\n\
+         - **Error** is the largest distance of a watched body from its place in an analytic solution or in one by \
+         DOP853 (1e-10 to 1e-12), over the whole time that the scene's description names. A method has diverged if \
+         its error is ten times the size of the motion.\n\
          - **Time per step** is one whole `app.update()`, everything that Bevy and the engine do included: median \
          of 15 turns or more, all methods in turns, after a warm-up, on bodies that may not sleep. *Computing \
          time* is that times the steps in 1/60 s of the scene, so that different time steps can be compared.\n\

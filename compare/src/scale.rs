@@ -284,7 +284,7 @@ fn ratios(loads: &[Load]) -> String {
             let (title, ratios) = (other.title(), ratios.join(", "));
             let _ = writeln!(
                 text,
-                "\n- Time of our update, of that with {title}: {ratios}."
+                "\n- Time of our update, divided by that with {title}: {ratios}."
             );
         }
     }

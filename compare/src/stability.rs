@@ -199,8 +199,8 @@ impl Study for Map {
             ),
         };
         let mut text = format!(
-            "## {title}\n\n{note} Colours tell the largest error, of the first stretch; 2 is what a wrong phase \
-             alone can cost, more is energy won.\n\n![{title}](speed_vs_error/{}.svg)\n\n",
+            "## {title}\n\n{note} Colours show the largest error as a multiple of the first stretch. A wrong phase \
+             alone can give 2; more means that energy was gained.\n\n![{title}](speed_vs_error/{}.svg)\n\n",
             self.name()
         );
         let mut methods: Vec<Method> = fields.iter().map(|f| f.method).collect();
@@ -210,7 +210,7 @@ impl Study for Map {
             let count = |keep: &dyn Fn(f64) -> bool| of.iter().filter(|f| keep(f.error)).count();
             let _ = writeln!(
                 text,
-                "- {}: of {} fields, {} are within 1 %, {} within 10 %, {} have won energy or diverged.",
+                "- {}: of {} fields, {} are within 1 %, {} within 10 %, {} have gained energy or diverged.",
                 method.title(),
                 of.len(),
                 count(&|e| e < 0.01),

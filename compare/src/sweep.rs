@@ -221,7 +221,7 @@ fn section(points: &[Point]) -> String {
          second, each method at its default; crosses have diverged. Frequency and damping ratio are those of the \
          two-pole recurrence that fits the samples best.\n\n\
          ![Error over ω·dt](speed_vs_error/sweep.svg)\n\n\
-         | method | ζ | ω·dt | error, of the first stretch | frequency | damping ratio |\n|---|---|---|---|---|---|\n",
+         | method | ζ | ω·dt | error / first stretch | frequency | damping ratio |\n|---|---|---|---|---|---|\n",
     );
     let percent = |x: Option<f64>| x.map_or("–".into(), |x| format!("{:+.1e}", x));
     for p in points {

@@ -82,14 +82,14 @@ pub fn verdict(rows: &[Row]) -> String {
         if !cheap.is_empty() {
             let _ = write!(
                 text,
-                " It is not where nothing of ours is as cheap: {}.",
+                " Cheaper than every setting of ours: {}.",
                 list(&cheap)
             );
         }
         if !close.is_empty() {
             let _ = write!(
                 text,
-                " It is not, though we have as much time, against {}.",
+                " No less exact than ours in the same time: {}.",
                 list(&close)
             );
         }
@@ -97,7 +97,7 @@ pub fn verdict(rows: &[Row]) -> String {
     let left = unbeaten_at_their_step(rows).len();
     let _ = write!(
         text,
-        " Held to the same time step as well, it is for {} of {sum}.",
+        " With the same time step as theirs, our error is below that of {} of {sum}.",
         sum - left
     );
     match lost {

@@ -13,9 +13,10 @@ pub fn section(told: &[Told]) -> String {
     let mut text = format!(
         "## On the ground and on joints\n\n\
          Made by `cargo run {build}-p compare -- --scene ground --fresh`. \
-         Contacts and joints hold the bodies here, and no formula says where they should be. \
-         So each scene has a figure of its own, which physics bounds. \
-         Time is that of a whole step at 60 steps a second, median of turns spread over the 2nd to 10th second of each scene.",
+         Contacts and joints hold the bodies here, and no formula gives their true places. So each scene has a figure \
+         of its own, for which physics gives a bound. \
+         Time is that of a whole step at 60 steps a second, median of turns spread over the 2nd to 10th second of \
+         each scene.",
     );
     if !release {
         text.push_str(
@@ -29,9 +30,9 @@ pub fn section(told: &[Told]) -> String {
         let _ = writeln!(text, "- **{}.** {}", scene.title, scene.note);
     }
     text.push_str(
-        "\nEnergy is kinetic, of height and stored in springs, all from where the bodies are and how fast they move. \
-         Above 1, or above 0 J, something has been won from nothing. \
-         A method that takes too much energy shows nothing of it here: the figure bounds it from above alone. \
+        "\nEnergy is the sum of kinetic energy, energy of height and energy stored in springs, computed from places \
+         and velocities of the bodies. Above 1, or above 0 J, a method has gained energy from nothing. A method that \
+         loses too much energy does not show it here, because the bound is an upper one. \
          Contacts are at each engine's defaults here, and nothing may sleep. \
          Avian has no joint like the wheel's guide, so it has no figure for it.\n\n",
     );

@@ -12,7 +12,7 @@ pub const SCENE: Scene = Scene {
     title: "Balls on a cloth",
     note: "Balls of 2, 3 and 5 kg fall 1.2 m onto a cloth of 30 × 30 points, which is held at its rim. \
            Its springs have 3 kN/m and its points 0.05 kg each. \
-           The figure is the greatest energy over 15 s less that at first: above zero something has been won from nothing.",
+           The figure is the greatest energy over 15 s less that at first: above zero the method has gained energy from nothing.",
     speeds: &[0.0],
     heads: &[Head {
         name: "energy gain",
