@@ -103,7 +103,7 @@ impl Assembly {
         let sound = self.start.iter().all(Body::is_finite);
         let disturbed = self.gather_elements(step, members, elements, bodies, sight);
         let omega = self.warm.omega;
-        let (awake, rouse) = step.is_awake(bodies, members.bodies, omega, sight, disturbed);
+        let (awake, rouse) = step.is_awake(bodies, members.bodies, false, omega, sight, disturbed);
         self.rouse = rouse;
         for e in members.elements {
             let flags = &mut elements[*e as usize].flags;

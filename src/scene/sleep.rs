@@ -12,8 +12,8 @@ use crate::scene::step::Step;
 /// Speed below which a body counts as resting: m/s, times the engine's length unit, and rad/s.
 const REST: f32 = 2e-4;
 
-/// Speed below which a body that contacts or joints hold counts as resting, m/s, times the engine's
-/// length unit. Pinned by `ground::heap`.
+/// Speed below which a body of a component that the engine solves counts as resting, m/s, times the engine's length unit. Pinned by
+/// `ground::heap` and `ground::between_planks`.
 const HELD_REST: f32 = 2e-2;
 
 /// Mean speed up to which a body with [`BodyFlags::CREEPS`] counts as resting, m/s, times the engine's length unit. Contacts
@@ -38,10 +38,11 @@ fn is_slow(body: &Seen, rest: f32, size: f32, omega: f32, length_unit: f32) -> b
         && body.spin.length() * size < rest + noise * f32::EPSILON
 }
 
-/// Whether a body moves, or has not rested long enough yet.
+/// Whether a body moves, or has not rested long enough yet. `inside` tells whether the engine solves its component.
 fn is_restless(
     row: &mut BodyRow,
     body: &Seen,
+    inside: bool,
     size: f32,
     omega: f32,
     time: f32,
@@ -49,12 +50,9 @@ fn is_restless(
 ) -> bool {
     let (position, rotation) = (body.origin, body.rotation);
     let place = position.abs().max_element() * f32::EPSILON;
-    // The velocities of a held body are those of the engine's last substep, so mainly its position decides.
-    let rest = if row.has(BodyFlags::LINGERS) {
-        HELD_REST
-    } else {
-        REST
-    };
+    // The engine's velocities are those of its last substep. In a component that it solves, they tremble although places stay, so
+    // mainly the position decides.
+    let rest = if inside { HELD_REST } else { REST };
     let slow = is_slow(body, rest, size, omega, length_unit);
     if !slow {
         row.flags.remove(BodyFlags::RESTS);
@@ -69,8 +67,10 @@ fn is_restless(
             ..Rest::default()
         };
     }
-    // Trembling may be rounding, but a body that moves away does not rest.
-    let creep = if row.has(BodyFlags::CREEPS) {
+    // Trembling may be rounding, but a body that moves away does not rest. A body that only follows others may be in a slow swing.
+    let follows = !row.has(BodyFlags::LINGERS);
+    let may_creep = !follows || is_slow(body, REST, 1.0, omega, length_unit);
+    let creep = if row.has(BodyFlags::CREEPS) && may_creep {
         CREEP
     } else {
         REST
@@ -137,19 +137,20 @@ impl Step {
                 .any(|e| self.has_moved(&elements[*e as usize], sight))
     }
 
-    /// Whether an awake body moves, or has not rested long enough yet.
+    /// Whether an awake body moves, or has not rested long enough yet. `inside` tells whether the engine solves its component.
     pub(crate) fn is_restless(
         &self,
         row: &mut BodyRow,
         body: &Seen,
+        inside: bool,
         omega: f32,
         sight: &impl Sight,
     ) -> bool {
         // The surface of a small held body moves little when it turns, so its size counts.
-        let held = row.has(BodyFlags::LINGERS);
-        let size = if held { sight.size(row.id) } else { 1.0 };
+        let inside = inside || row.has(BodyFlags::LINGERS);
+        let size = if inside { sight.size(row.id) } else { 1.0 };
         let time = self.plan.time as f32;
-        is_restless(row, body, size, omega, time, self.plan.length_unit)
+        is_restless(row, body, inside, size, omega, time, self.plan.length_unit)
     }
 
     /// Wakes all bodies of a component if the step would set a sleeping body in motion. Otherwise
@@ -177,11 +178,12 @@ impl Step {
     }
 
     /// Returns whether there is anything to do for a component, and whether all its bodies must be [roused](rouse). `omega` is
-    /// the natural frequency of its stiffest element, rad/s.
+    /// the natural frequency of its stiffest element, rad/s. `inside` tells whether the engine solves it.
     pub(crate) fn is_awake(
         &self,
         rows: &mut (impl RowsMut<BodyRow> + ?Sized),
         members: &[u32],
+        inside: bool,
         omega: f32,
         sight: &impl Sight,
         mut disturbed: bool,
@@ -196,7 +198,7 @@ impl Step {
             disturbed |= take!(row.flags, BodyFlags::DISTURBED);
             if !body.is_asleep && body.is_movable {
                 all_asleep = false;
-                restless |= self.is_restless(row, &body, omega, sight);
+                restless |= self.is_restless(row, &body, inside, omega, sight);
             }
         }
         let awake = !all_asleep || disturbed;

@@ -103,7 +103,7 @@ impl Noted {
             self.perturbed = true;
         }
         self.disturbed |= take!(row.flags, BodyFlags::DISTURBED);
-        self.restless |= step.is_restless(row, &body, omega, sight);
+        self.restless |= step.is_restless(row, &body, false, omega, sight);
         Some(Met {
             point,
             more: body.more_substeps as u32,

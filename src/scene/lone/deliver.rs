@@ -31,7 +31,7 @@ impl Lone {
                 restless |= if way.slow[end] {
                     let seen = engine.see(body.id);
                     let omega = omega_of(&elements[pair.element as usize]);
-                    seen.is_none_or(|seen| step.is_restless(body, &seen, omega, engine))
+                    seen.is_none_or(|seen| step.is_restless(body, &seen, false, omega, engine))
                 } else {
                     body.flags.remove(BodyFlags::RESTS);
                     true

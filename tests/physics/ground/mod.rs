@@ -4,6 +4,7 @@
 
 mod actuator;
 mod beside;
+mod between_planks;
 mod bounce;
 mod bridge;
 mod burdens;

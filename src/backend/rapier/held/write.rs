@@ -117,7 +117,7 @@ impl Solver {
         let (omega, disturbed) = (plan.omega as f32, plan.disturbed);
         let world = &mut engine.world();
         let (awake, must_rouse) = if there {
-            step.is_awake(bodies, members.bodies, omega, world, disturbed)
+            step.is_awake(bodies, members.bodies, true, omega, world, disturbed)
         } else {
             (false, false)
         };
