@@ -94,7 +94,7 @@ pub(crate) fn tell_strays(
     mut strays: ResMut<Strays>,
     elements: Query<(), IsElement>,
     linear: Query<(), IsLinear>,
-    entities: Query<()>,
+    entities: Query<Option<&Name>>,
     #[cfg(feature = "visual")] drawn: Option<Res<crate::visual::IsDrawn>>,
 ) {
     let strays = &mut *strays;
@@ -111,12 +111,16 @@ pub(crate) fn tell_strays(
     let Strays { waiting, told, .. } = strays;
     told.retain(|entity| entities.contains(*entity));
     waiting.retain(|&entity, stray| {
-        if !entities.contains(entity) {
+        let Ok(name) = entities.get(entity) else {
             return false;
-        }
+        };
         let is_element = elements.contains(entity);
         let is_linear = linear.contains(entity);
-        let misplaced = if is_linear { &stray.spirals } else { &stray.looks };
+        let misplaced = if is_linear {
+            &stray.spirals
+        } else {
+            &stray.looks
+        };
         if is_element && misplaced.is_empty() {
             return false;
         }
@@ -125,6 +129,8 @@ pub(crate) fn tell_strays(
             return true;
         }
         told.insert(entity);
+        // As faults are told.
+        let who = name.map_or_else(|| entity.to_string(), |name| format!("{name}, {entity}"));
         if is_element {
             let looks = misplaced.join(", ");
             let (on, other) = if is_linear {
@@ -132,13 +138,13 @@ pub(crate) fn tell_strays(
             } else {
                 ("torsion", "TorsionCoil")
             };
-            log::warn!(
-                "{entity}: {looks}: stands on a {on} element, which it does not draw; use a {other}"
-            );
+            log::warn!("{who}: {looks} cannot draw a {on} element; use a {other}");
         } else {
-            let all = [&stray.names[..], &stray.looks[..], &stray.spirals[..]].concat().join(", ");
+            let all = [&stray.names[..], &stray.looks[..], &stray.spirals[..]]
+                .concat()
+                .join(", ");
             log::warn!(
-                "{entity}: {all}: stands on an entity without an element, so it does nothing; put it on the \
+                "{who}: {all} on an entity without an element, which does nothing; put it on the \
                  entity that has the Spring, Damper, SpringDamper or torsion element"
             );
         }

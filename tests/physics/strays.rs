@@ -22,15 +22,15 @@ fn companions_without_an_element_are_told_once_for_each_entity() {
         SpringAxis::World(Vec3::Y),
         SpringTuning::frequency(1.0, 0.1),
     ));
-    let other = lab.spawn(HoldPose::new());
+    let other = lab.spawn((HoldPose::new(), Name::new("Lamp")));
     lab.run(0.03);
     assert_eq!(log.take(), Vec::<String>::new(), "too early");
     lab.run(1.0);
     let told = log.take();
     assert_eq!(told.len(), 2, "{told:?}");
-    for (entity, names) in [
+    for (who, names) in [
         (
-            lone,
+            lone.to_string(),
             &[
                 "Preload",
                 "Breakable",
@@ -44,10 +44,10 @@ fn companions_without_an_element_are_told_once_for_each_entity() {
                 "SpringTuning",
             ][..],
         ),
-        (other, &["HoldPose"][..]),
+        (format!("Lamp, {other}"), &["HoldPose"][..]),
     ] {
-        let said = told.iter().find(|t| t.starts_with(&format!("{entity}: ")));
-        let said = said.unwrap_or_else(|| panic!("{told:?} say nothing of {entity}"));
+        let said = told.iter().find(|t| t.starts_with(&format!("{who}: ")));
+        let said = said.unwrap_or_else(|| panic!("{told:?} say nothing of {who}"));
         for name in names {
             assert!(said.contains(name), "{said} does not name {name}");
         }

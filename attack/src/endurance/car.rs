@@ -84,7 +84,7 @@ pub fn car() -> Endurance {
         masses,
         springs,
         gravity: GRAVITY,
-        pause: 10.0,
+        period: 10.0,
         strike: |scene, strike| {
             let corner = strike % 4;
             let chassis = scene.bodies[0];

@@ -61,7 +61,7 @@ pub fn cloth() -> Endurance {
         masses: vec![(POINT, Vec3::ONE); SIDE * (SIDE - 1)],
         springs,
         gravity: GRAVITY,
-        pause: 20.0,
+        period: 20.0,
         strike: |scene, strike| {
             let wind = Vec3::Z * direction(strike, 0).z;
             for index in 0..scene.bodies.len() {

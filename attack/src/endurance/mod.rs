@@ -32,18 +32,19 @@ pub struct Endurance {
     springs: Vec<Entity>,
     gravity: f32,
     /// Seconds from one strike to the next.
-    pub pause: f32,
+    pub period: f32,
     /// Strikes the scene. The number counts strikes.
     strike: fn(&mut Self, u64),
     /// Returns the error of the scene's pose against theory, and the greatest error allowed.
     stands: fn(&Self) -> (f64, f64),
-    strikes: u64,
+    /// Number of strikes so far.
+    pub strikes: u64,
     /// Greatest error of the energy balance as a share of the energy turned over. `None` where contacts dissipate energy as well.
     pub explained: Option<f64>,
 }
 
 /// Results of the time from one strike to the next.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Interval {
     /// Energy that the strike gave or took, and energy that dampers dissipated, J.
     pub turned_over: f64,
@@ -53,6 +54,14 @@ pub struct Interval {
     pub off: (f64, f64),
     /// Greatest speed of a body just before the next strike, m/s.
     pub speed: f64,
+}
+
+/// The state of a scene between two strikes, from which a later run can continue.
+#[derive(Clone, serde::Serialize, serde::Deserialize)]
+pub struct Saved {
+    strikes: u64,
+    engine: RapierSnapshot,
+    springs: CoiloverSnapshot,
 }
 
 /// An app with nothing but Rapier and springs.
@@ -84,6 +93,27 @@ fn lab(gravity: f32) -> App {
 }
 
 impl Endurance {
+    /// Takes everything that a new scene of the same kind needs in order to continue this one bit for bit.
+    pub fn save(&self) -> Saved {
+        let world = self.app.world();
+        Saved {
+            strikes: self.strikes,
+            engine: RapierSnapshot::take(world),
+            springs: CoiloverSnapshot::take(world),
+        }
+    }
+
+    /// Continues a scene of the same kind.
+    pub fn resume(&mut self, saved: &Saved) -> Result<(), SnapshotError> {
+        // So that all bodies have their handles in Rapier.
+        self.app.update();
+        let world = self.app.world_mut();
+        saved.engine.restore(world)?;
+        saved.springs.restore(world)?;
+        self.strikes = saved.strikes;
+        Ok(())
+    }
+
     /// Strikes the scene and runs until the next strike.
     pub fn interval(&mut self) -> Interval {
         let before = self.energy();
@@ -91,7 +121,7 @@ impl Endurance {
         self.strikes += 1;
         let struck = self.energy();
         let warm = self.heat();
-        for _ in 0..(self.pause / DT).round() as usize {
+        for _ in 0..(self.period / DT).round() as usize {
             self.app.update();
         }
         let taken = self.heat() - warm;

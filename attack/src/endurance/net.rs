@@ -55,7 +55,7 @@ pub fn net() -> Endurance {
         masses,
         springs,
         gravity: 0.0,
-        pause: 20.0,
+        period: 20.0,
         strike: |scene, strike| {
             // Opposite bodies get equal impulses, so that the net does not turn. The next pair gets the opposite impulse,
             // so that the net does not drift away.
