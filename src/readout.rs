@@ -27,7 +27,8 @@ pub struct SpringReadout {
     pub rate: f32,
     /// Tension that does not depend on the rate, N: spring and [`Preload`](crate::Preload), limited by
     /// [`SpringAction`](crate::SpringAction) and [`MaxForce`](crate::MaxForce), plus pressed stops. 0 where a rope is
-    /// slack.
+    /// slack. If the game changed parameters in this tick, as a winch does in each, this is the force that an even
+    /// change over the tick would give.
     pub spring_force: f32,
     /// Tension of the damper and of the dampers of pressed stops, N.
     pub damper_force: f32,

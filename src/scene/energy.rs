@@ -3,7 +3,7 @@
 use crate::dynamics::element::{Element, End};
 use crate::dynamics::law::Elastic;
 use crate::dynamics::pair::{Pair, Separation};
-use crate::scene::rows::ElementRow;
+use crate::scene::rows::{ElementFlags, ElementRow, Jump, take};
 use bevy::math::DVec3;
 
 impl ElementRow {
@@ -113,13 +113,39 @@ impl ElementRow {
     /// Applies a change of parameters. The change of the stored energy counts as work.
     pub(crate) fn change(&mut self, change: impl FnOnce(&mut Self)) {
         let acted = self.rare.places[0].is_some() && self.numbers.rest_length.is_some();
-        let before = self.elastic(self.length).energy;
+        let before = self.elastic(self.length);
         change(self);
         if acted && self.numbers.rest_length.is_some() {
-            let work = self.elastic(self.length).energy - before;
+            let after = self.elastic(self.length);
+            let (work, by) = (after.energy - before.energy, after.force - before.force);
             if work.is_finite() {
                 self.ledger.work += work;
             }
+            if by.is_finite() && by != 0.0 {
+                let earlier = take!(self.flags, ElementFlags::JUMPED);
+                let by = by + if earlier { self.rare.jump.by } else { 0.0 };
+                let to = after.force;
+                self.rare.jump = Jump { by, to };
+                self.flags.insert(ElementFlags::JUMPED);
+            }
+        }
+    }
+
+    /// Finds what a change of parameters before the step makes false in the tension after it. A winch that winds evenly changes
+    /// the rest length at the beginning of each step by as much as the load follows during the step. So tension leads by half of
+    /// that change at first, and lags by as much at last. The result is never beyond both these tensions.
+    pub(crate) fn follow_jump(&mut self, length: f64) {
+        self.flags.remove(ElementFlags::LEADS);
+        if !take!(self.flags, ElementFlags::JUMPED) {
+            return;
+        }
+        let Jump { by, to } = self.rare.jump;
+        let last = self.elastic(length).force;
+        let even = (last + 0.5 * by).max(last.min(to)).min(last.max(to));
+        // A rope that has gone slack has no force.
+        if even.is_finite() && last != 0.0 {
+            self.rare.lead = last - even;
+            self.flags.insert(ElementFlags::LEADS);
         }
     }
 }

@@ -139,6 +139,12 @@ impl ElementRow {
         if led {
             self.account_for_moved(seen, eyes.time);
         }
+        if self
+            .flags
+            .intersects(ElementFlags::JUMPED.union(ElementFlags::LEADS))
+        {
+            self.follow_jump(seen.0);
+        }
         (self.length, self.rate) = seen;
     }
 

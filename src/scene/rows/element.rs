@@ -47,6 +47,15 @@ pub(crate) struct EnergyLedger {
     pub work: f64,
 }
 
+/// How the game changed the tension of an element before a step by a change of parameters.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Jump {
+    /// Change of the tension, N.
+    pub by: f64,
+    /// Tension after it, N.
+    pub to: f64,
+}
+
 /// How an element was solved.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Solved {
@@ -130,6 +139,11 @@ pub(crate) struct RareElement {
     pub facings: [DQuat; 2],
     /// Last twist with full turns counted, rad.
     pub angle: f64,
+    /// With [`ElementFlags::JUMPED`].
+    pub jump: Jump,
+    /// What a change of parameters that goes on evenly would take from the tension after the last step, N. Valid only with
+    /// [`ElementFlags::LEADS`].
+    pub lead: f64,
     /// Scales of the bodies at its ends. They ignore the rounding noise of transforms.
     pub scales: [Option<DVec3>; 2],
     pub controller: Controller,
@@ -160,6 +174,8 @@ impl ElementRow {
                 places: [None; 2],
                 facings: [DQuat::IDENTITY; 2],
                 angle: 0.0,
+                jump: Jump::default(),
+                lead: 0.0,
                 scales: [None; 2],
                 controller: Controller::default(),
             }),

@@ -32,6 +32,10 @@ bitflags! {
         const DOZES = 1 << 11;
         /// It was reported as too stiff to be followed.
         const TOLD_UNRESOLVED = 1 << 12;
+        /// The game changed its parameters before this step, and with them its force: see `RareElement::jump`.
+        const JUMPED = 1 << 13;
+        /// The game changed its parameters before the last step: `RareElement::lead` is valid.
+        const LEADS = 1 << 14;
         /// The flags that a snapshot keeps. The other flags are found anew.
         const KEPT = Self::CHANGED.bits() | Self::REFITTED.bits() | Self::CAPTURED.bits()
             | Self::TUNED.bits() | Self::TUNED_AGAIN.bits() | Self::ACTIVE.bits();

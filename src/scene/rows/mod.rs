@@ -9,7 +9,7 @@ mod raised;
 
 pub(crate) use body::{BodyRow, RareBody, Rest};
 pub(crate) use cut::{Cut, Rows, RowsMut};
-pub(crate) use element::{ElementRow, EnergyLedger, Held, RareElement, Solved};
+pub(crate) use element::{ElementRow, EnergyLedger, Held, Jump, RareElement, Solved};
 pub(crate) use flags::{BodyFlags, ElementFlags, take};
 pub(crate) use marks::{mix, pull_mark, turning_mark};
 pub(crate) use raised::{Raised, Sweeps};

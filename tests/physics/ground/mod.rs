@@ -35,3 +35,4 @@ mod sizes;
 mod stand;
 mod torsion;
 mod wall;
+mod winch;

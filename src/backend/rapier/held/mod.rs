@@ -17,6 +17,7 @@ mod near;
 mod order;
 mod plan;
 mod pushes;
+mod stagger;
 mod stand_in;
 mod step;
 mod sweeps;

@@ -1,11 +1,12 @@
 //! Writes held components into Rapier: joints, substeps, and the initial velocities of bodies.
 
 use super::lend::raise;
+use super::stagger::{absorb_jumps, stagger};
 use super::stand_in::{holder, remove};
 use crate::backend::rapier::body::{Bodies, handle};
 use crate::backend::rapier::held::linkage::Holding;
 use crate::backend::rapier::held::plan::Plan;
-use crate::backend::{self, Push, Sight};
+use crate::backend::{self, Push};
 use crate::dynamics::soft::Fineness;
 use crate::scene::group::Groups;
 use crate::scene::held::{Inside, Wanted};
@@ -169,7 +170,9 @@ impl Solver {
             let substeps = chosen as u32 * calls;
             let touching = self.touching == Some(true);
             self.sweeps = self.sweeps.max(plan.sweeps(h, touching));
-            if !group.inside {
+            if group.inside {
+                absorb_jumps(plan, h, step, &members, elements, bodies, engine);
+            } else {
                 stagger(plan, -0.5 * h, step, &members, bodies, engine);
             }
             let wanted = &mut self.wanted;
@@ -256,49 +259,6 @@ pub(crate) fn leave(
         let row = &mut bodies[*b as usize];
         if let Some(body) = engine.bodies.get_mut(handle(row.id)) {
             raise(&mut row.rare.raised, body, 0);
-        }
-    }
-}
-
-/// Shifts the velocities of a component in time by `by` seconds (half a substep, either sign). In the engine's solver,
-/// velocities belong to a time half a substep before the positions. Velocities stay within the engine's caps. Bodies under
-/// contact pressure are left out, because only the engine knows the forces on them.
-fn stagger(
-    plan: &Plan,
-    by: f64,
-    step: &Step,
-    members: &Members,
-    bodies: &[BodyRow],
-    engine: &mut Engine,
-) {
-    let mut moved = plan.bodies.clone();
-    for body in &mut moved {
-        let inverse_inertia = body.inverse_inertia();
-        body.apply_external(by, inverse_inertia);
-    }
-    for order in &plan.orders {
-        let rate = order.line.motion(&order.element, &plan.bodies, 0.0).axial;
-        let damping: f64 = order.pieces.iter().map(|p| p.tangent.damping).sum();
-        // A strong damper has already reduced the rate within the substep.
-        let lasting = (1.0 + 2.0 * by.abs() * damping * order.line.inverse_mass).powi(-2);
-        let tension = order.pieces.tension(order.line.distance(), lasting * rate);
-        let impulse = -by * tension * order.line.direction;
-        order.line.impulse(&mut moved, impulse);
-    }
-    for (b, moved) in members.bodies.iter().zip(&moved) {
-        let row = &bodies[*b as usize];
-        let free = !row.has(BodyFlags::PRESSED);
-        let seen = engine.sight().see(row.id).filter(|_| free);
-        let (Some(seen), Some(body)) = (seen, engine.bodies.get_mut(handle(row.id))) else {
-            continue;
-        };
-        let velocity = moved.velocity.clamp_length_max(step.plan.fastest);
-        let fastest_spin = step.farthest_turn(&seen) / step.plan.time;
-        let spin = moved.angular_velocity();
-        let spin = spin.clamp_length_max(fastest_spin.min(f64::from(f32::MAX)));
-        if (velocity + spin).is_finite() {
-            body.set_linvel(velocity.as_vec3(), false);
-            body.set_angvel(spin.as_vec3(), false);
         }
     }
 }
