@@ -64,3 +64,27 @@ fn a_quarter_car_stands_and_rolls_ten_kilometres_away() {
         }
     }
 }
+
+#[test]
+fn a_damped_spring_on_a_rail_carries_its_load_a_hundred_metres_up() {
+    let (mass, stiffness) = (50.0, 8e3);
+    let sag = mass * GRAVITY as f32 / stiffness;
+    for height in [0.0, 100.0, 400.0, 1e3] {
+        let mut lab = Lab::new();
+        let at = Vec3::Y * height;
+        let post = lab.spawn((RigidBody::Fixed, Transform::from_translation(at)));
+        let load = lab.body(mass, at - Vec3::Y);
+        let slider = ImpulseJoint::new(post, PrismaticJointBuilder::new(Vec3::Y));
+        lab.app.world_mut().entity_mut(load).insert(slider);
+        let element = lab.spawn(
+            SpringDamper::new(post, load)
+                .with_stiffness(stiffness)
+                .with_damping(2.0 * (stiffness * mass).sqrt())
+                .with_rest_length(1.0),
+        );
+        lab.run(20.0);
+        let off = (lab.readout(element).length - 1.0) / sag - 1.0;
+        println!("at a height of {height} m: sag {:+.2} % off", 100.0 * off);
+        assert!(height > 100.0 || off.abs() < 0.01, "{height} m: {off}");
+    }
+}

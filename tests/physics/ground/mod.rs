@@ -6,6 +6,7 @@ mod actuator;
 mod beside;
 mod between_planks;
 mod bounce;
+mod brakes;
 mod bridge;
 mod burdens;
 mod ccd;
