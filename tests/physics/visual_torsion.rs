@@ -254,8 +254,8 @@ fn spirals_that_cannot_be_drawn_or_stand_on_a_linear_element_are_told_once() {
         (endless, "TorsionCoil: radius is NaN"),
         (tight, "50 turns of thickness"),
         (nowhere, "TorsionCoil: center is"),
-        (linear, "TorsionCoil: stands on a linear element"),
-        (lone, "TorsionCoil: stands on an entity without an element"),
+        (linear, "TorsionCoil cannot draw a linear element"),
+        (lone, "TorsionCoil on an entity without an element"),
     ] {
         let named = format!("{entity}: ");
         assert!(
