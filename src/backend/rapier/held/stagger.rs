@@ -38,7 +38,7 @@ pub(crate) fn stagger(
 
 /// Takes back half of what forces that the game has just changed will do in the next substep, of `substep` seconds: in the half
 /// substep before the change, the force was still the old one. Otherwise a winch that lowers a load would have it fall too far, and
-/// do work that no ledger has (`ground::actuator`).
+/// do work that no ledger has. Pinned by `ground::winch`.
 pub(crate) fn absorb_jumps(
     plan: &Plan,
     substep: f64,
@@ -55,7 +55,7 @@ pub(crate) fn absorb_jumps(
         if !row.has(ElementFlags::JUMPED) {
             continue;
         }
-        // The engine applies the force of a stiffer spring only in part.
+        // A stiffer spring is not followed within a substep; the engine applies only a part of its force.
         let stiffness: f64 = order.pieces.iter().map(|p| p.tangent.stiffness).sum();
         if stiffness * order.line.inverse_mass * substep * substep > 1.0 {
             continue;
