@@ -3,7 +3,7 @@
 use crate::dynamics::element::{Element, End};
 use crate::dynamics::law::Elastic;
 use crate::dynamics::pair::{Pair, Separation};
-use crate::scene::rows::{ElementFlags, ElementRow, Jump, take};
+use crate::scene::rows::{ElementFlags, ElementRow, Jump};
 use bevy::math::DVec3;
 
 impl ElementRow {
@@ -122,30 +122,31 @@ impl ElementRow {
                 self.ledger.work += work;
             }
             if by.is_finite() && by != 0.0 {
-                let earlier = take!(self.flags, ElementFlags::JUMPED);
-                let by = by + if earlier { self.rare.jump.by } else { 0.0 };
-                let to = after.force;
-                self.rare.jump = Jump { by, to };
+                let earlier = if self.has(ElementFlags::JUMPED) {
+                    self.rare.jump.by
+                } else {
+                    0.0
+                };
+                self.rare.jump = Jump {
+                    by: earlier + by,
+                    to: after.force,
+                };
                 self.flags.insert(ElementFlags::JUMPED);
             }
         }
     }
 
-    /// Finds what a change of parameters before the step makes false in the tension after it. A winch that winds evenly changes
-    /// the rest length at the beginning of each step by as much as the load follows during the step. So tension leads by half of
-    /// that change at first, and lags by as much at last. The result is never beyond both these tensions.
-    pub(crate) fn follow_jump(&mut self, length: f64) {
-        self.flags.remove(ElementFlags::LEADS);
-        if !take!(self.flags, ElementFlags::JUMPED) {
-            return;
+    /// The tension that the spring would have after the step, N, if parameters that the game changed before the step had changed
+    /// evenly. `last` is the tension that it has. A winch that winds evenly changes the rest length at the beginning of each step
+    /// by as much as the load follows during the step. So tension leads by half of that change at first, and lags by as much at
+    /// last. The result is never beyond both these tensions.
+    pub(crate) fn even_tension(&self, last: f64) -> f64 {
+        // A rope that has gone slack has no force.
+        if !self.has(ElementFlags::LEADS) || last == 0.0 {
+            return last;
         }
         let Jump { by, to } = self.rare.jump;
-        let last = self.elastic(length).force;
         let even = (last + 0.5 * by).max(last.min(to)).min(last.max(to));
-        // A rope that has gone slack has no force.
-        if even.is_finite() && last != 0.0 {
-            self.rare.lead = last - even;
-            self.flags.insert(ElementFlags::LEADS);
-        }
+        if even.is_finite() { even } else { last }
     }
 }

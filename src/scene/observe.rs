@@ -3,7 +3,7 @@
 use crate::backend::{BodyId, Seen, Sight, Worlds};
 use crate::dynamics::element::{End, Path};
 use crate::dynamics::guide::Guide;
-use crate::scene::rows::{BodyFlags, BodyRow, ElementFlags, ElementRow, Held, turning_mark};
+use crate::scene::rows::{BodyFlags, BodyRow, ElementFlags, ElementRow, Held, take, turning_mark};
 use crate::scene::state::Scene;
 use crate::scene::still::Stepped;
 use crate::threads;
@@ -139,12 +139,8 @@ impl ElementRow {
         if led {
             self.account_for_moved(seen, eyes.time);
         }
-        if self
-            .flags
-            .intersects(ElementFlags::JUMPED.union(ElementFlags::LEADS))
-        {
-            self.follow_jump(seen.0);
-        }
+        let jumped = take!(self.flags, ElementFlags::JUMPED);
+        self.flags.set(ElementFlags::LEADS, jumped);
         (self.length, self.rate) = seen;
     }
 

@@ -212,12 +212,7 @@ impl ElementRow {
         };
         if self.trouble.passing().is_none() {
             let (elastic, drag) = (self.elastic(length), self.drag(length, rate));
-            let lead = if self.has(ElementFlags::LEADS) {
-                self.rare.lead
-            } else {
-                0.0
-            };
-            readout.spring_force = single(elastic.force - lead);
+            readout.spring_force = single(self.even_tension(elastic.force));
             readout.damper_force = single(drag);
             readout.stored_energy = single(elastic.energy);
             readout.dissipated_power = single(drag * rate);

@@ -139,11 +139,8 @@ pub(crate) struct RareElement {
     pub facings: [DQuat; 2],
     /// Last twist with full turns counted, rad.
     pub angle: f64,
-    /// With [`ElementFlags::JUMPED`].
+    /// Valid only with [`ElementFlags::JUMPED`] or [`ElementFlags::LEADS`].
     pub jump: Jump,
-    /// What a change of parameters that goes on evenly would take from the tension after the last step, N. Valid only with
-    /// [`ElementFlags::LEADS`].
-    pub lead: f64,
     /// Scales of the bodies at its ends. They ignore the rounding noise of transforms.
     pub scales: [Option<DVec3>; 2],
     pub controller: Controller,
@@ -175,7 +172,6 @@ impl ElementRow {
                 facings: [DQuat::IDENTITY; 2],
                 angle: 0.0,
                 jump: Jump::default(),
-                lead: 0.0,
                 scales: [None; 2],
                 controller: Controller::default(),
             }),

@@ -34,7 +34,7 @@ bitflags! {
         const TOLD_UNRESOLVED = 1 << 12;
         /// The game changed its parameters before this step, and with them its force: see `RareElement::jump`.
         const JUMPED = 1 << 13;
-        /// The game changed its parameters before the last step: `RareElement::lead` is valid.
+        /// The game did so before the last step, so the readout must tell the force of an even change.
         const LEADS = 1 << 14;
         /// The flags that a snapshot keeps. The other flags are found anew.
         const KEPT = Self::CHANGED.bits() | Self::REFITTED.bits() | Self::CAPTURED.bits()

@@ -16,8 +16,8 @@ fn ease(t: f32) -> f32 {
     EaseFunction::SmootherStep.sample_clamped(t)
 }
 
-/// Winds a cable of the given stiffness and damping by `way`. Returns the greatest force that its readout tells as a share of the
-/// weight, the least one, the work that no ledger has as a share of the work done, and whether the cable is left.
+/// Winds a cable of the given stiffness and damping by `way`. Returns the least and the greatest force that its readout tells as
+/// shares of the weight, the work that no ledger has as a share of the work done, and whether the cable is left.
 fn wind([stiffness, damping]: [f32; 2], way: f32, rail: bool) -> ([f32; 2], f64, bool) {
     let mut lab = Lab::new();
     let weight = MASS * GRAVITY as f32;

@@ -91,9 +91,8 @@ fn take_element(row: &ElementRow, places: &[u32], world: &World) -> KeptElement 
         places: ends,
         facings,
         angle,
-        // These are of changes during the tick.
+        // This is of changes during the tick.
         jump: _,
-        lead: _,
         scales,
         controller,
     } = *row.rare;
