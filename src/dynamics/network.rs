@@ -195,7 +195,6 @@ impl Network {
         }
         self.act(bodies, step);
         self.account(elements, step);
-        self.system.end();
     }
 
     /// Adds up the heat of dampers, and the work of ends with prescribed motion.
@@ -250,7 +249,6 @@ impl Network {
         moved.clear();
         moved.extend_from_slice(bodies);
         self.act(&mut moved, step);
-        self.system.end();
         moved
     }
 

@@ -6,9 +6,9 @@
 
 use super::body::{Body, Spin};
 use super::conjugate::{self, Iterated};
+use super::direct::Direct;
 use super::strut::{NOBODY, Strut, Twists, cross};
 use bevy::math::{DMat3, DVec3};
-use nalgebra::{Cholesky, DMatrix, DVector, Dyn, Matrix6, Vector6};
 
 /// Number of unknowns up to which a factorisation is cheaper than iterations.
 pub(super) const DENSE: usize = 96;
@@ -27,14 +27,11 @@ pub(super) struct System {
     /// 1 on axes that are free, 0 on locked ones.
     free: Twists,
     turns: bool,
-    /// For each body, the index of its first unknown in the matrix, and whether its rotation is among the unknowns.
-    places: Vec<(usize, bool)>,
-    unknowns: usize,
     blocks: Vec<DMat3>,
-    blocks_turning: Vec<Matrix6<f64>>,
-    matrix: DMatrix<f64>,
-    factor: Option<Cholesky<f64, Dyn>>,
-    vector: DVector<f64>,
+    blocks_turning: Vec<Block>,
+    direct: Direct,
+    /// Whether `direct` can solve with the present struts.
+    factorised: bool,
     vectors: Vectors,
 }
 
@@ -92,8 +89,7 @@ impl System {
         self.mass.clear();
         self.inertia.clear();
         self.free.clear(bodies.len(), self.turns);
-        self.places.clear();
-        self.unknowns = 0;
+        self.direct.number(bodies);
         for (i, body) in bodies.iter().enumerate() {
             let w = body.inverse_mass;
             let free = DVec3::select(w.cmpgt(DVec3::ZERO), DVec3::ONE, DVec3::ZERO);
@@ -101,8 +97,6 @@ impl System {
             let mass = DVec3::select(w.cmpgt(DVec3::ZERO), w.recip(), DVec3::ONE);
             self.mass.push(DMat3::from_diagonal(mass));
             let turns = body.spin != Spin::Ignored;
-            self.places.push((self.unknowns, turns));
-            self.unknowns += if turns { 6 } else { 3 };
             if self.turns && !turns {
                 self.inertia.push(DMat3::IDENTITY);
             }
@@ -119,7 +113,7 @@ impl System {
                 self.inertia.push(inverse.inverse());
             }
         }
-        self.factor = None;
+        self.factorised = false;
     }
 
     pub(super) fn turns(&self) -> bool {
@@ -127,15 +121,14 @@ impl System {
     }
 
     pub(super) fn is_dense(&self) -> bool {
-        self.unknowns <= DENSE
+        self.direct.unknowns() <= DENSE
     }
 
     /// Prepares the solve for the present struts.
     pub(super) fn prepare(&mut self) {
-        if self.is_dense() {
-            self.factorise();
-        }
-        if self.factor.is_none() {
+        self.factorised = self.is_dense()
+            && (self.direct).factorise(&self.struts, &self.mass, &self.inertia, &self.free);
+        if !self.factorised {
             // Large, or stiff beyond what f64 can factorise.
             self.invert_blocks();
         }
@@ -147,10 +140,8 @@ impl System {
         if !x.fits(self.mass.len(), self.turns) {
             x.clear(self.mass.len(), self.turns);
         }
-        if let Some(factor) = &self.factor {
-            scatter(right, &self.places, &mut self.vector);
-            factor.solve_mut(&mut self.vector);
-            gather(&self.vector, &self.places, x);
+        if self.factorised {
+            self.direct.solve(right, x);
             return Effort { converged: true };
         }
         self.iterate(right, x, budget)
@@ -201,9 +192,9 @@ impl System {
             return;
         }
         for (i, block) in self.blocks_turning.iter().enumerate() {
-            let v = block * stack(r.linear[i], r.angular[i]);
-            z.linear[i] = DVec3::new(v[0], v[1], v[2]);
-            z.angular[i] = DVec3::new(v[3], v[4], v[5]);
+            let (linear, angular) = (r.linear[i], r.angular[i]);
+            z.linear[i] = block.linear * linear + block.across * angular;
+            z.angular[i] = block.across.transpose() * linear + block.angular * angular;
         }
     }
 
@@ -225,12 +216,13 @@ impl System {
             }
             return;
         }
-        for (mass, inertia) in self.mass.iter().zip(&self.inertia) {
-            let mut block = Matrix6::zeros();
-            put(&mut block, 0, 0, *mass);
-            put(&mut block, 3, 3, *inertia);
-            self.blocks_turning.push(block);
-        }
+        let own = |(mass, inertia): (&DMat3, &DMat3)| Block {
+            linear: *mass,
+            across: DMat3::ZERO,
+            angular: *inertia,
+        };
+        self.blocks_turning
+            .extend(self.mass.iter().zip(&self.inertia).map(own));
         for strut in &self.struts {
             let own = strut.matrix();
             for (body, arm) in strut.bodies.into_iter().zip(strut.arms) {
@@ -239,88 +231,60 @@ impl System {
                 }
                 let (lever, block) = (cross(arm), &mut self.blocks_turning[body]);
                 if strut.twist {
-                    put(block, 3, 3, own);
+                    block.angular += own;
                     continue;
                 }
-                put(block, 0, 0, own);
-                put(block, 0, 3, own * -lever);
-                put(block, 3, 0, lever * own);
-                put(block, 3, 3, lever * own * -lever);
+                block.linear += own;
+                block.across += own * -lever;
+                block.angular += lever * own * -lever;
             }
         }
         for (i, block) in self.blocks_turning.iter_mut().enumerate() {
-            let free = stack(self.free.linear[i], self.free.angular[i]);
-            for k in (0..6).filter(|k| free[*k] == 0.0) {
-                block.row_mut(k).fill(0.0);
-                block.column_mut(k).fill(0.0);
-                block[(k, k)] = 1.0;
-            }
-            *block = block
-                .cholesky()
-                .map_or_else(Matrix6::identity, |c| c.inverse());
+            block.lock(self.free.linear[i], self.free.angular[i]);
+            *block = block.inverse();
+        }
+    }
+}
+
+/// The part of the matrix that concerns one body alone: its velocity, its angular velocity, and what couples the two. The
+/// rest is the transpose of `across`.
+#[derive(Clone, Copy)]
+struct Block {
+    linear: DMat3,
+    across: DMat3,
+    angular: DMat3,
+}
+
+impl Block {
+    const IDENTITY: Self = Self {
+        linear: DMat3::IDENTITY,
+        across: DMat3::ZERO,
+        angular: DMat3::IDENTITY,
+    };
+
+    fn lock(&mut self, linear: DVec3, angular: DVec3) {
+        lock(&mut self.linear, linear);
+        lock(&mut self.angular, angular);
+        for k in 0..3 {
+            *self.across.col_mut(k) *= linear * angular[k];
         }
     }
 
-    fn factorise(&mut self) {
-        let n = self.unknowns;
-        let mut matrix = std::mem::take(&mut self.matrix);
-        if matrix.nrows() != n {
-            matrix = DMatrix::zeros(n, n);
-            self.vector = DVector::zeros(n);
-        }
-        matrix.fill(0.0);
-        for (i, (at, turns)) in self.places.iter().enumerate() {
-            put(&mut matrix, *at, *at, self.mass[i]);
-            if *turns {
-                put(&mut matrix, at + 3, at + 3, self.inertia[i]);
-            }
-        }
-        for strut in &self.struts {
-            let own = strut.matrix();
-            for (i, row) in strut.bodies.into_iter().enumerate() {
-                for (j, column) in strut.bodies.into_iter().enumerate() {
-                    if row == NOBODY || column == NOBODY {
-                        continue;
-                    }
-                    let own = if i == j { own } else { own * -1.0 };
-                    let ((r, r_turns), (c, c_turns)) = (self.places[row], self.places[column]);
-                    if strut.twist {
-                        if r_turns && c_turns {
-                            put(&mut matrix, r + 3, c + 3, own);
-                        }
-                        continue;
-                    }
-                    put(&mut matrix, r, c, own);
-                    let (a, b) = (cross(strut.arms[i]), cross(strut.arms[j]));
-                    if c_turns {
-                        put(&mut matrix, r, c + 3, own * -b);
-                    }
-                    if r_turns {
-                        put(&mut matrix, r + 3, c, a * own);
-                    }
-                    if r_turns && c_turns {
-                        put(&mut matrix, r + 3, c + 3, a * own * -b);
-                    }
-                }
-            }
-        }
-        for (i, (at, turns)) in self.places.iter().enumerate() {
-            for k in 0..3 {
-                if self.free.linear[i][k] == 0.0 {
-                    lock_row(&mut matrix, at + k);
-                }
-                if *turns && self.free.angular[i][k] == 0.0 {
-                    lock_row(&mut matrix, at + 3 + k);
-                }
-            }
-        }
-        self.factor = Cholesky::new(matrix);
-    }
-
-    /// Keeps the memory of the factorisation for the next one.
-    pub(super) fn end(&mut self) {
-        if let Some(factor) = self.factor.take() {
-            self.matrix = factor.unpack_dirty();
+    /// Inverts by the Schur complement of the linear part. Where rounding leaves nothing positive, the identity serves as well.
+    fn inverse(&self) -> Self {
+        let linear = self.linear.inverse();
+        let moved = linear * self.across;
+        let angular = (self.angular - self.across.transpose() * moved).inverse();
+        let out = Self {
+            linear: linear + moved * angular * moved.transpose(),
+            across: -(moved * angular),
+            angular,
+        };
+        let positive = |m: &DMat3| m.is_finite() && (0..3).all(|k| m.col(k)[k] > 0.0);
+        if positive(&out.linear) && positive(&out.angular) && out.across.is_finite() {
+            out
+        } else {
+            Self::IDENTITY
         }
     }
 }
@@ -332,57 +296,5 @@ fn lock(block: &mut DMat3, free: DVec3) {
             block.col_mut(other)[k] = 0.0;
         }
         block.col_mut(k)[k] = 1.0;
-    }
-}
-
-fn lock_row(matrix: &mut DMatrix<f64>, index: usize) {
-    matrix.row_mut(index).fill(0.0);
-    matrix.column_mut(index).fill(0.0);
-    matrix[(index, index)] = 1.0;
-}
-
-/// Adds a block to a matrix.
-fn put<M: std::ops::IndexMut<(usize, usize), Output = f64>>(
-    matrix: &mut M,
-    row: usize,
-    column: usize,
-    block: DMat3,
-) {
-    for c in 0..3 {
-        for r in 0..3 {
-            matrix[(row + r, column + c)] += block.col(c)[r];
-        }
-    }
-}
-
-fn stack(linear: DVec3, angular: DVec3) -> Vector6<f64> {
-    Vector6::new(
-        linear.x, linear.y, linear.z, angular.x, angular.y, angular.z,
-    )
-}
-
-fn scatter(from: &Twists, places: &[(usize, bool)], to: &mut DVector<f64>) {
-    for (i, (at, turns)) in places.iter().enumerate() {
-        for k in 0..3 {
-            to[at + k] = from.linear[i][k];
-            if *turns {
-                to[at + 3 + k] = from.angular[i][k];
-            }
-        }
-    }
-}
-
-fn gather(from: &DVector<f64>, places: &[(usize, bool)], to: &mut Twists) {
-    for (i, (at, turns)) in places.iter().enumerate() {
-        for k in 0..3 {
-            to.linear[i][k] = from[at + k];
-            if *turns {
-                to.angular[i][k] = from[at + 3 + k];
-            }
-        }
-        if let (false, Some(angular)) = (*turns, to.angular.get_mut(i)) {
-            // The body may have turned in an earlier step.
-            *angular = DVec3::ZERO;
-        }
     }
 }
