@@ -79,8 +79,7 @@ impl Envelope {
             }
             let diagonal = row - first;
             let square = own[diagonal] - dot(&own[..diagonal], &own[..diagonal]);
-            // Written so that NaN is refused too.
-            if !(square > 0.0) {
+            if square.is_nan() || square <= 0.0 {
                 return false;
             }
             own[diagonal] = square.sqrt();
