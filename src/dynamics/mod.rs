@@ -8,7 +8,8 @@
 //! - [`poles`] computes exact coefficients. [`kick`] uses them for a lone element, [`pair`] for one that turns no body,
 //!   and [`lanes`] for four of those at once. [`nonlinear_pair`] solves one with a force [`law`].
 //! - [`network`] solves elements that share bodies, with the linear algebra in [`system`] and [`strut`]. [`points`] does
-//!   so if no body turns. Both iterate by [`conjugate`] gradients.
+//!   so if no body turns. Both iterate by [`conjugate`] gradients; a small [`system`] is solved [`direct`]ly, within its
+//!   [`envelope`].
 //! - [`guard`] limits the [`energy`] of a strongly damped element, and [`bound`] that of a network.
 //! - [`delivery`] computes the impulse and force with which the engine arrives at the same state.
 //! - [`soft`] and [`pieces`] describe an element to the engine's own solver.
