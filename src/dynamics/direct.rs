@@ -33,8 +33,12 @@ impl Direct {
         self.places.clear();
         for body in bodies.iter().rev() {
             let (at, turns) = (self.unknowns, body.spin != Spin::Ignored);
-            let first = at;
-            self.places.push(Place { at, turns, first });
+            // Its rows begin with itself, until a strut leads farther: see `shape`.
+            self.places.push(Place {
+                at,
+                turns,
+                first: at,
+            });
             self.unknowns += if turns { 6 } else { 3 };
         }
         self.places.reverse();
@@ -104,9 +108,6 @@ impl Direct {
 
     /// Gives the matrix its rows: those of a body begin at the first body that one of its struts leads to.
     fn shape(&mut self, struts: &[Strut]) {
-        for place in &mut self.places {
-            place.first = place.at;
-        }
         for Strut { bodies: [a, b], .. } in struts {
             if *a != NOBODY && *b != NOBODY {
                 let first = self.places[*a].at.min(self.places[*b].at);

@@ -264,7 +264,7 @@ impl Network {
 
     /// Vector from which the iterations of the next solve start; none for a network that is factorised.
     pub(super) fn start(&self) -> Option<&Twists> {
-        (!self.system.is_dense()).then_some(&self.acceleration)
+        (!self.system.is_direct()).then_some(&self.acceleration)
     }
 
     /// Makes the next iterations start from `start` if it is finite.
@@ -283,7 +283,7 @@ impl Network {
     pub(crate) fn take_effort(&mut self) -> (bool, bool) {
         let effort = self.effort.take();
         (
-            !self.system.is_dense(),
+            !self.system.is_direct(),
             effort.is_none_or(|effort| effort.converged),
         )
     }

@@ -11,7 +11,7 @@ use super::strut::{NOBODY, Strut, Twists, cross};
 use bevy::math::{DMat3, DVec3};
 
 /// Number of unknowns up to which a factorisation is cheaper than iterations.
-pub(super) const DENSE: usize = 96;
+pub(super) const DIRECT: usize = 96;
 
 /// Result of a solve.
 #[derive(Clone, Copy, Debug, Default)]
@@ -113,20 +113,19 @@ impl System {
                 self.inertia.push(inverse.inverse());
             }
         }
-        self.factorised = false;
     }
 
     pub(super) fn turns(&self) -> bool {
         self.turns
     }
 
-    pub(super) fn is_dense(&self) -> bool {
-        self.direct.unknowns() <= DENSE
+    pub(super) fn is_direct(&self) -> bool {
+        self.direct.unknowns() <= DIRECT
     }
 
     /// Prepares the solve for the present struts.
     pub(super) fn prepare(&mut self) {
-        self.factorised = self.is_dense()
+        self.factorised = self.is_direct()
             && (self.direct).factorise(&self.struts, &self.mass, &self.inertia, &self.free);
         if !self.factorised {
             // Large, or stiff beyond what f64 can factorise.

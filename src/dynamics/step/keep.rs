@@ -6,7 +6,7 @@ use crate::dynamics::body::{Body, is_within};
 use crate::dynamics::bound::Bound;
 use crate::dynamics::energy::Energy;
 use crate::dynamics::points::Points;
-use crate::dynamics::system::DENSE;
+use crate::dynamics::system::DIRECT;
 use crate::dynamics::tolerance::{Accuracy, Method, Motion, Outcome};
 
 /// Number of attempts, each with half the motion of the previous one. After them nothing moves at all.
@@ -28,7 +28,7 @@ impl Component {
             ..
         } = &mut self.memory;
         points.load_from(&self.elements, &self.bodies, *max_iterations);
-        3 * self.bodies.len() > DENSE || points.bounds(time).0 < SOFT
+        3 * self.bodies.len() > DIRECT || points.bounds(time).0 < SOFT
     }
 
     /// Takes the step of a network of points.
