@@ -3,6 +3,7 @@
 use super::{Again, DT, Finding, Stage, again, headless_app};
 use bevy::ecs::schedule::SingleThreadedExecutor;
 use bevy::prelude::*;
+use bevy::transform::StaticTransformOptimizations;
 use bevy_rapier3d::prelude::*;
 use std::collections::HashMap;
 
@@ -24,6 +25,8 @@ const ASPECT: f32 = 16.0 / 9.0;
 /// Runs the scene for this time. Fails as soon as a body has left the picture or is no longer upright.
 pub fn watch(stage: &Stage, minutes: f32) -> AppExit {
     let mut app = headless_app(stage);
+    // As in the tests of physics: looking for what rests takes threads too.
+    app.insert_resource(StaticTransformOptimizations::Disabled);
     again::repeat(&mut app, stage.again);
     // Each system does so little that threads cost more than they gain.
     for (_, schedule) in app.world_mut().resource_mut::<Schedules>().iter_mut() {

@@ -4,7 +4,7 @@
 #![allow(missing_docs, reason = "a test")]
 
 use pictures::command;
-use std::process::Stdio;
+use std::sync::Mutex;
 
 /// Scenes, and the number of minutes that each is watched.
 const SCENES: [(&str, &str); 25] = [
@@ -39,23 +39,25 @@ const SCENES: [(&str, &str); 25] = [
 #[test]
 fn after_ten_minutes_nothing_has_left_the_picture_or_lies_askew() {
     let all = std::env::var("MINUTES").is_ok_and(|minutes| minutes == "all");
+    let waiting = Mutex::new(SCENES.iter());
+    let next = || waiting.lock().expect("no test has panicked").next();
     // Two at a time: each uses one thread.
-    for pair in SCENES.chunks(2) {
-        let begin = |(scene, minutes): &(&'static str, &str)| {
-            let mut watched = command(scene);
-            let minutes: f32 = minutes.parse().expect("a number");
-            let minutes = if all { minutes } else { 1.0 };
-            watched.args(["--minutes", &minutes.to_string()]);
-            watched.stdout(Stdio::piped()).stderr(Stdio::piped());
-            (*scene, watched.spawn().expect("the example starts"))
-        };
-        let running: Vec<_> = pair.iter().map(begin).collect();
-        for (scene, running) in running {
-            let run = running.wait_with_output().expect("the example runs");
-            let told = String::from_utf8_lossy(&run.stdout);
-            println!("{}", told.lines().last().unwrap_or(scene));
-            let wrong = String::from_utf8_lossy(&run.stderr);
-            assert!(run.status.success(), "{scene}: {wrong}");
+    std::thread::scope(|both| {
+        for _ in 0..2 {
+            both.spawn(|| {
+                while let Some(&(scene, minutes)) = next() {
+                    watch(scene, if all { minutes } else { "1" });
+                }
+            });
         }
-    }
+    });
+}
+
+fn watch(scene: &str, minutes: &str) {
+    let run = command(scene).args(["--minutes", minutes]).output();
+    let run = run.expect("the example runs");
+    let told = String::from_utf8_lossy(&run.stdout);
+    println!("{}", told.lines().last().unwrap_or(scene));
+    let wrong = String::from_utf8_lossy(&run.stderr);
+    assert!(run.status.success(), "{scene}: {wrong}");
 }

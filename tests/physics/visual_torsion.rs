@@ -5,6 +5,7 @@ use crate::messages::Log;
 use crate::visual_data::{lab, parts};
 use bevy::mesh::VertexAttributeValues;
 use bevy::prelude::*;
+use bevy::transform::StaticTransformOptimizations;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
 use std::collections::HashSet;
@@ -168,6 +169,8 @@ fn at_rest_nothing_of_it_is_sent_to_the_graphics_card_again() {
     door.lab
         .app
         .init_resource::<Sent>()
+        // As Bevy does by default; otherwise it renews the places of all children in each frame.
+        .insert_resource(StaticTransformOptimizations::Enabled)
         .add_systems(Last, count);
     door.lab.tick();
     let sent = |door: &Door| door.lab.app.world().resource::<Sent>().0;

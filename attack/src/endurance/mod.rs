@@ -12,6 +12,7 @@ pub use net::net;
 use bevy::ecs::schedule::{Schedules, SingleThreadedExecutor};
 use bevy::prelude::*;
 use bevy::time::TimeUpdateStrategy;
+use bevy::transform::StaticTransformOptimizations;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
 use std::time::Duration;
@@ -67,7 +68,9 @@ pub struct Saved {
 /// An app with nothing but Rapier and springs.
 fn lab(gravity: f32) -> App {
     let mut app = App::new();
-    app.add_plugins((MinimalPlugins, TransformPlugin))
+    // As in the tests of physics: looking for what rests takes threads in every update.
+    app.insert_resource(StaticTransformOptimizations::Disabled)
+        .add_plugins((MinimalPlugins, TransformPlugin))
         .add_plugins(RapierPhysicsPlugin::<NoUserData>::default().in_fixed_schedule())
         .add_plugins(CoiloverPlugin::default());
     let tick = Duration::from_secs_f32(DT);
