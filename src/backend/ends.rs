@@ -35,6 +35,8 @@ pub(crate) struct Found {
 pub(crate) struct Movable {
     /// Whether the element turns the body.
     pub turns: bool,
+    /// Centre of mass in the body's frame, m.
+    pub center: Vec3,
     /// Sort key of the body within its component: a hash of its state when it was first found. It does not depend on the order
     /// in which bodies were spawned.
     pub rank: u64,

@@ -73,6 +73,10 @@ impl StepPlan {
     }
 }
 
+/// Distance up to which an end counts as at the centre of mass of its body, m: the rounding of f32 in a body of a metre. An
+/// element at a greater distance turns the body. Pinned by `anchoring`.
+pub(crate) const SAME_PLACE: f64 = 1e-7;
+
 /// State of a body in the engine now. World frame unless a field says otherwise.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Seen {
@@ -119,6 +123,13 @@ impl Seen {
         } else {
             origin + self.facing() * self.local_center.as_dvec3()
         }
+    }
+
+    /// Whether its centre of mass is no longer at `center`, in the body's frame. An engine may not tell: a collider that is
+    /// disabled or moved also moves the centre.
+    #[inline(always)]
+    pub(crate) fn has_shifted(&self, center: Vec3) -> bool {
+        !self.local_center.abs_diff_eq(center, SAME_PLACE as f32)
     }
 
     /// Position and velocity of a point fixed to the body. `local` is the point in the body's frame.

@@ -29,13 +29,12 @@ const MOST_ALONE: u32 = 32;
 /// Distance up to which kinks of a law are looked for, as a multiple of the change of length in a step.
 const AHEAD: f64 = 1.25;
 
-/// Micro-steps that resolve a lone element with (ω h)² = `z` over the whole step; one if they are more than `most`.
-/// Resolved micro-steps are exact along the line.
+/// Micro-steps that resolve a lone element with (ω h)² = `z` over the whole step; one if they are more than
+/// [`MOST_ALONE`]. They are so few that they do not come out of the budget of the networks, `most`, but a budget of 0
+/// allows one. Resolved micro-steps are exact along the line.
 pub(super) fn lone_steps(z: f64, most: u32) -> Least {
-    Least::of(
-        z,
-        within((z / RESOLVED).sqrt(), most.min(MOST_ALONE)).unwrap_or(1),
-    )
+    let most = if most == 0 { 1 } else { MOST_ALONE };
+    Least::of(z, within((z / RESOLVED).sqrt(), most).unwrap_or(1))
 }
 
 /// Micro-steps of a network whose stiffest mode has (ω h)² = `z` over the whole step. Returns those that follow the mode,

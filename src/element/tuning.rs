@@ -48,8 +48,9 @@ impl SpringTuning {
         }
     }
 
-    /// From a static sag (m) under the engine's gravity and a damping ratio. Without a rest length, the load stays
-    /// where it was spawned; with one, it sags from there.
+    /// From a static sag (m) under the engine's gravity, multiplied by the body's gravity scale, and a damping ratio.
+    /// Without a rest length, the load stays where it was spawned; with one, it sags from there. Without gravity, it is
+    /// a fault.
     pub const fn sag(sag: f32, damping_ratio: f32) -> Self {
         Self::Sag { sag, damping_ratio }
     }

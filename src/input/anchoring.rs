@@ -1,6 +1,7 @@
 //! Converts anchors that were given as points of the world into points of the ends, before the step.
 
 use crate::element::{Anchors, WorldAnchors};
+use crate::input::named_ends::MOST_LEVELS;
 use crate::input::parts::{IsElement, Parts, PartsItem};
 use bevy::prelude::*;
 
@@ -12,11 +13,16 @@ pub(crate) fn anchor(
         Query<&mut Anchors>,
     )>,
     transforms: TransformHelper,
+    parents: Query<&ChildOf>,
     mut commands: Commands,
 ) {
     let on_ends = |(parts, points): (PartsItem, &WorldAnchors)| {
         // Composed from local transforms: `GlobalTransform` is one frame old here.
         let local = |end: Entity, point: Vec3| {
+            // Parents in a circle would hang the game. The element itself reports them.
+            if parents.iter_ancestors(end).nth(MOST_LEVELS).is_some() {
+                return None;
+            }
             let global = transforms.compute_global_transform(end).ok()?;
             Some(global.affine().inverse().transform_point3(point))
         };

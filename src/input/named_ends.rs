@@ -11,8 +11,8 @@ use bevy::platform::collections::HashMap;
 use bevy::prelude::*;
 
 /// Most parents that are followed upwards: more than any real scene has. It keeps parents in a circle from hanging the
-/// game.
-const MOST_LEVELS: usize = 4096;
+/// game. Pinned by `ends`.
+pub(crate) const MOST_LEVELS: usize = 4096;
 
 /// Filter: an element that the engine leaves out until its ends are found.
 type Waits = (With<EndNames>, With<AwaitsEnds>, IsElement);

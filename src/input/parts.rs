@@ -192,10 +192,30 @@ impl PartsItem<'_, '_> {
         }
         match (found, count) {
             (Some(found), 1) => Ok(found),
-            _ => Err(Fault::new(
+            _ => Err(self.several()),
+        }
+    }
+
+    /// The fault of an entity that has several elements.
+    fn several(&self) -> Fault {
+        let lines = self.spring.is_some() || self.damper.is_some() || self.pair.is_some();
+        let twists = self.torsion_spring.is_some()
+            || self.torsion_damper.is_some()
+            || self.torsion_pair.is_some();
+        let (field, reason) = match (lines, twists) {
+            (true, true) => (
+                "Spring, Damper, SpringDamper",
+                "stand together with a torsion element on one entity; give each an entity of its own",
+            ),
+            (_, false) => (
                 "Spring, Damper, SpringDamper",
                 "stand together on one entity; use one of them, or SpringDamper for both at once",
-            )),
-        }
+            ),
+            (false, true) => (
+                "TorsionSpring, TorsionDamper, TorsionSpringDamper",
+                "stand together on one entity; use one of them, or TorsionSpringDamper for both at once",
+            ),
+        };
+        Fault::new(field, reason)
     }
 }

@@ -146,6 +146,7 @@ impl Assembly {
                 return false;
             };
             let turns = row.has(BodyFlags::TURNS);
+            self.stale |= !turns && seen.has_shifted(row.rare.center);
             let Some(mut free) = sight.body(row.id, &row.user(), turns) else {
                 return false;
             };

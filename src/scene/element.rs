@@ -66,11 +66,14 @@ pub(crate) fn element(row: &mut ElementRow, ends: [End; 2], bodies: &[Body]) -> 
     let guided = element.guide != Guide::Centres;
     let mut line = element.line(bodies);
     if p.rest_length.is_none() {
-        let length = line.map_or(0.0, |line| line.distance());
-        row.numbers.rest_length = Some(length as f32);
-        element.rest_length = f64::from(length as f32);
-        row.flags.insert(ElementFlags::CAPTURED);
+        let length = line.map_or(0.0, |line| line.distance()) as f32;
+        element.rest_length = f64::from(length);
         line = element.line(bodies);
+        // Without a line there is nothing to measure yet.
+        if line.is_some() {
+            row.numbers.rest_length = Some(length);
+            row.flags.insert(ElementFlags::CAPTURED);
+        }
     }
     let Some(line) = line else {
         let reason = if guided {

@@ -119,7 +119,7 @@ impl ElementRow {
         let led = self.moves() == 0 && self.rare.places[0].is_some();
         // Two calls are faster than a loop that fills an array, and this runs for every element.
         let points = [self.point(0, bodies, eyes), self.point(1, bodies, eyes)];
-        if self.numbers.rest_length.is_none() {
+        if self.numbers.rest_length.is_none() && self.trouble.passing().is_none() {
             // An element without a movable body is not solved, so its rest length is captured only here.
             let length = self.extent(points, eyes.worlds).0;
             self.numbers.rest_length = Some(length as f32);

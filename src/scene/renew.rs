@@ -182,6 +182,7 @@ impl Scene {
         let rows = self.bodies.iter_mut().zip(&wanted);
         rows.map(|(row, body)| {
             row.flags.set(BodyFlags::TURNS, body.turns);
+            row.rare.center = body.center;
             if modified.contains(&row.entity) {
                 row.flags.insert(BodyFlags::DISTURBED);
             }

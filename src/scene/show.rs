@@ -153,7 +153,7 @@ impl ElementRow {
         }
         let tuned = take!(self.flags, ElementFlags::TUNED);
         let captured = take!(self.flags, ElementFlags::CAPTURED);
-        if (captured && self.trouble.passing().is_none()) || tuned {
+        if captured || tuned {
             self.write_back(tuned, springs);
         }
         if tuned && !self.has(ElementFlags::TUNED_AGAIN) {

@@ -51,7 +51,7 @@ pub struct Scene {
     pub(crate) time: f64,
     /// Whether an element or body of the scene gained or lost a component that matters. Then all rows are made anew.
     pub(crate) disturbed: bool,
-    /// Elements that lost a companion component since the last tick.
+    /// Elements that lost a companion component since the last tick, or differ from the snapshot that was restored.
     pub(crate) left_behind: Vec<Entity>,
     /// Whether the rows were found to be out of date after the tick was prepared. Then they are made anew in the next tick.
     pub(crate) stale: bool,

@@ -2,7 +2,7 @@
 
 use crate::backend::{BodyId, Found, Movable, Place};
 use crate::scene::rows::BodyRow;
-use bevy::prelude::Entity;
+use bevy::prelude::{Entity, Vec3};
 
 /// A body that elements can move.
 pub(crate) struct Wanted {
@@ -10,6 +10,8 @@ pub(crate) struct Wanted {
     pub(crate) id: BodyId,
     pub(crate) context: Entity,
     pub(crate) turns: bool,
+    /// See [`Movable::center`].
+    pub(crate) center: Vec3,
     /// See [`Movable::rank`].
     pub(crate) rank: u64,
 }
@@ -31,12 +33,17 @@ impl Wanted {
                     context,
                     ..
                 },
-                Some(Movable { turns, rank }),
+                Some(Movable {
+                    turns,
+                    center,
+                    rank,
+                }),
             ) => Some(Self {
                 entity,
                 id,
                 context,
                 turns,
+                center,
                 rank,
             }),
             _ => None,

@@ -276,3 +276,17 @@ fn what_coincided_acts_again_in_what_it_shows_once_nothing_can_be_moved() {
     assert!(lab.app.world().get::<SpringFault>(element).is_none());
     assert!((lab.readout(element).spring_force - 20.0).abs() < 1e-3);
 }
+
+#[test]
+fn two_torsion_elements_or_both_kinds_on_one_entity() {
+    let mut lab = Lab::weightless();
+    let (hook, body) = (lab.body(1.0, Vec3::ZERO), lab.body(1.0, Vec3::X));
+    let damper = || TorsionDamper::new(hook, body, Vec3::X);
+    let both = lab.spawn((TorsionSpring::new(hook, body, Vec3::X), damper()));
+    let mixed = lab.spawn((Spring::new(hook, body), damper()));
+    lab.run(0.1);
+    let fault = lab.get::<SpringFault>(both);
+    assert!(fault.field.contains("TorsionSpring,") && fault.reason.contains("TorsionSpringDamper"));
+    let fault = lab.get::<SpringFault>(mixed);
+    assert!(fault.reason.contains("an entity of its own"), "{fault}");
+}

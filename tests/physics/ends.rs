@@ -338,3 +338,24 @@ fn what_holds_an_end_may_become_another_kind_of_thing_at_any_time() {
         assert!((apart - 1.0).abs() < 0.02, "{name}: {apart} m apart");
     }
 }
+
+#[test]
+fn parents_in_a_circle_are_told_and_hang_nothing() {
+    let mut lab = Lab::weightless();
+    let body = lab.body(1.0, Vec3::X);
+    let (first, second) = (lab.point(Vec3::ZERO), lab.point(Vec3::ZERO));
+    let world = lab.app.world_mut();
+    world.entity_mut(first).insert(ChildOf(second));
+    world.entity_mut(second).insert(ChildOf(first));
+    let by_points = WorldAnchors::new(Vec3::ZERO, Vec3::X);
+    let elements = [
+        lab.spawn(Spring::new(first, body)),
+        lab.spawn((Spring::new(first, body), by_points)),
+    ];
+    lab.run(0.1);
+    for element in elements {
+        let fault = lab.get::<SpringFault>(element);
+        assert_eq!(fault.field, "Spring::body_a");
+        assert!(fault.reason.contains("circle"), "{fault}");
+    }
+}

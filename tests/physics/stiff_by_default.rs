@@ -201,3 +201,34 @@ fn a_stiff_mode_costs_nothing_until_it_is_struck() {
     assert!(struck >= 70, "{struck} kicks when struck");
     assert!(off.abs() < 0.01 * 10.0 / omega, "{off} m");
 }
+
+#[test]
+fn a_spring_off_the_centre_keeps_its_phase_beside_a_network_that_needs_the_whole_budget() {
+    let plugin = CoiloverPlugin::default().with_resolve(300);
+    let mut lab = Lab::with(plugin, Engine::weightless());
+    let mut last = lab.point(Vec3::Y * 5.0);
+    for i in 1..=400 {
+        let next = lab.body(1.0, Vec3::new(i as f32, 5.0, 0.0));
+        lab.spawn(
+            Spring::new(last, next)
+                .with_stiffness(1e5)
+                .with_rest_length(0.99),
+        );
+        last = next;
+    }
+    // ω·dt is 10. The line passes through the centre of mass, so the ball only moves along it.
+    let stiffness = (10.0 * 60.0_f64).powi(2);
+    let hook = lab.point(Vec3::NEG_X);
+    let ball = lab.body(1.0, Vec3::X * (1.0 + AMPLITUDE as f32));
+    let spring = lab.spawn((
+        Spring::new(hook, ball)
+            .with_stiffness(stiffness as f32)
+            .with_rest_length(1.0),
+        Anchors::new(Vec3::X * 0.2, Vec3::NEG_X * 0.8),
+    ));
+    let omega = f64::from(stiffness as f32).sqrt();
+    let off = error(&mut lab, ball, 1.0, |time| (omega * time).cos());
+    println!("beside a network, ω·dt 10: off by {off:.1e} of its amplitude in 3 s");
+    assert!(lab.readout(spring).microsteps >= 5);
+    assert!(off < 0.01, "{off}");
+}

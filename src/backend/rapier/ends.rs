@@ -3,6 +3,7 @@
 use super::body::id;
 use crate::backend::Place;
 use crate::input::check::Fault;
+use crate::input::named_ends::MOST_LEVELS;
 use bevy::ecs::system::SystemParam;
 use bevy::math::{DAffine3, DVec3};
 use bevy::prelude::*;
@@ -37,7 +38,12 @@ impl Ends<'_, '_> {
     ) -> Result<Place, Fault> {
         let mut point = anchor.as_dvec3();
         let mut current = end;
+        let mut levels = 0;
         let body = loop {
+            levels += 1;
+            if levels > MOST_LEVELS {
+                return Err(Fault::new(field, "has parents in a circle"));
+            }
             if let Ok((handle, link, global)) = self.bodies.get(current) {
                 if point != DVec3::ZERO {
                     point *= steady_scale(global, scale);

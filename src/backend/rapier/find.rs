@@ -2,7 +2,7 @@
 
 use super::body::{handle, is_movable};
 use super::ends::Ends;
-use crate::backend::{Finder, Found, Movable, Place};
+use crate::backend::{Finder, Found, Movable, Place, SAME_PLACE};
 use crate::dynamics::guide::Guide;
 use crate::element::{HoldPose, SpringTuning};
 use crate::input::check::{Fault, Parameters};
@@ -155,9 +155,10 @@ impl RapierFinder<'_, '_> {
                 "is a dynamic body without mass; give it AdditionalMassProperties, or a collider with or after its RigidBody",
             ));
         }
-        let arm = local - body.local_center_of_mass().as_dvec3();
+        let center = body.local_center_of_mass();
         Ok(Some(Movable {
-            turns: arm.length() > 1e-7,
+            turns: local.distance(center.as_dvec3()) > SAME_PLACE,
+            center,
             rank: rank(body),
         }))
     }

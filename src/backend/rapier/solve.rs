@@ -144,7 +144,8 @@ impl Scene {
         });
         self.unloaded.retain_mut(|(of, body, raised)| {
             let here = *of == context;
-            if let Some(body) = engine.bodies.get_mut(handle(*body)).filter(|_| here) {
+            // Mutable access marks a body as modified, so not the one that has this handle in another context.
+            if here && let Some(body) = engine.bodies.get_mut(handle(*body)) {
                 give_back(raised, body);
             }
             !here

@@ -25,8 +25,14 @@ pub(crate) struct Lever {
     pub context: Entity,
     /// Whether one of `bodies` has colliders.
     can_touch: bool,
-    /// Gravity, m/s².
-    gravity: Vec3,
+}
+
+impl Lever {
+    /// Gravity on the ends with their gravity scales, m/s²; the greater one if they differ.
+    fn gravity(&self) -> f64 {
+        let each = self.bodies.iter().map(|body| body.acceleration.length());
+        each.fold(0.0, f64::max)
+    }
 }
 
 impl RapierFinder<'_, '_> {
@@ -61,7 +67,11 @@ impl RapierFinder<'_, '_> {
             return fault("stands on an element whose ends cannot move or coincide");
         };
         let mass = left.recip() as f32;
-        let (stiffness, damping) = tuning.coefficients(mass, lever.gravity.length());
+        let gravity = lever.gravity();
+        if matches!(tuning, SpringTuning::Sag { .. }) && gravity == 0.0 {
+            return fault("asks for a sag where no gravity acts on the ends");
+        }
+        let (stiffness, damping) = tuning.coefficients(mass, gravity as f32);
         parameters.numbers.stiffness = stiffness;
         if !parameters.ties.names.damping.is_empty() {
             parameters.numbers.damping = damping;
@@ -174,7 +184,6 @@ impl RapierFinder<'_, '_> {
             handles,
             context: context?,
             can_touch,
-            gravity,
         })
     }
 }

@@ -98,6 +98,10 @@ impl Turn {
         let whole = carried + off;
         // The energy that the element would gain must come from the energy that its damping took.
         let won = energy(whole) - energy(carried);
+        if !won.is_finite() {
+            // A custom law gives no number here. The turn itself is known.
+            return (whole, true);
+        }
         let taken = self.damping * (self.leverage * by).powi(2) / time;
         let upright = self.leverage <= UPRIGHT;
         let spare = if upright && !slipped {

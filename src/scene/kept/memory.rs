@@ -13,5 +13,6 @@ impl Memory {
         rare.angle = self.angle;
         rare.facings = self.facings;
         rare.scales = self.scales;
+        rare.jump = self.jump;
     }
 }

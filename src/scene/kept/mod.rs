@@ -14,7 +14,7 @@ use crate::dynamics::step::Remembered;
 use crate::dynamics::tolerance::Controller;
 use crate::readout::SpringReadout;
 use crate::scene::held::{KeptJoint, Leeway};
-use crate::scene::rows::{BodyFlags, ElementFlags, EnergyLedger, Raised, Rest, Sweeps};
+use crate::scene::rows::{BodyFlags, ElementFlags, EnergyLedger, Jump, Raised, Rest, Sweeps};
 use bevy::math::{DQuat, DVec3, Vec3};
 use bevy::prelude::Entity;
 
@@ -87,6 +87,8 @@ pub(crate) struct Memory {
     pub(crate) facings: [DQuat; 2],
     /// Scales of the bodies at its ends.
     pub(crate) scales: [Option<DVec3>; 2],
+    /// What the game changed while the engine was paused.
+    pub(crate) jump: Jump,
 }
 
 /// A body that elements move: all fields of its row that are not found anew.

@@ -42,7 +42,9 @@ impl Alone {
         };
         if let Some(before) = before {
             let heat = before - row.energy_of(&pair, &end, end.d.length());
-            row.ledger.dissipated += heat;
+            if heat.is_finite() {
+                row.ledger.dissipated += heat;
+            }
         }
         true
     }

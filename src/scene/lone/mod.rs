@@ -15,7 +15,7 @@ use super::rows::{BodyRow, ElementFlags, ElementRow};
 use crate::backend::BodyId;
 use crate::scene::push::Given;
 use crate::threads;
-use bevy::prelude::Entity;
+use bevy::prelude::{Entity, Vec3};
 pub(crate) use solve::{Piece, Worker};
 
 /// The lone elements of a context.
@@ -35,6 +35,8 @@ pub(crate) struct Pair {
     bodies: [u32; 2],
     /// Engine handles of the bodies that it moves.
     ids: [BodyId; 2],
+    /// Centres of mass of these bodies in their frames when the rows were made, m. The element holds them there.
+    centers: [Vec3; 2],
 }
 
 /// Index that stands for no body.
@@ -46,10 +48,12 @@ impl Pair {
             element: index as u32,
             bodies: [NONE; 2],
             ids: [BodyId::NONE; 2],
+            centers: [Vec3::ZERO; 2],
         };
         for (end, body) in row.movable_ends() {
             pair.bodies[end] = body as u32;
             pair.ids[end] = bodies[body].id;
+            pair.centers[end] = bodies[body].rare.center;
         }
         pair
     }

@@ -198,6 +198,7 @@ impl Worker {
             row.flags.remove(ElementFlags::ACTIVE);
             return Err(Route::Gone);
         };
+        self.stale |= seen.has_shifted(pair.centers[end]);
         Ok(Found {
             point: body.point(&seen),
             more: Some(seen.more_substeps),

@@ -73,6 +73,7 @@ impl Finder for Ends<'_, '_> {
         let movable = places.map(|place| match place {
             Place::OnBody { body, local, .. } => Some(Movable {
                 turns: local != DVec3::ZERO,
+                center: Vec3::ZERO,
                 rank: u64::from(body.index),
             }),
             Place::Point(_) => None,

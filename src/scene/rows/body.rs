@@ -51,6 +51,8 @@ pub(crate) struct RareBody {
     pub rank: u64,
     /// Hash of the elements that act on it. A change wakes the body.
     pub signature: u64,
+    /// Centre of mass in the body's frame when the rows were made, m. Elements that do not turn the body hold it there.
+    pub center: Vec3,
     /// For how long and where it has been at rest, if it is at rest.
     pub rest: Rest,
     /// Time for which it still counts as held, s.
@@ -89,6 +91,7 @@ impl BodyRow {
                 slot: 0,
                 rank: 0,
                 signature: 0,
+                center: Vec3::ZERO,
                 rest: Rest::default(),
                 lingers: 0.0,
                 user_torque: Vec3::ZERO,

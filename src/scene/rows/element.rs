@@ -49,6 +49,7 @@ pub(crate) struct EnergyLedger {
 
 /// How the game changed the tension of an element before a step by a change of parameters.
 #[derive(Clone, Copy, Debug, Default)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Jump {
     /// Change of the tension, N.
     pub by: f64,

@@ -38,7 +38,7 @@ bitflags! {
         const LEADS = 1 << 14;
         /// The flags that a snapshot keeps. The other flags are found anew.
         const KEPT = Self::CHANGED.bits() | Self::REFITTED.bits() | Self::CAPTURED.bits()
-            | Self::TUNED.bits() | Self::TUNED_AGAIN.bits() | Self::ACTIVE.bits();
+            | Self::TUNED.bits() | Self::TUNED_AGAIN.bits() | Self::ACTIVE.bits() | Self::JUMPED.bits();
     }
 }
 

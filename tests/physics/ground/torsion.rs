@@ -80,3 +80,43 @@ fn a_limb_on_a_ball_joint_wins_nothing_however_it_spins() {
     }
     assert!(worst < 1.02, "{worst}");
 }
+
+#[test]
+fn a_door_whose_law_had_no_value_for_a_while_swings_again_with_a_sound_one() {
+    let mut lab = Lab::weightless();
+    let frame = lab.spawn((RigidBody::Fixed, Transform::default()));
+    let hinge = RevoluteJointBuilder::new(Vec3::Y).local_anchor2(Vec3::NEG_X * 0.5);
+    let door = lab.spawn((
+        brick(10.0, Vec3::splat(1.0), Vec3::X * 0.5),
+        ImpulseJoint::new(frame, hinge),
+    ));
+    *lab.get_mut::<Velocity>(door) = Velocity {
+        linear: Vec3::NEG_Z,
+        angular: Vec3::Y * 2.0,
+    };
+    // Without a value beyond 0.3 rad.
+    let law = CustomSpringLaw::new(|x: f64| if x.abs() > 0.3 { f64::NAN } else { 20.0 * x });
+    let element = lab.spawn((
+        TorsionSpringDamper::new(frame, door, Vec3::Y)
+            .with_stiffness(20.0)
+            .with_damping(0.5)
+            .with_rest_angle(0.0),
+        law,
+    ));
+    lab.run(0.5);
+    assert!(lab.app.world().get::<SpringFault>(element).is_some());
+    lab.app
+        .world_mut()
+        .entity_mut(element)
+        .remove::<CustomSpringLaw>();
+    let mut least = f32::INFINITY;
+    for _ in 0..lab.ticks(4.0) {
+        lab.tick();
+        least = least.min(lab.readout(element).length);
+    }
+    assert!(lab.app.world().get::<SpringFault>(element).is_none());
+    let angle = lab.get::<Transform>(door).rotation.to_scaled_axis().y;
+    let told = lab.readout(element).length;
+    assert!((angle - told).abs() < 1e-3, "{told}, not {angle}");
+    assert!(least < -0.1, "it swings back: {least} rad");
+}

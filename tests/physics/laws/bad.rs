@@ -4,6 +4,7 @@ use crate::harness::*;
 use crate::messages::Log;
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
+use bevy_rapier3d::prelude::*;
 
 /// Runs an element with a companion, and a valid neighbour. Returns the element's fault and its number of log messages.
 fn spoilt(companion: impl Bundle) -> (Option<SpringFault>, usize) {
@@ -195,4 +196,30 @@ fn a_law_that_is_mended_or_taken_away_acts_again() {
     lab.run(0.2);
     assert!(lab.velocity(body).length() > 0.1);
     assert!(lab.app.world().get::<SpringFault>(element).is_none());
+}
+
+#[test]
+fn a_rest_length_that_is_taken_beside_a_fault_is_the_one_in_the_component() {
+    let mut lab = Lab::weightless();
+    let hook = lab.point(Vec3::ZERO);
+    let body = lab.moving(body(1.0, Vec3::X * 1.3), Velocity::linear(Vec3::X * 9.0));
+    // Without a value at the speed of the first steps.
+    let law = CustomDampingLaw::new(|v: f64| if v.abs() > 5.0 { f64::NAN } else { v });
+    let element = lab.spawn((SpringDamper::new(hook, body).with_stiffness(40.0), law));
+    lab.tick();
+    assert!(lab.app.world().get::<SpringFault>(element).is_some());
+    assert_eq!(lab.get::<SpringDamper>(element).rest_length, Some(1.3));
+    lab.get_mut::<Velocity>(body).linear = Vec3::ZERO;
+    lab.run(0.1);
+    assert!(lab.app.world().get::<SpringFault>(element).is_none());
+    // Another element makes the crate read all of them anew.
+    let other = lab.body(1.0, Vec3::Y);
+    lab.spawn(Spring::new(hook, other));
+    lab.run(0.05);
+    let (now, readout) = (lab.position(body).x, lab.readout(element));
+    assert!(
+        (readout.spring_force - 40.0 * (now - 1.3)).abs() < 1e-3,
+        "{readout:?}"
+    );
+    assert!(lab.velocity(body).x < -0.1, "it pulls");
 }

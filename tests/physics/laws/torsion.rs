@@ -185,3 +185,22 @@ fn a_wheel_that_is_blocked_between_two_springs_pulls_no_more_than_they_do() {
         "{led} rad, not {statics}"
     );
 }
+
+#[test]
+fn a_rest_angle_is_taken_where_the_angle_has_a_meaning() {
+    let mut lab = Lab::weightless();
+    let (wall, wheel) = wheel(&mut lab, 0.0);
+    // Tilted by half a turn across the axis of the spring.
+    lab.get_mut::<Transform>(wheel).rotation = Quat::from_rotation_x(std::f32::consts::PI);
+    let element = lab.spawn(TorsionSpring::new(wall, wheel, Vec3::Z).with_stiffness(1.0));
+    lab.run(0.1);
+    assert!(lab.app.world().get::<SpringFault>(element).is_some());
+    assert_eq!(lab.get::<TorsionSpring>(element).rest_angle, None);
+    lab.get_mut::<Transform>(wheel).rotation = Quat::from_rotation_z(0.5);
+    lab.run(0.1);
+    let rest = lab.get::<TorsionSpring>(element).rest_angle;
+    assert!(
+        rest.is_some_and(|angle| (angle - 0.5).abs() < 1e-5),
+        "{rest:?}"
+    );
+}

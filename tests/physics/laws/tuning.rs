@@ -186,3 +186,27 @@ fn over_a_wheel(others: usize) {
     assert!((lab.readout(element).effective_mass / 300.0 - 1.0).abs() < 0.01);
     assert!(lab.app.world().get::<SpringTuning>(element).is_none());
 }
+
+#[test]
+fn a_sag_is_the_sag_under_another_gravity_scale_and_a_fault_without_gravity() {
+    for scale in [0.3, 2.0] {
+        let mut lab = Lab::new();
+        let hook = lab.point(Vec3::Y * 5.0);
+        let load = lab.spawn((body(3.0, Vec3::Y * 4.0), GravityScale(scale)));
+        let element = lab.spawn((
+            SpringDamper::new(hook, load).with_rest_length(1.0),
+            SpringTuning::sag(0.12, 1.0),
+        ));
+        lab.run(6.0);
+        let length = lab.readout(element).length;
+        assert!((length - 1.12).abs() < 1e-4, "{scale}: {length}");
+    }
+    let mut lab = Lab::weightless();
+    let hook = lab.point(Vec3::Y);
+    let load = lab.body(3.0, Vec3::ZERO);
+    let element = lab.spawn((SpringDamper::new(hook, load), SpringTuning::sag(0.12, 1.0)));
+    lab.run(0.1);
+    let fault = lab.get::<SpringFault>(element);
+    assert_eq!(fault.field, "SpringTuning");
+    assert!(fault.reason.contains("no gravity"), "{fault}");
+}

@@ -186,3 +186,102 @@ fn a_snapshot_serves_many_times_and_from_every_tick() {
         }
     }
 }
+
+#[test]
+fn a_companion_that_came_and_went_since_changes_nothing() {
+    for name in NAMES {
+        let mut film = played(name);
+        let then = Both::take(&film);
+        let first = film.watch(AFTER);
+        then.restore(&mut film);
+        film.run(10);
+        let world = film.lab.app.world_mut();
+        let mut elements = world.query_filtered::<Entity, With<SpringDamper>>();
+        let element = elements.iter(world).next().expect("an element");
+        film.insert(element, MaxForce(1e9));
+        film.run(10);
+        film.lab
+            .app
+            .world_mut()
+            .entity_mut(element)
+            .remove::<MaxForce>();
+        then.restore(&mut film);
+        assert_same(name, &first, &film.watch(AFTER));
+    }
+}
+
+#[test]
+fn a_number_that_was_changed_in_a_pause_acts_after_it_as_if_there_had_been_no_going_back() {
+    for name in ["lone, plain", "feet, plain"] {
+        let mut film = played(name);
+        film.lab.set_stepping(false);
+        let world = film.lab.app.world_mut();
+        let mut elements = world.query::<&mut SpringDamper>();
+        for mut element in elements.iter_mut(world) {
+            element.stiffness *= 1.5;
+        }
+        film.run(2);
+        let then = Both::take(&film);
+        film.lab.set_stepping(true);
+        let first = film.watch(AFTER);
+        then.restore(&mut film);
+        assert_same(name, &first, &film.watch(AFTER));
+    }
+}
+
+/// A weight that hangs from a hook and sleeps.
+fn hung() -> (Film, [Entity; 3]) {
+    let mut film = Film::new(CoiloverPlugin::default());
+    let hook = film.spawn(Transform::default());
+    let weight = film.spawn(body(1.0, Vec3::NEG_Y));
+    let spring = film.spawn(
+        SpringDamper::new(hook, weight)
+            .with_stiffness(200.0)
+            .with_damping(25.0)
+            .with_rest_length(1.0),
+    );
+    film.run(720);
+    assert!(film.lab.is_sleeping(weight));
+    (film, [hook, weight, spring])
+}
+
+#[test]
+fn a_number_that_differs_from_the_snapshot_wakes_the_weight_even_beside_a_new_element() {
+    let (mut film, [hook, weight, spring]) = hung();
+    let then = Both::take(&film);
+    film.lab.get_mut::<SpringDamper>(spring).stiffness = 100.0;
+    let other = film.lab.body(1.0, Vec3::new(9.0, -1.0, 0.0));
+    let far = film.lab.point(Vec3::X * 9.0);
+    film.lab.spawn(Spring::new(far, other).with_stiffness(50.0));
+    let before = film.lab.position(weight).y;
+    let springs = then.springs.clone().without_engine();
+    springs
+        .restore(film.lab.app.world_mut())
+        .expect("the springs' side fits");
+    film.run(300);
+    let sank = before - film.lab.position(weight).y;
+    assert!((sank - 9.81 / 200.0).abs() < 1e-3, "{sank} below {hook}");
+}
+
+#[test]
+fn a_weight_without_a_spring_in_the_saved_state_falls_freely_when_that_is_loaded() {
+    let mut film = Film::new(CoiloverPlugin::default());
+    let saved = CoiloverSnapshot::take(film.lab.app.world());
+    let hook = film.spawn(Transform::default());
+    let weight = film.spawn(body(1.0, Vec3::NEG_Y));
+    let spring = film.spawn(
+        SpringDamper::new(hook, weight)
+            .with_stiffness(200.0)
+            .with_damping(25.0)
+            .with_rest_length(1.0),
+    );
+    film.run(120);
+    let world = film.lab.app.world_mut();
+    world.despawn(spring);
+    let saved = saved.without_engine();
+    saved.restore(world).expect("it fits");
+    let before = film.lab.velocity(weight).y;
+    film.run(30);
+    let gained = film.lab.velocity(weight).y - before;
+    assert!((gained + 9.81 * 0.5).abs() < 0.2, "{gained} m/s");
+}

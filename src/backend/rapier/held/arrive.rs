@@ -40,7 +40,9 @@ impl ElementRow {
         }
         if let Some(inside) = &mut self.inside {
             let owed = inside.debt + won;
-            inside.debt = if owed < 0.0 { KEPT * owed } else { owed };
+            if owed.is_finite() {
+                inside.debt = if owed < 0.0 { KEPT * owed } else { owed };
+            }
             let last = inside.rates.map_or(rate, |rates| rates[0]);
             inside.rates = Some([rate, last]);
         }

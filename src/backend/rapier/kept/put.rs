@@ -135,6 +135,7 @@ impl Kept {
             .extend(rows.map(|(slot, row)| (row.entity, slot as u32)));
         scene.assemblies.clear();
         scene.pending.clear();
+        scene.left_behind.clear();
     }
 
     fn fill_elements(&self, scene: &mut Scene, companions: &Companions) {
@@ -148,7 +149,9 @@ impl Kept {
             let differs = kept.fill(row, context);
             let to_find =
                 companions.tuning(kept.entity).is_some() || companions.pose(kept.entity).is_some();
-            if differs || to_find {
+            if differs {
+                scene.left_behind.push(kept.entity);
+            } else if to_find {
                 scene.pending.push(kept.entity);
             }
         }
@@ -268,7 +271,12 @@ impl Kept {
             let mut body = world.entity_mut(entity);
             let user = body.take::<SpringLoad>().map(|load| load.user);
             if let (Some(user), Some(mut force)) = (user, body.get_mut::<ExternalForce>()) {
-                *force.bypass_change_detection() = user;
+                // An engine that did not go back still has the force of elements. A change makes it read the user's share.
+                if self.engine_stays {
+                    *force = user;
+                } else {
+                    *force.bypass_change_detection() = user;
+                }
             }
         }
         let now = world.change_tick();

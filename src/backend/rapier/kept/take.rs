@@ -91,8 +91,7 @@ fn take_element(row: &ElementRow, places: &[u32], world: &World) -> KeptElement 
         places: ends,
         facings,
         angle,
-        // This is of changes during the tick.
-        jump: _,
+        jump,
         scales,
         controller,
     } = *row.rare;
@@ -120,6 +119,7 @@ fn take_element(row: &ElementRow, places: &[u32], world: &World) -> KeptElement 
             angle,
             facings,
             scales,
+            jump,
         },
     }
 }
@@ -143,6 +143,7 @@ fn take_body(row: &BodyRow, world: &World) -> KeptBody {
         slot: _,
         rank,
         signature: _,
+        center: _,
         rest,
         lingers,
         user_torque: _,
