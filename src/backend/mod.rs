@@ -74,7 +74,7 @@ impl StepPlan {
 }
 
 /// Distance up to which an end counts as at the centre of mass of its body, m: the rounding of f32 in a body of a metre. An
-/// element at a greater distance turns the body. Pinned by `anchoring`.
+/// element at a greater distance turns the body: see the tests of `anchoring`.
 pub(crate) const SAME_PLACE: f64 = 1e-7;
 
 /// State of a body in the engine now. World frame unless a field says otherwise.

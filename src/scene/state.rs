@@ -51,8 +51,8 @@ pub struct Scene {
     pub(crate) time: f64,
     /// Whether an element or body of the scene gained or lost a component that matters. Then all rows are made anew.
     pub(crate) disturbed: bool,
-    /// Elements that lost a companion component since the last tick, or differ from the snapshot that was restored.
-    pub(crate) left_behind: Vec<Entity>,
+    /// Elements that must be read in the next tick: they lost a companion component, or differ from the snapshot that was restored.
+    pub(crate) touched: Vec<Entity>,
     /// Whether the rows were found to be out of date after the tick was prepared. Then they are made anew in the next tick.
     pub(crate) stale: bool,
     /// Whether the user's force or torque on some body changed in this tick.
@@ -81,8 +81,6 @@ pub struct Scene {
     pub(crate) since: Option<Tick>,
     /// Whether Rapier's snapshot was restored since the last step, but the springs' snapshot not yet.
     pub(crate) engine_went_back: bool,
-    /// Elements whose components must be read in the next tick, because they differ from the restored snapshot.
-    pub(crate) pending: Vec<Entity>,
 }
 
 impl Scene {

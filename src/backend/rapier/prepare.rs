@@ -33,7 +33,7 @@ pub(crate) fn prepare(
     let scene = &mut *scene;
     let mut same = !watch.saw_change(scene);
     same &= !std::mem::take(&mut scene.stale);
-    companions.look(scene.since.take(), scene.left_behind.drain(..));
+    companions.look(scene.since.take(), scene.touched.drain(..));
     // `Watch` sees entities that appear and disappear. The count covers other ways in which elements may disappear.
     same &= elements.iter().len() == scene.elements.len();
     let is_new = |entity: &Entity| {
@@ -41,7 +41,6 @@ pub(crate) fn prepare(
         parts.is_ok_and(|parts| companions.is_new(&parts))
     };
     let changed = changed.iter().filter(is_new);
-    let changed = changed.chain(std::mem::take(&mut scene.pending));
     same = same && refresh(scene, &elements, changed, &companions, &finder);
     let modified = &watch.mass_modified;
     let Scene {

@@ -92,7 +92,7 @@ fn unloaded<C: Component>(app: &mut App) {
 fn left<C: Component>(app: &mut App) {
     app.add_observer(|on: Removed<C>, scene: Option<ResMut<Scene>>| {
         if let Some(mut scene) = scene.filter(|scene| scene.row_of.contains_key(&on.entity)) {
-            scene.left_behind.push(on.entity);
+            scene.touched.push(on.entity);
         }
     });
 }

@@ -224,9 +224,8 @@ fn a_number_that_was_changed_in_a_pause_acts_after_it_as_if_there_had_been_no_go
     }
 }
 
-/// A weight that hangs from a hook and sleeps.
-fn hung() -> (Film, [Entity; 3]) {
-    let mut film = Film::new(CoiloverPlugin::default());
+/// Hangs a weight on a spring from a hook. Returns hook, weight and spring.
+fn hang(film: &mut Film) -> [Entity; 3] {
     let hook = film.spawn(Transform::default());
     let weight = film.spawn(body(1.0, Vec3::NEG_Y));
     let spring = film.spawn(
@@ -235,6 +234,13 @@ fn hung() -> (Film, [Entity; 3]) {
             .with_damping(25.0)
             .with_rest_length(1.0),
     );
+    [hook, weight, spring]
+}
+
+/// A weight that hangs from a hook and sleeps.
+fn hung() -> (Film, [Entity; 3]) {
+    let mut film = Film::new(CoiloverPlugin::default());
+    let [hook, weight, spring] = hang(&mut film);
     film.run(720);
     assert!(film.lab.is_sleeping(weight));
     (film, [hook, weight, spring])
@@ -262,14 +268,7 @@ fn a_number_that_differs_from_the_snapshot_wakes_the_weight_even_beside_a_new_el
 fn a_weight_without_a_spring_in_the_saved_state_falls_freely_when_that_is_loaded() {
     let mut film = Film::new(CoiloverPlugin::default());
     let saved = CoiloverSnapshot::take(film.lab.app.world());
-    let hook = film.spawn(Transform::default());
-    let weight = film.spawn(body(1.0, Vec3::NEG_Y));
-    let spring = film.spawn(
-        SpringDamper::new(hook, weight)
-            .with_stiffness(200.0)
-            .with_damping(25.0)
-            .with_rest_length(1.0),
-    );
+    let [_, weight, spring] = hang(&mut film);
     film.run(120);
     let world = film.lab.app.world_mut();
     world.despawn(spring);

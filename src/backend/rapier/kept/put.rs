@@ -134,8 +134,8 @@ impl Kept {
             .index
             .extend(rows.map(|(slot, row)| (row.entity, slot as u32)));
         scene.assemblies.clear();
-        scene.pending.clear();
-        scene.left_behind.clear();
+        scene.stale = false;
+        scene.touched.clear();
     }
 
     fn fill_elements(&self, scene: &mut Scene, companions: &Companions) {
@@ -150,10 +150,9 @@ impl Kept {
             let to_find =
                 companions.tuning(kept.entity).is_some() || companions.pose(kept.entity).is_some();
             if differs {
-                scene.left_behind.push(kept.entity);
-            } else if to_find {
-                scene.pending.push(kept.entity);
+                scene.touched.push(kept.entity);
             }
+            scene.stale |= to_find;
         }
         let rows = scene.elements.iter().enumerate();
         let changed = rows.filter(|(_, row)| row.has(ElementFlags::CHANGED));
@@ -245,8 +244,8 @@ impl Kept {
             }
         }
         scene.still = default();
-        // True if there are elements or bodies that the snapshot does not contain.
-        scene.stale =
+        // Also if there are elements or bodies that the snapshot does not contain.
+        scene.stale |=
             scene.elements.len() != self.elements.len() || scene.bodies.len() != self.bodies.len();
         (scene.renewed, scene.shifted) = (false, false);
         (scene.loaded, scene.delivered) = (false, false);
