@@ -3,6 +3,8 @@
 
 from mathutils import Vector
 
+from .fields import has_spring
+
 
 def anchor(obj, point):
     """A point of an object's frame, in the world."""
@@ -62,8 +64,10 @@ def faults(element):
     if element.kind.startswith("torsion"):
         if Vector(element.axis).length < 1e-6:
             found.append("The axis has no direction")
-        if body(element.a) is None or body(element.b) is None:
-            found.append("Both ends of a torsion element have to be rigid bodies")
-    elif not found and length(element) < 1e-6:
+        return found
+    if not found and length(element) < 1e-6:
         found.append("Both anchors are at the same point")
+    negative = has_spring(element.kind) and element.use_rest and element.rest_length < 0.0
+    if negative and not element.spring_axis.use:
+        found.append("The rest length is negative")
     return found

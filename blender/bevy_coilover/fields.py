@@ -23,6 +23,12 @@ class Field:
     optional: bool = False
     #: Names of a choice, as the crate has them.
     choices: tuple = ()
+    #: What it is where a file leaves it out, if that is not the panel's default.
+    absent: object = None
+    #: The same beside `"fitted": true`.
+    fitted: object = None
+    #: Without it, the crate leaves the whole companion out.
+    required: bool = False
 
     @property
     def prop(self):
@@ -81,13 +87,13 @@ POINTS = Field("points", "Points", (), "Points of the table, from left to right"
 def polynomial(key, label):
     """A group of three numbers inside a variant."""
     return (
-        number(key + ".linear", label + " k1 (N/m)", 100.0, "Force per stretch", least=0.0),
+        number(key + ".linear", label + " k1 (N/m)", 100.0, "Force per stretch", least=0.0, absent=0.0),
         number(key + ".quadratic", label + " k2 (N/m²)", 0.0, "Force per stretch squared", least=0.0),
         number(key + ".cubic", label + " k3 (N/m³)", 0.0, "Force per stretch cubed", least=0.0),
     )
 
 
-RATIO = number("dampingRatio", "Damping Ratio", 0.3, "0 swings for ever, 1 is critical", least=0.0)
+RATIO = number("dampingRatio", "Damping Ratio", 0.3, "0 swings for ever, 1 is critical", least=0.0, absent=0.0)
 
 COMPANIONS = (
     Companion(
@@ -106,8 +112,12 @@ COMPANIONS = (
     Companion(
         "springTuning", "Tuning", "Stiffness and damping found by Bevy at the first step, instead of the numbers above",
         variants=(
-            ("Frequency", (number("frequency", "Frequency (Hz)", 2.0, "Natural frequency", least=1e-6), RATIO)),
-            ("Sag", (length("sag", "Sag", 0.1, "How far it gives way under its load", least=1e-6), RATIO)),
+            ("Frequency", (
+                number("frequency", "Frequency (Hz)", 2.0, "Natural frequency", least=1e-6, required=True), RATIO,
+            )),
+            ("Sag", (
+                length("sag", "Sag", 0.1, "How far it gives way under its load", least=1e-6, required=True), RATIO,
+            )),
         ),
     ),
     Companion(
@@ -119,7 +129,7 @@ COMPANIONS = (
         (
             length("minLength", "Shortest", 0.2, "Length at which the lower stop is met", optional=True),
             length("maxLength", "Longest", 1.0, "Length at which the upper stop is met", optional=True),
-            number("stopStiffness", "Stiffness (N/m)", 1e5, "Of the stops", least=0.0),
+            number("stopStiffness", "Stiffness (N/m)", 1e5, "Of the stops", least=0.0, absent=0.0),
             number("progression", "Progression (1/m)", 0.0, "How much stiffer stops get", least=0.0),
             number("stopDamping", "Damping (N s/m)", 0.0, "Of the stops", least=0.0),
         ),
@@ -139,7 +149,7 @@ COMPANIONS = (
     Companion(
         "springAxis", "Direction", "Acts along an axis instead of from end to end", linear=True,
         variants=tuple(
-            (name, (Field("axis", "Axis", (0.0, 0.0, 1.0), about, kind="vector"),))
+            (name, (Field("axis", "Axis", (0.0, 0.0, 1.0), about, kind="vector", required=True),))
             for name, about in (("World", "Axis of the world"), ("BodyA", "Axis of end A's body, which turns with it"))
         ),
     ),
@@ -157,17 +167,17 @@ COMPANIONS = (
         variants=(
             ("Linear", ()),
             ("Sided", (
-                number("bump", "Bump (N s/m)", 40.0, "While it gets shorter", least=0.0),
-                number("rebound", "Rebound (N s/m)", 80.0, "While it gets longer", least=0.0),
+                number("bump", "Bump (N s/m)", 40.0, "While it gets shorter", least=0.0, absent=0.0),
+                number("rebound", "Rebound (N s/m)", 80.0, "While it gets longer", least=0.0, absent=0.0),
             )),
             ("Quadratic", (
-                number("linear", "c1 (N s/m)", 10.0, "Per rate", least=0.0),
-                number("quadratic", "c2 (N s²/m²)", 40.0, "Per rate squared", least=0.0),
+                number("linear", "c1 (N s/m)", 10.0, "Per rate", least=0.0, absent=0.0),
+                number("quadratic", "c2 (N s²/m²)", 40.0, "Per rate squared", least=0.0, absent=0.0),
             )),
             ("BlowOff", (
-                number("damping", "Damping (N s/m)", 80.0, "Up to the knee", least=0.0),
-                number("knee", "Knee (m/s)", 0.1, "Speed at which the valve opens", least=0.0),
-                number("beyond", "Beyond (N s/m)", 20.0, "Of the speed above the knee", least=0.0),
+                number("damping", "Damping (N s/m)", 80.0, "Up to the knee", least=0.0, absent=0.0),
+                number("knee", "Knee (m/s)", 0.1, "Speed at which the valve opens", least=0.0, absent=0.0),
+                number("beyond", "Beyond (N s/m)", 20.0, "Of the speed above the knee", least=0.0, absent=0.0),
             )),
             ("Table", (POINTS,)),
         ),
@@ -176,8 +186,8 @@ COMPANIONS = (
         "coil", "Coil", "Draws a coil spring between the ends", linear=True, of=("spring", "springDamper"),
         fields=(
             flag("fitted", "Fitted", "Radii are shares of the length between the ends"),
-            length("radius", "Radius", 0.13, "From the axis to the middle of the wire", least=1e-6),
-            length("wireRadius", "Wire Radius", 0.016, "Half the thickness of the wire", least=1e-6),
+            length("radius", "Radius", 0.13, "From the axis to the middle of the wire", least=1e-6, fitted=0.1),
+            length("wireRadius", "Wire Radius", 0.016, "Half the thickness of the wire", least=1e-6, fitted=0.012),
             number("turns", "Turns", 8.0, "From end to end", least=0.25),
             choice("ends", "Ends", ("ClosedGround", "Open", "Closed"), "How the wire ends"),
             choice("handedness", "Winding", ("Right", "Left"), "Which way it is wound"),
@@ -189,8 +199,9 @@ COMPANIONS = (
         of=("damper", "springDamper"),
         fields=(
             flag("fitted", "Fitted", "Radii and lengths are shares of the length between the ends"),
-            length("tubeRadius", "Tube Radius", 0.062, "Of the tube, at end A", least=1e-6),
-            length("rodRadius", "Rod Radius", 0.026, "Of the rod, at end B; less than the tube's", least=1e-6),
+            length("tubeRadius", "Tube Radius", 0.062, "Of the tube, at end A", least=1e-6, fitted=0.048),
+            length("rodRadius", "Rod Radius", 0.026, "Of the rod, at end B; less than the tube's", least=1e-6,
+                   fitted=0.02),
             length("tubeLength", "Tube Length", 0.5, "From end A to the mouth", least=1e-6, optional=True),
             length("rodLength", "Rod Length", 0.5, "From end B to the tip", least=1e-6, optional=True),
             length("stroke", "Stroke", 0.5, "From shortest to longest", least=1e-6, optional=True),
@@ -200,7 +211,11 @@ COMPANIONS = (
         ),
     ),
     Companion("disabled", "Disabled", "It does not act until the game enables it"),
-    Companion("showSpringGizmos", "Debug Lines", "Bevy draws ends, rest length and forces as lines"),
+    Companion(
+        "showSpringGizmos", "Debug Lines", "Bevy draws ends, rest length and forces as lines, or never does",
+        (Field("shown", "Shown", True, "Off, they are not even drawn where the game shows those of all", kind="flag"),),
+        bare=True,
+    ),
 )
 
 #: Key in the file, label, what it is.

@@ -5,6 +5,8 @@ A constraint of Blender is an object between two others. In the file each of the
 that object, and the joint ties the children together.
 """
 
+from mathutils import Quaternion
+
 from .axes import short, to_gltf
 
 BODIES = "KHR_physics_rigid_bodies"
@@ -79,11 +81,23 @@ def describe(rigid):
     return None
 
 
-def new_node(name, pose, settings):
+def pose(target, obj):
+    """Where a constraint's object is in the frame of a body, and how it is turned against that body.
+
+    The place is in the body's scaled space. The turn leaves the scale out: readers multiply the rotations of nodes, and a
+    matrix with an uneven scale would skew it. A mirrored node turns its children the other way about Y and Z.
+    """
+    body, own = target.matrix_world, obj.matrix_world
+    turn = body.decompose()[1].inverted() @ own.decompose()[1]
+    if body.determinant() < 0.0:
+        turn = turn @ Quaternion((0.0, 1.0, 0.0, 0.0))
+    return body.inverted_safe() @ own.translation, turn
+
+
+def new_node(name, place, turn):
     """A node with a pose in its parent's frame as Blender has it."""
     from io_scene_gltf2.io.com import gltf2_io
 
-    place, turn, _ = pose.decompose()
     vector = to_gltf((turn.x, turn.y, turn.z))
     return gltf2_io.Node(
         camera=None, children=[], extensions=None, extras={MARK: name[0]}, matrix=None, mesh=None, name=" ".join(name),
@@ -92,17 +106,16 @@ def new_node(name, pose, settings):
     )
 
 
-def frames(obj, gathered, node, settings):
+def frames(obj, gathered, node):
     """The numbers of the two nodes of a joint, or None where an object is not in the file."""
     rigid = obj.rigid_body_constraint
     targets = [rigid.object1, rigid.object2]
     below = [None if t is None else gathered.near(t, node) for t in targets]
     if None in below:
         return None
-    poses = [t.matrix_world.inverted_safe() @ obj.matrix_world for t in targets]
     return [
-        gathered.add(new_node((obj.name, "Joint", end), pose, settings), number)
-        for end, pose, number in zip("AB", poses, below)
+        gathered.add(new_node((obj.name, "Joint", end), *pose(target, obj)), number)
+        for end, target, number in zip("AB", targets, below)
     ]
 
 
@@ -118,7 +131,7 @@ def write(gathered, document, settings):
         if said is None:
             warn(settings, f"{obj.name}: a constraint of type {rigid.type} cannot be written; it is left out")
             continue
-        made = frames(obj, gathered, node, settings)
+        made = frames(obj, gathered, node)
         if made is None:
             warn(settings, f"{obj.name}: an object of this constraint is not in the file; it is left out")
             continue

@@ -39,6 +39,18 @@ def new_body(obj):
     return obj.rigid_body
 
 
+def weigh(obj):
+    """Gives a body the mass of its shape at the density of water, as the crate does where a file gives none."""
+    selected = list(bpy.context.selected_objects)
+    for other in selected:
+        other.select_set(False)
+    obj.select_set(True)
+    bpy.ops.rigidbody.mass_calculate(material="Custom", density=1000.0)
+    obj.select_set(False)
+    for other in selected:
+        other.select_set(True)
+
+
 def read_body(obj, said, root, shapes):
     rigid = new_body(obj)
     motion, collider = said.get("motion"), said.get("collider")
@@ -53,10 +65,13 @@ def read_body(obj, said, root, shapes):
         rigid.collision_shape = "COMPOUND"
         return
     rigid.collision_shape = shape_kind(collider, shapes)
+    if rigid.type == "ACTIVE" and "mass" not in motion:
+        weigh(obj)
     if "physicsMaterial" in collider:
         material = root["physicsMaterials"][collider["physicsMaterial"]]
-        rigid.friction = material.get("dynamicFriction", rigid.friction)
-        rigid.restitution = material.get("restitution", rigid.restitution)
+        # The defaults of the specification's schema.
+        rigid.friction = material.get("dynamicFriction", 0.6)
+        rigid.restitution = material.get("restitution", 0.0)
     if "collisionFilter" in collider:
         systems = root["collisionFilters"][collider["collisionFilter"]].get("collisionSystems", [])
         numbers = {int(n) for s in systems if s.startswith("layers") for n in s.split()[1:] if n.isdigit()}

@@ -40,7 +40,7 @@ def prop(field):
     if field.kind == "vector":
         return FloatVectorProperty(default=field.default, size=3, subtype="XYZ", **said)
     if field.kind == "color":
-        return FloatVectorProperty(default=field.default, size=4, subtype="COLOR", min=0.0, max=1.0, **said)
+        return FloatVectorProperty(default=field.default, size=4, subtype="COLOR", min=0.0, soft_max=1.0, **said)
     if field.kind == "flag":
         return BoolProperty(default=field.default, **said)
     if field.kind == "choice":
@@ -84,8 +84,8 @@ class CoiloverElement(bpy.types.PropertyGroup):
     stiffness: FloatProperty(name="Stiffness", default=1000.0, min=0.0, precision=2, description="N/m, or N m/rad")
     damping: FloatProperty(name="Damping", default=60.0, min=0.0, precision=2, description="N s/m, or N m s/rad")
     use_rest: BoolProperty(name="Rest Length", description="Without it, the length at the first step is the rest length")
-    rest_length: FloatProperty(name="Rest Length", default=1.0, min=0.0, unit="LENGTH", precision=3,
-                               description="Length without force")
+    rest_length: FloatProperty(name="Rest Length", default=1.0, unit="LENGTH", precision=3,
+                               description="Length without force; may be negative along a direction")
     rest_angle: FloatProperty(name="Rest Angle", unit="ROTATION", description="Angle without moment")
     axis: FloatVectorProperty(name="Axis", size=3, default=(0.0, 0.0, 1.0), subtype="XYZ",
                               description="In the frame of end A's body")

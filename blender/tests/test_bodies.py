@@ -7,7 +7,7 @@ import math
 import bpy
 import pytest
 from test_file import again, global_matrix
-from mathutils import Vector
+from mathutils import Matrix, Quaternion, Vector
 
 BODIES, SHAPES = "KHR_physics_rigid_bodies", "KHR_implicit_shapes"
 
@@ -168,6 +168,38 @@ def test_a_hinge_turns_about_the_axis_that_it_has_in_blender(scene):
 
 def to_gltf(v):
     return (v[0], v[2], -v[1])
+
+
+def read_turn(glb, name):
+    """How a reader of the file turns a node, in glTF's axes: the rotations of the nodes above it, with the signs of their
+    scales but not their sizes. A mirrored one has its X axis reversed, as Bevy takes such a matrix apart."""
+    parents = {c: i for i, n in enumerate(glb.json["nodes"]) for c in n.get("children", [])}
+    turn, index = Matrix.Identity(3), [n["name"] for n in glb.json["nodes"]].index(name)
+    while index is not None:
+        node = glb.json["nodes"][index]
+        x, y, z, w = node.get("rotation", (0, 0, 0, 1))
+        signs = Matrix.Diagonal([math.copysign(1.0, s) for s in node.get("scale", (1, 1, 1))])
+        turn, index = Quaternion((w, x, y, z)).to_matrix() @ signs @ turn, parents.get(index)
+    return turn @ Matrix.Diagonal((-1, 1, 1)) if turn.determinant() < 0.0 else turn
+
+
+@pytest.mark.parametrize("scale", [(1.0, 3.0, 0.5), (-2.0, 2.0, 2.0), (1.0, -3.0, 0.5)])
+def test_the_frame_of_a_joint_is_turned_as_in_blender_on_uneven_and_mirrored_bodies(scene, scale):
+    arm = scene.empty("Arm", (1, 2, 3))
+    arm.rotation_euler, arm.scale = (0.3, 0.1, -0.7), (2.0, 2.0, 2.0)
+    frame, door = scene.body("Frame", (0, 0, 0), active=False), scene.body("Door", (0.5, 0, 0), parent=arm)
+    door.rotation_euler, door.scale = (0.1, 0.2, 0.3), scale
+    bpy.context.view_layer.update()
+    joint(scene, "Hinge", "HINGE", frame, door, (0.1, 0.2, 0.3), (0.4, 0.5, 0.6))
+    own = bpy.data.objects["Hinge"].matrix_world.to_3x3()
+    glb = scene.export()
+    for name in ("Hinge Joint A", "Hinge Joint B"):
+        turn = read_turn(glb, name)
+        for axis in (Vector((1, 0, 0)), Vector((0, 1, 0)), Vector((0, 0, 1))):
+            wanted = to_gltf(own @ axis)
+            assert tuple(turn @ Vector(to_gltf(axis))) == pytest.approx(wanted, abs=1e-5), (name, axis)
+        place = global_matrix(glb, [n["name"] for n in glb.json["nodes"]].index(name)).translation
+        assert tuple(place) == pytest.approx(to_gltf((0.1, 0.2, 0.3)), abs=1e-5)
 
 
 def test_each_constraint_takes_what_it_takes_in_blender(scene):
