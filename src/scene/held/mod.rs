@@ -53,6 +53,8 @@ pub(crate) struct Leeway {
     pub known: bool,
     /// For each end, whether a joint held it and whether a contact pressed it when the numbers were computed.
     pub by: [(bool, bool); 2],
+    /// For each end, the sum of inverse masses and moments of inertia of its body when the numbers were computed.
+    pub masses: [f64; 2],
     /// Number of steps since the numbers were computed.
     pub age: u32,
 }
@@ -70,22 +72,24 @@ impl Default for Leeway {
             jointed: 1.0,
             known: false,
             by: Default::default(),
+            masses: [0.0; 2],
             age: 0,
         }
     }
 }
 
 impl Leeway {
-    /// Counts a step. Returns whether the numbers must be computed again. `by` says what holds each end now,
-    /// and `known` whether contacts are known.
-    pub(crate) fn is_due(&mut self, by: [(bool, bool); 2], known: bool) -> bool {
+    /// Counts a step. Returns whether the numbers must be computed again. `by` and `masses` are those of now, and `known` says
+    /// whether contacts are known.
+    pub(crate) fn is_due(&mut self, by: [(bool, bool); 2], masses: [f64; 2], known: bool) -> bool {
         self.age += 1;
         let mut ends = self.by.iter().zip(by);
         let more = ends.any(|(old, new)| (new.0 && !old.0) || (new.1 && !old.1));
         let fewer = self.age >= YOUNG && self.by != by;
-        let due = !self.known || self.age >= OLD || more || fewer;
+        let other = self.masses != masses;
+        let due = !self.known || self.age >= OLD || more || fewer || other;
         if due {
-            (self.by, self.age, self.known) = (by, 0, known);
+            (self.by, self.masses, self.age, self.known) = (by, masses, 0, known);
         }
         due
     }

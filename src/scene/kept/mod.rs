@@ -14,7 +14,9 @@ use crate::dynamics::step::Remembered;
 use crate::dynamics::tolerance::Controller;
 use crate::readout::SpringReadout;
 use crate::scene::held::{KeptJoint, Leeway};
-use crate::scene::rows::{BodyFlags, ElementFlags, EnergyLedger, Jump, Raised, Rest, Sweeps};
+use crate::scene::rows::{
+    BodyFlags, ElementFlags, EnergyLedger, Jump, Raised, Rest, Searched, Sweeps,
+};
 use bevy::math::{DQuat, DVec3, Vec3};
 use bevy::prelude::Entity;
 
@@ -103,6 +105,7 @@ pub(crate) struct KeptBody {
     /// Time for which it still counts as held, s.
     pub(crate) lingers: f32,
     pub(crate) clear: u8,
+    pub(crate) searched: Searched,
     /// Force (N) and torque (N m) of the user.
     pub(crate) user: [Vec3; 2],
     /// Force (N) and torque (N m) of elements.

@@ -32,10 +32,20 @@ pub(crate) struct BodyRow {
     pub user_force: Vec3,
     /// Force of elements over the coming step, N.
     pub share_force: Vec3,
-    /// Number of steps in which nothing can come near its component. It is stored in the body, so that it is not
-    /// lost when components are found anew.
+    /// Number of steps in which nothing can come near its component, if the body moves as [`RareBody::searched`] allows. It is
+    /// stored in the body, so that it is not lost when components are found anew.
     pub clear: u8,
     pub rare: Box<RareBody>,
+}
+
+/// A search for what a component may hit.
+#[derive(Clone, Copy, Debug, Default)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct Searched {
+    /// Centre of mass of the body at that time, m.
+    pub at: Vec3,
+    /// Distance that the body can move without a new search, m.
+    pub way: f32,
 }
 
 /// Data of a body that not every step needs.
@@ -69,6 +79,8 @@ pub(crate) struct RareBody {
     pub substep: f64,
     /// Position (m) and velocity (m/s) of the centre of mass when they were last stored after a step.
     pub now: (DVec3, Vec3),
+    /// The last search for what its component may hit.
+    pub searched: Searched,
     /// Hash of its acceleration by everything but elements in the last step.
     pub pulled: u64,
     /// Hash of rotation and angular velocity when `now` was stored, for a body that elements turn.
@@ -100,6 +112,7 @@ impl BodyRow {
                 stiffness: 0.0,
                 substep: 0.0,
                 now: (DVec3::ZERO, Vec3::ZERO),
+                searched: Searched::default(),
                 pulled: 0,
                 turned: 0,
             }),

@@ -7,7 +7,7 @@ mod flags;
 mod marks;
 mod raised;
 
-pub(crate) use body::{BodyRow, RareBody, Rest};
+pub(crate) use body::{BodyRow, RareBody, Rest, Searched};
 pub(crate) use cut::{Cut, Rows, RowsMut};
 pub(crate) use element::{ElementRow, EnergyLedger, Held, Jump, RareElement, Solved};
 pub(crate) use flags::{BodyFlags, ElementFlags, take};

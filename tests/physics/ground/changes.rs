@@ -219,3 +219,61 @@ fn what_stood_on_the_ground_flies_as_if_it_never_had() {
         "nothing is left in the engine"
     );
 }
+
+#[test]
+fn a_load_that_grows_heavier_is_known_in_the_next_steps() {
+    let (mut scene, placed, _) = parked(&Footed::quarter_car());
+    let before = scene.lab.readout(placed.element).effective_mass;
+    let world = scene.lab.app.world_mut();
+    let mut load = world.entity_mut(placed.above);
+    load.insert(AdditionalMassProperties::Mass(3.0 * before));
+    scene.lab.run(0.1);
+    let after = scene.lab.readout(placed.element).effective_mass;
+    let mass = scene.lab.get::<ReadMassProperties>(placed.above).get().mass;
+    println!("{before:.2} kg, then {after:.2} kg of {mass:.2} kg");
+    assert!((after / mass - 1.0).abs() < 0.02, "{after} kg of {mass} kg");
+}
+
+/// Greatest energy, over that at first, of two balls on a stiff spring that fly down at 20 m/s from 0.1 m and less above the
+/// ground. They are put there from far away after `wait` ticks, or are there from the beginning.
+fn thrown_down(gap: f32, wait: usize) -> f64 {
+    let mut scene = Stand::new(CoiloverPlugin::default(), Engine::weightless());
+    scene.ground();
+    let far = if wait > 0 { 20.0 } else { 0.0 };
+    let ends = [1.1, 0.1].map(|at: f32| {
+        let ball = (
+            Collider::ball(0.1),
+            ColliderMassProperties::Mass(1.0),
+            LockedAxes::ROTATION_LOCKED
+                | LockedAxes::TRANSLATION_LOCKED_X
+                | LockedAxes::TRANSLATION_LOCKED_Z,
+        );
+        scene.body(Transform::from_xyz(0.0, far + gap + at, 0.0), ball)
+    });
+    scene.coil(ends, [Vec3::ZERO; 2], [7200.0, 0.0], Some(1.0));
+    for _ in 0..wait {
+        scene.lab.tick();
+    }
+    for body in ends {
+        scene.lab.get_mut::<Transform>(body).translation.y -= far;
+        scene.lab.get_mut::<Velocity>(body).linear = Vec3::NEG_Y * 20.0;
+    }
+    scene.most(0.5) / 400.0
+}
+
+#[test]
+fn what_is_thrown_at_the_ground_from_far_away_wins_no_more_than_what_starts_there() {
+    for gap in [0.02, 0.1, 0.2, 0.3] {
+        let there = thrown_down(gap, 0);
+        for wait in 1..=10 {
+            let most = thrown_down(gap, wait);
+            println!(
+                "thrown from {gap} m after {wait} ticks: E × {most:.4}, from the start × {there:.4}"
+            );
+            assert!(
+                most < there.max(1.0) + 0.005,
+                "{gap} {wait}: E × {most} {there}"
+            );
+        }
+    }
+}

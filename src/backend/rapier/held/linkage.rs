@@ -3,7 +3,6 @@
 use super::joint::is_ours;
 use crate::backend::rapier::body::{Bodies, handle, is_movable, read};
 use crate::backend::{BodyId, Wrench};
-use crate::compat;
 use crate::dynamics::body::Body;
 use crate::dynamics::line::Line;
 use crate::dynamics::linkage::{Constraint, Linkage};
@@ -142,7 +141,7 @@ impl Found<'_> {
         };
         let second = all.colliders.get(pair.collider2);
         let on = [Some(first), second].map(|c| self.index(c?.parent()?));
-        for manifold in compat::manifolds(pair) {
+        for manifold in pair.solver_manifolds() {
             let normal = manifold.data.normal.as_dvec3();
             let (across, along) = normal.any_orthonormal_pair();
             let place = match manifold.subshape_pos1() {

@@ -42,19 +42,23 @@ struct Other<'a> {
 }
 
 impl Outlook<'_> {
-    /// Returns whether a component may hit a body outside it in the coming step, and if not, for how many further steps no new
-    /// search is needed. `rows` are the bodies of the component, `pushes` the speed that springs can add to each, m/s; `is_own`
+    /// Returns whether a component may hit a body outside it in the coming step, and if not, how long no new search is needed.
+    /// `rows` are the bodies of the component, `pushes` the speed that springs can add to each, m/s; `is_own`
     /// says whether a body belongs to the component.
     pub(crate) fn look(
         &self,
         rows: &[&BodyRow],
         pushes: &[f32],
         is_own: impl Fn(RigidBodyHandle) -> bool,
-    ) -> (bool, u8) {
+    ) -> Option<Clear> {
+        let most = f32::from(MOST);
         let Some((bounds, fastest)) = self.bounds(rows, pushes) else {
-            return (false, MOST);
+            return Some(Clear {
+                steps: MOST,
+                way: f32::INFINITY,
+            });
         };
-        let way = f32::from(MOST) * (fastest + OTHERS) * self.time;
+        let way = most * (fastest + OTHERS) * self.time;
         let region = bounds.loosened(NEAR + way);
         let all = self.broad.as_query_pipeline(
             &DefaultQueryDispatcher,
@@ -66,7 +70,11 @@ impl Outlook<'_> {
             Cuboid::new(bounds.half_extents()),
             Pose::from_translation(bounds.center()),
         );
-        let mut clear = MOST;
+        let mut clear = Clear {
+            steps: MOST,
+            way: most * fastest * self.time,
+        };
+        let mut none_near = true;
         for (_, collider) in all.intersect_aabb_conservative(region) {
             let parent = collider.parent();
             if parent.is_some_and(&is_own) {
@@ -78,15 +86,20 @@ impl Outlook<'_> {
                 speed: body.map_or(0.0, speed_of),
             };
             let apart = compat::distance([&place, collider.position()], [&shape, collider.shape()]);
-            let free = (apart - NEAR).max(0.0);
+            let free = (apart - collider.contact_skin() - NEAR).max(0.0);
             let step = (fastest + other.speed) * self.time;
-            let steps = (TRUSTED * free / step.max(f32::MIN_POSITIVE)).min(f32::from(MOST));
+            let steps = (TRUSTED * free / step.max(f32::MIN_POSITIVE)).min(most);
             if steps < 1.0 && self.meets(rows, pushes, &other) {
-                return (true, 0);
+                return None;
             }
-            clear = clear.min(steps as u8);
+            let way = TRUSTED * free - most * other.speed * self.time;
+            clear = Clear {
+                steps: clear.steps.min(steps as u8),
+                way: if none_near { way } else { clear.way.min(way) },
+            };
+            none_near = false;
         }
-        (false, clear)
+        Some(clear)
     }
 
     /// Bounding box of all colliders of the bodies, and the greatest speed of a body, m/s.
@@ -99,7 +112,9 @@ impl Outlook<'_> {
             };
             fastest = fastest.max(speed_of(body) + push);
             for own in self.of(body) {
-                let own = own.compute_aabb();
+                let skin = own.contact_skin();
+                let own = own.shape().compute_aabb(&place(own, body));
+                let own = own.loosened(skin);
                 bounds = Some(bounds.map_or(own, |bounds| bounds.merged(&own)));
             }
         }
@@ -108,7 +123,8 @@ impl Outlook<'_> {
 
     fn of<'b>(&'b self, body: &'b RapierBody) -> impl Iterator<Item = &'b Collider> + 'b {
         let colliders = body.colliders().iter();
-        colliders.filter_map(|own| self.colliders.get(*own))
+        let colliders = colliders.filter_map(|own| self.colliders.get(*own));
+        colliders.filter(|own| is_solid(own))
     }
 
     /// Whether a body of the component may hit `other` in the coming step.
@@ -120,16 +136,54 @@ impl Outlook<'_> {
             let way = NEAR + 2.0 * (speed_of(body) + push + other.speed) * self.time;
             let theirs = other.collider.compute_aabb().loosened(way);
             self.of(body).any(|own| {
-                let groups = own
-                    .collision_groups()
-                    .test(other.collider.collision_groups());
-                groups && own.compute_aabb().intersects(&theirs) && {
-                    let (a, b) = (own, other.collider);
-                    compat::distance([a.position(), b.position()], [a.shape(), b.shape()]) < way
+                let (a, b) = (own, other.collider);
+                let (at, way) = (place(a, body), way + skins(a, b));
+                let theirs = theirs.loosened(skins(a, b));
+                may_press(a, b) && a.shape().compute_aabb(&at).intersects(&theirs) && {
+                    compat::distance([&at, b.position()], [a.shape(), b.shape()]) < way
                 }
             })
         })
     }
+}
+
+/// How long no contact of a component can begin.
+pub(crate) struct Clear {
+    /// Number of further steps without search.
+    pub steps: u8,
+    /// Distance that each of its bodies may move, m.
+    pub way: f32,
+}
+
+/// Whether a body that was found clear still is in the coming step of `time` seconds: it may have been put elsewhere or got
+/// an impulse meanwhile.
+pub(crate) fn is_clear(row: &BodyRow, body: &RapierBody, time: f32) -> bool {
+    let moved = body.center_of_mass().distance(row.rare.searched.at);
+    moved + speed_of(body) * time <= row.rare.searched.way
+}
+
+/// Where a collider of a body is now. The engine moves the colliders of a body that was put elsewhere only in its step.
+fn place(collider: &Collider, body: &RapierBody) -> Pose {
+    let local = collider.position_wrt_parent();
+    local.map_or(*collider.position(), |local| *body.position() * local)
+}
+
+/// Whether a collider can press on others.
+pub(crate) fn is_solid(collider: &Collider) -> bool {
+    collider.is_enabled() && !collider.is_sensor()
+}
+
+/// Whether contacts between two colliders press.
+pub(crate) fn may_press(a: &Collider, b: &Collider) -> bool {
+    is_solid(a)
+        && is_solid(b)
+        && a.collision_groups().test(b.collision_groups())
+        && a.solver_groups().test(b.solver_groups())
+}
+
+/// Distance at which two colliders begin to press, m.
+pub(crate) fn skins(a: &Collider, b: &Collider) -> f32 {
+    a.contact_skin() + b.contact_skin()
 }
 
 /// Upper bound on the speed of any point of a body, m/s.

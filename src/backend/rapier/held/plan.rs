@@ -164,7 +164,11 @@ impl Plan {
             .map(|b| bodies[*b as usize].rare.context);
         if by != [(false, false); 2] {
             // The engine finds contacts only within a step, so the result before the first step is provisional.
-            if inside.leeway.is_due(by, inside.rates.is_some()) {
+            let masses = line.holds.map(|hold| {
+                let body = hold.body.map(|body| &self.bodies[body]);
+                body.map_or(0.0, |body| (body.inverse_mass + body.inertia).element_sum())
+            });
+            if inside.leeway.is_due(by, masses, inside.rates.is_some()) {
                 let on = |body: usize| handle(bodies[members.bodies[body] as usize].id);
                 inside.leeway.left = inverse_mass(&line, on, all);
                 inside.leeway.jointed = if by[0].0 || by[1].0 {

@@ -3,10 +3,10 @@
 use super::ahead::look_ahead;
 use super::touch::any_joints;
 use crate::backend::rapier::body::{handle, id};
-use crate::backend::rapier::held::near::Outlook;
+use crate::backend::rapier::held::near::{Outlook, is_clear};
 use crate::backend::rapier::held::touch::{Crowd, Surroundings};
 use crate::backend::rapier::held::write::{Engine, Solver};
-use crate::scene::rows::{BodyFlags, BodyRow, ElementFlags, ElementRow};
+use crate::scene::rows::{BodyFlags, BodyRow, ElementFlags, ElementRow, Searched};
 use crate::scene::state::Scene;
 use crate::scene::step::Step;
 use bevy::prelude::Entity;
@@ -170,6 +170,9 @@ impl Scene {
                 *touch_changed |= row.notice_colliders(!body.colliders().is_empty());
                 held |= around.look(row, body, step.plan.time, push);
                 stiff |= look_ahead(row, body, time);
+                if clear > 0 && !is_clear(row, body, step.plan.time as f32) {
+                    clear = 0;
+                }
             }
         }
         // With new parameters the elements may push the bodies elsewhere.
@@ -220,14 +223,21 @@ impl Scene {
             .iter()
             .map(|b| &bodies[*b as usize])
             .collect();
-        let (near, clear) = outlook.look(&rows, pushes, |handle| {
+        let clear = outlook.look(&rows, pushes, |handle| {
             let row = handles.get(&(view.context, id(handle)));
             row.is_some_and(|b| bodies[*b as usize].rare.group == g as u32)
         });
         for b in members.bodies {
-            self.bodies[*b as usize].clear = clear;
+            let row = &mut self.bodies[*b as usize];
+            row.clear = clear.as_ref().map_or(0, |clear| clear.steps);
+            if let (Some(clear), Some(body)) = (&clear, engine.bodies.get(handle(row.id))) {
+                row.rare.searched = Searched {
+                    at: body.center_of_mass(),
+                    way: clear.way,
+                };
+            }
         }
-        near
+        clear.is_none()
     }
 }
 

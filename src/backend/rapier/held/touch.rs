@@ -2,7 +2,7 @@
 
 use super::joint::is_ours;
 use crate::backend::rapier::body;
-use crate::backend::rapier::held::near::speed_of;
+use crate::backend::rapier::held::near::{is_solid, may_press, skins, speed_of};
 use crate::scene::rows::{BodyFlags, BodyRow, take};
 use bevy::math::Vec3;
 use bevy_rapier3d::parry;
@@ -10,7 +10,9 @@ use bevy_rapier3d::parry::bounding_volume::BoundingVolume;
 use bevy_rapier3d::parry::partitioning::{Bvh, BvhBuildStrategy};
 use bevy_rapier3d::prelude::RapierContextJoints;
 use bevy_rapier3d::rapier::dynamics::{RigidBody as RapierBody, RigidBodyHandle};
-use bevy_rapier3d::rapier::geometry::{Collider, ColliderHandle, ColliderSet, NarrowPhase};
+use bevy_rapier3d::rapier::geometry::{
+    ColliderHandle, ColliderSet, ContactPair, NarrowPhase, SolverFlags,
+};
 
 /// How long a body counts as held after its last contact, s. So a hopping wheel or a drumming foot does not change between
 /// the two solvers in every step. Pinned by `ground::drumming`.
@@ -31,8 +33,7 @@ pub(crate) struct Crowd {
 impl Crowd {
     pub(crate) fn new(colliders: &ColliderSet) -> Self {
         let (mut bounded, mut boundless, mut bounds) = (Vec::new(), Vec::new(), Vec::new());
-        let solid = |c: &Collider| c.is_enabled() && !c.is_sensor();
-        for (handle, collider) in colliders.iter().filter(|(_, c)| solid(c)) {
+        for (handle, collider) in colliders.iter().filter(|(_, c)| is_solid(c)) {
             let own = collider.compute_aabb();
             if own.extents().max_element() < BOUNDLESS {
                 bounds.push(own);
@@ -57,7 +58,7 @@ impl Crowd {
         all: &ColliderSet,
     ) -> bool {
         let own = body.colliders().iter().filter_map(|own| all.get(*own));
-        let mut own = own.map(|own| (own, own.compute_aabb().loosened(way)));
+        let mut own = own.map(|own| (own, own.compute_aabb().loosened(way + own.contact_skin())));
         own.any(|(own, bounds)| {
             let near = self.tree.intersect_aabb(&bounds);
             let bounded = near.map(|leaf| self.bounded[leaf as usize]);
@@ -66,10 +67,10 @@ impl Crowd {
                 let Some(other) = all.get(other) else {
                     return false;
                 };
-                let groups = [own, other].map(Collider::collision_groups);
                 let [a, b] = [own, other].map(|c| (c.position(), c.shape()));
+                let way = way + skins(own, other);
                 other.parent() != Some(handle)
-                    && groups[0].test(groups[1])
+                    && may_press(own, other)
                     && !matches!(parry::query::contact(a.0, a.1, b.0, b.1, way), Ok(None))
             })
         })
@@ -81,6 +82,20 @@ const REACH: f32 = 3.0;
 
 /// Size of its bounding box above which a collider counts as boundless, m.
 const BOUNDLESS: f32 = 1e6;
+
+/// Whether a contact that the engine solves is nearer than `way` (m), contact skins included.
+fn will_press(pair: &ContactPair, way: f32) -> bool {
+    let all = pair
+        .solver_manifolds()
+        .iter()
+        .map(|manifold| &manifold.data);
+    let mut solved = all.filter(|data| data.solver_flags.contains(SolverFlags::COMPUTE_IMPULSES));
+    solved.any(|data| {
+        data.solver_contacts
+            .iter()
+            .any(|contact| contact.dist < way)
+    })
+}
 
 /// Whether a context has any joints.
 pub(crate) fn any_joints(joints: &RapierContextJoints) -> bool {
@@ -138,11 +153,10 @@ impl<'a> Surroundings<'a> {
         let way = NEAR + REACH * body.linvel().length() * time as f32;
         for collider in body.colliders() {
             for pair in self.narrow.contact_pairs_with(*collider) {
-                touched |= pair.has_any_active_contact()
-                    && pair
-                        .find_deepest_contact()
-                        .is_some_and(|(_, contact)| contact.dist < way);
-                pressed |= pair.total_impulse() != Vec3::ZERO;
+                let presses = pair.total_impulse() != Vec3::ZERO;
+                pressed |= presses;
+                // While a pair moves little, Rapier keeps the distances at which it first found the contacts.
+                touched |= presses || will_press(pair, way);
             }
         }
         (touched, pressed)

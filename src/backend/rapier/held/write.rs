@@ -311,7 +311,7 @@ fn join(
         let row = &mut elements[order.row];
         let held = row.rare.held;
         let inside = row.inside.get_or_insert_default();
-        let holders = [0, 1].map(|end| holder(inside, end, &held[end], engine));
+        let holders = [0, 1].map(|end| holder(inside, end, &held[end], engine, time));
         wanted.push(order.joints(row, holders, substep, time));
         if let Some(inside) = &mut row.inside {
             inside.active = true;

@@ -319,6 +319,7 @@ impl KeptBody {
                 rank: self.rank,
                 lingers: self.lingers,
                 now: self.now,
+                searched: self.searched,
                 rest: self.rest,
                 raised: self.raised,
                 substep: self.substep,

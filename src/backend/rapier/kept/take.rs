@@ -152,6 +152,7 @@ fn take_body(row: &BodyRow, world: &World) -> KeptBody {
         stiffness: _,
         substep,
         now,
+        searched,
         pulled,
         turned,
     } = **rare;
@@ -167,6 +168,7 @@ fn take_body(row: &BodyRow, world: &World) -> KeptBody {
         user: both(&row.user()),
         elements: load.map_or_else(Default::default, |load| both(&wrench(&load.elements))),
         now,
+        searched,
         rest,
         raised,
         substep,

@@ -1,0 +1,190 @@
+//! What counts as a surface that holds a body: meshes, gentle landings and skins do; sensors and ghosts do not.
+
+use super::scenes::joints;
+use super::stand::*;
+use crate::harness::*;
+use bevy::prelude::*;
+use bevy_coilover::prelude::*;
+use bevy_rapier3d::prelude::*;
+
+const LOAD: f32 = 100.0;
+const WHEEL: f32 = 20.0;
+const RADIUS: f32 = 0.3;
+
+/// A flat road of triangles, one of them under the wheel.
+fn mesh() -> Collider {
+    let corners = [(-9.0, -9.0), (-9.0, 9.0), (9.0, 9.0), (9.0, -9.0)];
+    let points = corners.map(|(x, z)| Vec3::new(x, 0.0, z));
+    Collider::trimesh(points.to_vec(), vec![[0, 1, 2], [0, 2, 3]]).expect("two triangles")
+}
+
+/// Flat roads of each kind.
+fn roads() -> [(&'static str, Collider); 5] {
+    let flags = (-4..=4).map(|x| {
+        let at = Vec3::new(0.7 * x as f32, -0.1, 0.0);
+        (at, Quat::IDENTITY, Collider::cuboid(0.35, 0.1, 3.0))
+    });
+    [
+        ("plane", Collider::halfspace(Vec3::Y).expect("up")),
+        (
+            "box",
+            Collider::compound(vec![(
+                Vec3::NEG_Y,
+                Quat::IDENTITY,
+                Collider::cuboid(9.0, 1.0, 9.0),
+            )]),
+        ),
+        ("flags", Collider::compound(flags.collect())),
+        ("mesh", mesh()),
+        (
+            "field",
+            Collider::heightfield(vec![0.0; 81], 9, 9, Vec3::new(8.0, 1.0, 8.0)),
+        ),
+    ]
+}
+
+/// A load that is guided up and down over a wheel, `gap` metres above a road. Returns the scene and the spring.
+fn on_wheel(road: Collider, gap: f32, skin: f32, stiffness: f32) -> (Stand, Entity) {
+    let mut scene = Stand::new(CoiloverPlugin::default(), Engine::default());
+    scene.lab.spawn((road, Transform::default()));
+    let guided = LockedAxes::ROTATION_LOCKED
+        | LockedAxes::TRANSLATION_LOCKED_X
+        | LockedAxes::TRANSLATION_LOCKED_Z;
+    let mass = AdditionalMassProperties::Mass(LOAD);
+    let load = scene.body(Transform::from_xyz(0.13, 1.0, 0.07), (mass, guided));
+    let wheel = (
+        Collider::ball(RADIUS),
+        ColliderMassProperties::Mass(WHEEL),
+        ContactSkin(skin),
+    );
+    let at = Transform::from_xyz(0.13, RADIUS + skin + gap, 0.07);
+    let wheel = scene.body(at, wheel);
+    let damping = 0.6 * (stiffness * LOAD).sqrt();
+    let element = scene.coil([load, wheel], [Vec3::ZERO; 2], [stiffness, damping], None);
+    (scene, element)
+}
+
+#[test]
+fn on_every_kind_of_road_a_wheel_counts_as_held() {
+    for (name, road) in roads() {
+        let (mut scene, element) = on_wheel(road, 0.0, 0.0, 30e3);
+        scene.lab.run(0.5);
+        let mass = scene.lab.readout(element).effective_mass;
+        println!("{name}: effective mass {mass:.2} kg");
+        assert!((mass / LOAD - 1.0).abs() < 0.01, "{name}: {mass} kg");
+    }
+}
+
+#[test]
+fn on_every_kind_of_road_a_spring_is_tuned_for_its_load() {
+    for (name, road) in roads() {
+        let (mut scene, element) = on_wheel(road, 0.0, 0.0, 30e3);
+        let world = scene.lab.app.world_mut();
+        world
+            .entity_mut(element)
+            .insert(SpringTuning::frequency(1.5, 0.3));
+        scene.lab.run(0.2);
+        let stiffness = scene.lab.get::<SpringDamper>(element).stiffness;
+        let omega = std::f32::consts::TAU * 1.5;
+        let wanted = LOAD * omega * omega;
+        println!("{name}: {stiffness:.0} N/m of {wanted:.0}");
+        assert!(
+            (stiffness / wanted - 1.0).abs() < 0.01,
+            "{name}: {stiffness}"
+        );
+    }
+}
+
+#[test]
+fn a_wheel_that_settles_gently_is_held_and_so_is_one_with_a_skin() {
+    for (gap, skin) in [(0.0, 0.0), (0.015, 0.0), (0.0, 0.02), (0.01, 0.01)] {
+        let (_, road) = roads()[0].clone();
+        let (mut scene, element) = on_wheel(road, gap, skin, 5e3);
+        scene.lab.run(3.0);
+        let read = scene.lab.readout(element);
+        println!(
+            "gap {gap} m, skin {skin} m: {:?}, {:.2} kg",
+            read.method, read.effective_mass
+        );
+        assert_eq!(read.method, SpringMethod::Engine, "{gap} {skin}");
+        assert!(
+            (read.effective_mass / LOAD - 1.0).abs() < 0.01,
+            "{gap} {skin}"
+        );
+    }
+}
+
+/// Two balls on a stiff spring that fly sideways, close above a floor. What else they carry is `with`.
+fn above_floor(with: impl Bundle + Clone, floor: impl Bundle) -> SpringMethod {
+    let mut scene = Stand::new(CoiloverPlugin::default(), Engine::weightless());
+    let ground = scene.ground();
+    scene.lab.app.world_mut().entity_mut(ground).insert(floor);
+    let ends = [-0.5_f32, 0.5].map(|x| {
+        let ball = (Collider::ball(0.1), ColliderMassProperties::Mass(1.0));
+        let body = scene.body(Transform::from_xyz(x, 1.0, 0.0), ball);
+        let world = scene.lab.app.world_mut();
+        world.spawn((ChildOf(body), Transform::default(), with.clone()));
+        body
+    });
+    let element = scene.coil(ends, [Vec3::ZERO; 2], [5e3, 5.0], Some(0.95));
+    scene.lab.run(1.0);
+    scene.lab.readout(element).method
+}
+
+#[test]
+fn what_collides_with_nothing_is_held_by_nothing() {
+    let big = (Collider::ball(3.0), ColliderMassProperties::Mass(0.0));
+    let solid = above_floor(big.clone(), ());
+    let sensor = above_floor((big.clone(), Sensor), ());
+    let disabled = above_floor((big.clone(), ColliderDisabled), ());
+    let ghost = SolverGroups::new(Group::GROUP_2, Group::NONE);
+    let ghost = above_floor(
+        (big, ghost),
+        SolverGroups::new(Group::GROUP_1, Group::GROUP_1),
+    );
+    println!("solid {solid:?}, sensor {sensor:?}, disabled {disabled:?}, ghost {ghost:?}");
+    assert_eq!(solid, SpringMethod::Engine);
+    assert_ne!(sensor, SpringMethod::Engine);
+    assert_ne!(disabled, SpringMethod::Engine);
+    assert_ne!(ghost, SpringMethod::Engine);
+}
+
+#[test]
+fn a_held_spring_goes_on_while_the_body_at_its_other_end_is_disabled() {
+    let mut scene = Stand::new(CoiloverPlugin::default(), Engine::default());
+    let base = scene.lab.spawn((RigidBody::Fixed, Transform::default()));
+    let guide = GenericJointBuilder::new(
+        JointAxesMask::LIN_X | JointAxesMask::LIN_Z | JointAxesMask::ANG_AXES,
+    );
+    let load = scene.body(
+        Transform::from_xyz(0.0, -1.0, 0.0),
+        (
+            AdditionalMassProperties::Mass(10.0),
+            ImpulseJoint::new(base, TypedJoint::GenericJoint(guide.build())),
+        ),
+    );
+    let hook = scene
+        .lab
+        .spawn((RigidBody::Dynamic, Transform::from_xyz(0.0, 1.0, 0.0)));
+    let heavy = (AdditionalMassProperties::Mass(1e3), GravityScale(0.0));
+    scene.lab.app.world_mut().entity_mut(hook).insert(heavy);
+    let element = scene.coil([hook, load], [Vec3::ZERO; 2], [1e3, 60.0], None);
+    scene.lab.tick();
+    let before = scene.lab.position(hook);
+    let world = scene.lab.app.world_mut();
+    world.entity_mut(hook).insert(RigidBodyDisabled);
+    scene.lab.run(8.0);
+    let disabled = f64::from(scene.lab.readout(element).length) - 2.0;
+    assert!(scene.lab.position(hook).distance(before) < 0.01);
+    let world = scene.lab.app.world_mut();
+    world.entity_mut(hook).remove::<RigidBodyDisabled>();
+    scene.lab.run(0.5);
+    let way = scene.lab.position(hook) - before;
+    let sag = 10.0 * GRAVITY / 1e3;
+    println!(
+        "sag {disabled:.4} m of {sag:.4} m; enabled again, the hook goes {way} m, {} joints",
+        joints(&mut scene)
+    );
+    assert!((disabled / sag - 1.0).abs() < 0.01);
+    assert!(way.y < -0.005, "it moves again: {way}");
+}
