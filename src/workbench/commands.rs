@@ -58,7 +58,7 @@ pub(super) fn obey(world: &mut World) {
                 let file = preset(&folder, &name);
                 Some(said(write(&file, &text).map(|()| file)))
             }
-            Ask::Load(name) => match std::fs::read_to_string(preset(&folder, &name)) {
+            Ask::Load(name) => match text_of(&folder, &name) {
                 Ok(text) => {
                     world.resource_mut::<Bench>().load(&name, &text);
                     None
@@ -133,7 +133,7 @@ fn free(folder: &Path, name: &str, ending: &str) -> PathBuf {
         .unwrap_or_else(|| file(10_000))
 }
 
-/// Returns the path of a preset: a RON file if the name ends with `.ron`, else a JSON file.
+/// Returns the path to which a preset is saved: a RON file if the name ends with `.ron`, else a JSON file.
 fn preset(folder: &Path, name: &str) -> PathBuf {
     let (name, ending) = match name.strip_suffix(".ron") {
         Some(name) => (name, "ron"),
@@ -146,19 +146,36 @@ fn preset(folder: &Path, name: &str) -> PathBuf {
 
 /// Returns the names of the saved presets, sorted.
 pub(super) fn presets(folder: &Path) -> Vec<String> {
+    saved(folder).into_iter().map(|(name, _)| name).collect()
+}
+
+/// Returns the text of a preset with one of these names.
+fn text_of(folder: &Path, name: &str) -> std::io::Result<String> {
+    let listed = saved(folder).into_iter().find(|(saved, _)| saved == name);
+    std::fs::read_to_string(listed.map_or_else(|| preset(folder, name), |(_, file)| file))
+}
+
+/// Returns the names and the files of the presets, sorted. A file that a person put there may have a name that the
+/// workbench would not give it, such as one with a space.
+fn saved(folder: &Path) -> Vec<(String, PathBuf)> {
     let files = std::fs::read_dir(folder.join("presets"));
-    let name = |entry: std::io::Result<std::fs::DirEntry>| {
+    let named = |entry: std::io::Result<std::fs::DirEntry>| {
         let path = entry.ok()?.path();
-        let name = path.file_stem()?.to_str()?;
-        match path.extension()?.to_str()? {
-            "json" => Some(name.to_owned()),
-            "ron" => Some(format!("{name}.ron")),
-            _ => None,
-        }
+        let file = path.file_name()?.to_str()?;
+        let name = match path.extension()?.to_str()? {
+            // Without the ending, `a.ron.json` would be named as `a.ron` is.
+            "json" => {
+                let name = file.strip_suffix(".json").unwrap_or(file);
+                if name.ends_with(".ron") { file } else { name }
+            }
+            "ron" => file,
+            _ => return None,
+        };
+        Some((name.to_owned(), path))
     };
-    let mut names: Vec<_> = files.into_iter().flatten().filter_map(name).collect();
-    names.sort();
-    names
+    let mut found: Vec<_> = files.into_iter().flatten().filter_map(named).collect();
+    found.sort();
+    found
 }
 
 #[cfg(test)]
@@ -176,5 +193,30 @@ mod tests {
         assert_eq!(file("a.b"), Path::new("presets/a_b.json"));
         assert_eq!(file("a.json"), Path::new("presets/a.json"));
         assert_eq!(file("../a.ron"), Path::new("presets/___a.ron"));
+    }
+
+    #[test]
+    fn each_preset_that_is_listed_is_the_one_that_is_loaded() {
+        let folder = format!("coilover_presets_{}", std::process::id());
+        let folder = std::env::temp_dir().join(folder);
+        let presets_and_files = [
+            ("a.ron", "a.ron"),
+            ("a.ron.json", "a.ron.json"),
+            ("my soft", "my soft.json"),
+            ("v1.2", "v1.2.json"),
+            ("v1.2.ron", "v1.2.ron"),
+        ];
+        let files = presets_and_files.map(|(_, file)| file);
+        for file in files.into_iter().chain(["notes.txt"]) {
+            let path = folder.join("presets").join(file);
+            assert!(write(&path, file).is_ok());
+        }
+        assert_eq!(presets(&folder), presets_and_files.map(|(name, _)| name));
+        for (name, file) in presets_and_files {
+            let text = text_of(&folder, name);
+            assert_eq!(text.expect("it is listed"), file);
+        }
+        assert!(text_of(&folder, "v1").is_err());
+        assert!(std::fs::remove_dir_all(folder).is_ok());
     }
 }

@@ -1,5 +1,6 @@
 //! Tests of the workbench through its user interface: a game without a renderer gets window events.
 
+mod edits;
 mod in_the_scene;
 mod person;
 mod tuning;

@@ -25,7 +25,8 @@ pub(crate) struct History {
 }
 
 impl History {
-    /// Adds an edit. While a drag is in progress, its changes are merged into one edit.
+    /// Adds an edit. While a drag is in progress, its changes are merged into one edit. What the game itself changed
+    /// meanwhile is no part of that edit.
     pub fn note(&mut self, edit: Edit) {
         self.undone.clear();
         if self.open
@@ -33,7 +34,7 @@ impl History {
             && last.entity == edit.entity
             && last.what == edit.what
         {
-            last.after = edit.after;
+            last.after.carry(&edit.before, &edit.after);
             return;
         }
         if self.done.len() == MOST {
@@ -79,7 +80,7 @@ impl History {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::element::Spring;
+    use crate::element::{Preload, Spring};
     use crate::workbench::model::snapshot::Part;
 
     fn of(stiffness: f32) -> Snapshot {
@@ -110,6 +111,31 @@ mod tests {
         assert_eq!(history.redo(), Some(edit(1.0, 3.0)));
         history.note(edit(3.0, 9.0));
         assert_eq!(history.next(), [Some("stiffness"), None]);
+    }
+
+    #[test]
+    fn what_the_game_changes_during_a_drag_is_neither_undone_nor_redone() {
+        let preloaded = |stiffness| Snapshot {
+            preload: Some(Preload(5.0)),
+            ..of(stiffness)
+        };
+        let mut history = History::default();
+        history.note(edit(1.0, 2.0));
+        // The game has added a preload.
+        history.note(Edit {
+            before: preloaded(2.0),
+            after: preloaded(3.0),
+            ..edit(2.0, 3.0)
+        });
+        let mut now = preloaded(3.0);
+        let undone = history.undo().expect("an edit");
+        now.carry(&undone.after, &undone.before);
+        assert_eq!(now, preloaded(1.0));
+        // And now it has removed it.
+        now.preload = None;
+        let redone = history.redo().expect("an edit");
+        now.carry(&redone.before, &redone.after);
+        assert_eq!(now, of(3.0));
     }
 
     #[test]

@@ -72,6 +72,16 @@ pub(super) fn number(ui: &mut Ui, value: &mut f32, unit: &str, drag: Drag) -> Re
     // NaN differs from itself, and egui discards typed text if the number differs from that of the last frame. So a
     // NaN is shown as such, but edited from zero.
     let is_nan = value.is_nan();
+    // The text may have fewer digits than the number. So a text that was left as it is shown is not read, or a click
+    // into the field would round the number.
+    let shown = f64::from(*value);
+    let typed = move |text: &str| {
+        if text == significant(shown) {
+            None
+        } else {
+            parse(text)
+        }
+    };
     let get_set = move |new: Option<f64>| {
         if let Some(new) = new {
             *value = new as f32;
@@ -89,7 +99,7 @@ pub(super) fn number(ui: &mut Ui, value: &mut f32, unit: &str, drag: Drag) -> Re
             .clamp_existing_to_range(false)
             .update_while_editing(false)
             .custom_formatter(move |value, _| significant(if is_nan { f64::NAN } else { value }))
-            .custom_parser(parse)
+            .custom_parser(typed)
             .suffix(unit),
     )
 }
