@@ -169,9 +169,17 @@ pub(super) fn hand_on_layers(
 /// Filter: an element that has parts.
 type HasParts = Or<(With<Placement>, With<Twist>)>;
 
+/// Filter: a skin that has changed or that has another parent.
+type Altered = (
+    With<SpringSkin>,
+    Or<(Changed<SpringSkin>, Changed<ChildOf>)>,
+);
+
 /// Takes in the skins that users bring along for an element, and releases entities that are no longer skins.
 pub(super) fn take_skins(
-    skins: Query<(Entity, &SpringSkin, Option<&ChildOf>), Changed<SpringSkin>>,
+    changed: Query<Entity, Altered>,
+    skins: Query<(&SpringSkin, Option<&ChildOf>)>,
+    mut enabled: RemovedComponents<Disabled>,
     mut removed: RemovedComponents<SpringSkin>,
     bare: Query<(), (With<Part>, Without<SpringSkin>, Allow<Disabled>)>,
     mut commands: Commands,
@@ -179,7 +187,12 @@ pub(super) fn take_skins(
     for entity in removed.read().filter(|entity| bare.contains(*entity)) {
         let_go(entity, &mut commands);
     }
-    for (entity, skin, parent) in &skins {
+    // It may have changed while it was disabled.
+    let enabled = enabled.read().filter(|entity| !changed.contains(*entity));
+    for entity in changed.iter().chain(enabled) {
+        let Ok((skin, parent)) = skins.get(entity) else {
+            continue;
+        };
         let Some(parent) = parent else {
             log::warn!("{entity}: SpringSkin: it must be a child of an element; it is not placed");
             continue;

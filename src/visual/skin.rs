@@ -10,7 +10,7 @@ use bevy::prelude::*;
 /// are not copied to it.
 ///
 /// If `length` is not finite and above zero, or the entity has no parent, a warning is logged and the child is not
-/// placed.
+/// placed until that is mended.
 ///
 /// Once this component is removed, the child goes where its own `Transform` says.
 ///

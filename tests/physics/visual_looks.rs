@@ -2,6 +2,7 @@
 
 use crate::harness::*;
 use crate::visual_data::{lab, parts};
+use bevy::ecs::entity_disabling::Disabled;
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 
@@ -156,4 +157,40 @@ fn what_is_a_skin_no_more_goes_back_to_its_own_place_and_stays_its_users() {
         lab.run(0.1);
         assert!(foot(&lab).distance(Vec3::new(1.0, 1.0, 0.0)) < 1e-5);
     }
+}
+
+/// Whether a skin of one metre is drawn from one point to the other.
+fn goes(lab: &Lab, skin: Entity, from: Vec3, to: Vec3) -> bool {
+    let at = lab.get::<GlobalTransform>(skin);
+    at.transform_point(Vec3::ZERO).distance(from) < 1e-5
+        && at.transform_point(Vec3::Y).distance(to) < 1e-5
+}
+
+#[test]
+fn a_skin_is_placed_once_it_has_a_parent_and_again_with_another_one() {
+    let mut lab = lab();
+    let (a, b) = (lab.point(Vec3::X), lab.point(Vec3::X * 3.0));
+    let skin = lab.spawn(SpringSkin { length: 1.0 });
+    lab.run(0.1);
+    // Neither element has any other looks.
+    for (first, last) in [(a, b), (b, a)] {
+        let element = lab.spawn(Spring::new(first, last));
+        let mut entity = lab.app.world_mut().entity_mut(skin);
+        entity.insert(ChildOf(element));
+        lab.run(0.1);
+        let (from, to) = (lab.position(first), lab.position(last));
+        assert!(goes(&lab, skin, from, to), "from {from} to {to}");
+    }
+}
+
+#[test]
+fn a_skin_that_was_spawned_disabled_is_placed_once_it_is_enabled() {
+    let mut lab = lab();
+    let (a, b) = (lab.point(Vec3::X), lab.point(Vec3::X * 3.0));
+    let element = lab.spawn(Spring::new(a, b));
+    let skin = lab.spawn((SpringSkin { length: 1.0 }, ChildOf(element), Disabled));
+    lab.run(0.1);
+    lab.app.world_mut().entity_mut(skin).remove::<Disabled>();
+    lab.run(0.1);
+    assert!(goes(&lab, skin, Vec3::X, Vec3::X * 3.0));
 }
