@@ -47,7 +47,7 @@ pub(super) fn lay(
         };
         let shows = || visibility.is_some_and(|v| v.get());
         let is_due = match placement.due {
-            Due::Nowhere => false,
+            Due::Nowhere => placement.is_known() && has_changed(),
             Due::Laid => has_changed(),
             Due::Hidden | Due::Visible => {
                 if shows() {

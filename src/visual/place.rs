@@ -33,7 +33,7 @@ pub struct Placement {
     looked: Option<u32>,
     /// Distance from end to end, m.
     pub(super) length: f32,
-    /// Unit vector along the element, in the world.
+    /// Unit vector along the element, in the world. Zero until it is first known where the ends are.
     pub(super) axis: Vec3A,
     /// Unit vector across the element, in the world.
     pub(super) side: Vec3A,
@@ -44,11 +44,11 @@ pub struct Placement {
     first: Option<f32>,
 }
 
-/// Which parts of an element must be placed again in this frame. Except for `Nowhere`, parts that other code has
-/// changed are placed as well.
+/// Which parts of an element must be placed again in this frame. Parts that other code has changed are placed as well,
+/// once it was known where the ends are.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum Due {
-    /// No parts: it is not known where the ends are.
+    /// No parts: it is not known where the ends are. Parts stay where they were placed last.
     #[default]
     Nowhere,
     /// No parts: all are where they should be.
@@ -110,6 +110,12 @@ impl Placement {
     /// Length when first drawn, m. If the element was not drawn before, it is `length`.
     pub(super) fn first(&mut self, length: f32) -> f32 {
         *self.first.get_or_insert(length.max(SHORT))
+    }
+
+    /// Whether it has been known where the ends are, so that there is a place for the parts.
+    #[inline]
+    pub(super) fn is_known(&self) -> bool {
+        self.axis != Vec3A::ZERO
     }
 
     /// Has all parts placed again, whatever was placed before.

@@ -122,6 +122,24 @@ fn without_an_end_a_coil_stays_and_with_it_back_is_right_again() {
 }
 
 #[test]
+fn without_an_end_all_parts_stay_as_large_as_they_are_wherever_their_element_goes() {
+    let mut lab = lab();
+    let (a, b) = (lab.point(Vec3::X), lab.point(Vec3::new(1.0, 0.5, 0.0)));
+    let cart = lab.spawn((Transform::default(), Visibility::default()));
+    let damper = (Damper::new(a, b), Telescope::default(), ChildOf(cart));
+    let element = lab.spawn(damper);
+    lab.run(0.1);
+    let before = parts(&lab, element);
+    assert!(!before.is_empty());
+    lab.app.world_mut().despawn(b);
+    for i in 1..10 {
+        lab.get_mut::<Transform>(cart).translation.z = 0.1 * i as f32;
+        lab.tick();
+        assert_eq!(parts(&lab, element), before, "frame {i}");
+    }
+}
+
+#[test]
 fn a_part_that_was_disabled_for_a_while_is_right_when_it_is_enabled() {
     let mut rest = Rest::new();
     rest.insert(rest.coil, Disabled);
