@@ -12,7 +12,8 @@ pub enum SpringAxis {
     /// Axis of the world. Each end is pushed at its own point. If the ends are apart across the axis, they feel a net
     /// torque, as with any external force.
     World(Vec3),
-    /// Axis in end A's frame, which turns with end A. End A is pushed at the point where end B is, as by a slide fixed
-    /// to end A, so momentum and angular momentum are conserved. End A must be a rigid body.
+    /// Axis in the frame of body A, which turns with body A. Body A is the rigid body that end A is or is a descendant
+    /// of; there must be one. It is pushed at the point where end B is, as by a slide fixed to it, so momentum and
+    /// angular momentum are conserved.
     BodyA(Vec3),
 }

@@ -1,12 +1,13 @@
 //! Lines for debugging: ends, rest length, forces.
 
+use super::bodies::Bodies;
 use super::place::{Ends, Line, Lines};
 use crate::element::{Spring, SpringAxis, SpringDamper};
 use crate::readout::SpringReadout;
 use bevy::gizmos::AppGizmoBuilder;
 use bevy::gizmos::config::{GizmoConfigGroup, GizmoConfigStore};
 use bevy::gizmos::gizmos::Gizmos;
-use bevy::math::Vec3A;
+use bevy::math::{Mat3A, Vec3A};
 use bevy::prelude::*;
 
 /// Gizmo group that draws elements as lines, for debugging: crosses at the ends, the rest length beside the line, and
@@ -86,6 +87,7 @@ fn draw(
         Option<&ShowSpringGizmos>,
     )>,
     lines: Lines,
+    bodies: Bodies,
     mut gizmos: Gizmos<SpringGizmos>,
 ) {
     let SpringGizmos { all, scale, cross } = gizmos.config_ext.clone();
@@ -100,7 +102,8 @@ fn draw(
         if !(from.is_finite() && to.is_finite()) {
             continue;
         }
-        let direction = direction(&ends, axis);
+        let turn = || lines.turn(bodies.of(line.between()?.0));
+        let direction = direction(&ends, axis, turn);
         for end in [from, to] {
             gizmos.cross(Isometry3d::from_translation(end), cross, END);
         }
@@ -127,12 +130,12 @@ fn draw(
     }
 }
 
-/// Direction along which an element acts, as a unit vector of the world.
-fn direction(ends: &Ends, axis: Option<&SpringAxis>) -> Vec3A {
+/// Direction along which an element acts, as a unit vector of the world. `turn` is the rotation of end A's body.
+fn direction(ends: &Ends, axis: Option<&SpringAxis>, turn: impl Fn() -> Option<Mat3A>) -> Vec3A {
     let along = match axis {
         None => ends.to - ends.from,
         Some(SpringAxis::World(axis)) => Vec3A::from(*axis),
-        Some(SpringAxis::BodyA(axis)) => ends.turn() * Vec3A::from(*axis),
+        Some(SpringAxis::BodyA(axis)) => turn().unwrap_or_default() * Vec3A::from(*axis),
     };
     along.normalize_or(Vec3A::Y)
 }

@@ -4,8 +4,9 @@
 //! ends are, with the rotation about the line between them from [`heading`] and the level of detail from [`views`].
 //! [`lay`] then places the parts as [`layout`] says. [`helix`] is the mesh of a coil. [`round_wire`] is the material
 //! that keeps its wire round when it is stretched. [`shapes`] keeps one mesh and one material for all equal springs.
-//! [`twist`] does all of this for the [`spiral`] of a torsion element.
+//! [`twist`] does all of this for the [`spiral`] of a torsion element. [`bodies`] tells in whose frame an axis is.
 
+mod bodies;
 mod coil;
 mod coilover;
 mod fitting;

@@ -203,18 +203,32 @@ pub(super) struct Lines<'w, 's> {
     globals: Query<'w, 's, &'static GlobalTransform, Without<Part>>,
 }
 
+impl LineItem<'_, '_> {
+    /// The ends of the element; `None` if it is not an element.
+    #[inline(always)]
+    pub fn between(&self) -> Option<(Entity, Entity)> {
+        if let Some(spring) = self.spring {
+            Some((spring.body_a, spring.body_b))
+        } else if let Some(pair) = self.pair {
+            Some((pair.body_a, pair.body_b))
+        } else {
+            let damper = self.damper?;
+            Some((damper.body_a, damper.body_b))
+        }
+    }
+}
+
 impl Lines<'_, '_> {
+    /// Rotation of an entity; `None` if it has no `GlobalTransform`.
+    pub fn turn(&self, entity: Entity) -> Option<Mat3A> {
+        let columns = self.globals.get(entity).ok()?.affine().matrix3;
+        Some(upright(columns.x_axis, columns.y_axis))
+    }
+
     /// Where the ends of an element are; `None` if an end has no `GlobalTransform`.
     #[inline(always)]
     pub fn ends(&self, line: &LineItem) -> Option<Ends> {
-        let (a, b) = if let Some(spring) = line.spring {
-            (spring.body_a, spring.body_b)
-        } else if let Some(pair) = line.pair {
-            (pair.body_a, pair.body_b)
-        } else {
-            let damper = line.damper?;
-            (damper.body_a, damper.body_b)
-        };
+        let (a, b) = line.between()?;
         let a = self.globals.get(a).ok()?.affine();
         let b = self.globals.get(b).ok()?.affine();
         let (from, to) = match line.anchors {

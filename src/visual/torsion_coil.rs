@@ -27,7 +27,8 @@ use bevy::prelude::*;
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 #[require(Transform, Visibility, Twist)]
 pub struct TorsionCoil {
-    /// Middle of the spiral, in body A's frame, m: a point on the axis of the hinge.
+    /// Middle of the spiral, a point on the axis of the hinge, m. It is in the frame of the entity that is end A, as an
+    /// anchor is.
     pub center: Vec3,
     /// Radius from the axis to the outer end, m; a share if the spiral is [fitted](Self::fitted).
     pub radius: f32,
@@ -83,7 +84,7 @@ impl TorsionCoil {
         }
     }
 
-    /// Sets the middle of the spiral, in body A's frame, m.
+    /// Sets the middle of the spiral, in the frame of the entity that is end A, m.
     pub const fn with_center(mut self, center: Vec3) -> Self {
         self.center = center;
         self

@@ -1,5 +1,6 @@
 //! Spirals of torsion elements: spawns their parts, turns them with the bodies, and winds them up.
 
+use super::bodies::Bodies;
 use super::made::Maker;
 use super::shapes::{Finish, Shapes};
 use super::spiral;
@@ -46,6 +47,7 @@ pub struct Twist {
 /// What the places of the parts are computed from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Pose {
+    /// Rotation of end A's body.
     rotation: Quat,
     center: Vec3,
     axis: Vec3,
@@ -94,6 +96,7 @@ impl TurnItem<'_, '_> {
 /// Where bodies are in this frame.
 #[derive(SystemParam)]
 pub(super) struct Turns<'w, 's> {
+    bodies: Bodies<'w, 's>,
     globals: Query<'w, 's, &'static GlobalTransform, Without<Winding>>,
     colliders: Query<'w, 's, &'static Collider>,
 }
@@ -102,14 +105,14 @@ impl Turns<'_, '_> {
     fn pose(&self, turn: &TurnItem, center: Vec3) -> Option<Pose> {
         let (a, b, axis, rest) = turn.element()?;
         let axis = axis.try_normalize()?;
-        let (a, b) = (self.globals.get(a).ok()?, self.globals.get(b).ok()?);
-        let (rotation, other) = (a.rotation(), b.rotation());
+        let center = self.globals.get(a).ok()?.transform_point(center);
+        let facing = |end| Some(self.globals.get(self.bodies.of(end)).ok()?.rotation());
+        let (rotation, other) = (facing(a)?, facing(b)?);
         let between = rotation.inverse() * other;
         let twist = 2.0 * between.xyz().dot(axis).atan2(between.w);
         // The drawn pose may lie between two steps, so only the number of full turns is taken from the readout.
         let full = turn.readout.map_or(0.0, |r| r.length);
         let angle = twist + TAU * ((full - twist) / TAU).round();
-        let center = a.transform_point(center);
         let pose = Pose {
             rotation,
             center,

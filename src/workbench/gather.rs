@@ -9,6 +9,7 @@ use super::model::snapshot::Snapshot;
 use crate::element::{CustomDampingLaw, CustomSpringLaw, SpringAxis, SpringFault};
 use crate::input::companions::Beside;
 use crate::input::curve::Curve;
+use crate::input::named_ends::MOST_LEVELS;
 use crate::input::parts::{IsElement, Parts};
 use crate::readout::SpringReadout;
 use crate::settings::CoiloverSettings;
@@ -145,9 +146,15 @@ impl Look<'_, '_> {
 
     /// Returns the name of an entity, or of its nearest ancestor that has one.
     fn named(&self, entity: Entity) -> Option<&str> {
-        let up = std::iter::once(entity).chain(self.parents.iter_ancestors(entity));
-        let mut names = up.filter_map(|entity| self.names.get(entity).ok());
+        let mut names = self.up(entity).filter_map(|it| self.names.get(it).ok());
         names.next().map(Name::as_str)
+    }
+
+    /// Returns an entity and its ancestors.
+    fn up(&self, entity: Entity) -> impl Iterator<Item = Entity> {
+        // Parents in a circle would hang the game. The element itself reports them.
+        let parents = self.parents.iter_ancestors(entity).take(MOST_LEVELS);
+        std::iter::once(entity).chain(parents)
     }
 
     fn facts(&self, entity: Entity, now: &Snapshot) -> Facts {
@@ -197,17 +204,23 @@ impl Look<'_, '_> {
             None => b.at? - a.at?,
             Some(SpringAxis::World(axis)) => axis,
             Some(SpringAxis::BodyA(axis)) => {
-                self.globals.get(now.part.ends()[0]).ok()?.rotation() * axis
+                let end = now.part.ends()[0];
+                let frame = self.bearer(end).unwrap_or(end);
+                self.globals.get(frame).ok()?.rotation() * axis
             }
         };
         let slope = to_load * along.try_normalize()?.dot(gravity.try_normalize()?);
         Some(slope).filter(|slope| slope.is_finite())
     }
 
-    /// Returns the body that an entity belongs to: the entity itself or its nearest ancestor that is a body.
+    /// Returns the entity of the body that an entity belongs to: itself or its nearest ancestor that is a body.
+    fn bearer(&self, entity: Entity) -> Option<Entity> {
+        self.up(entity).find(|it| self.bodies.contains(*it))
+    }
+
+    /// Returns the body that an entity belongs to.
     fn body(&self, entity: Entity) -> Option<Body<'_>> {
-        let mut up = std::iter::once(entity).chain(self.parents.iter_ancestors(entity));
-        up.find_map(|entity| self.bodies.get(entity).ok())
+        self.bodies.get(self.bearer(entity)?).ok()
     }
 
     /// Returns gravity in the Rapier context of the ends' bodies, m/s². Each context has its own. Zero if no end is a

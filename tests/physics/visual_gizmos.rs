@@ -6,14 +6,16 @@ use bevy::gizmos::config::GizmoConfigStore;
 use bevy::gizmos::{GizmoAsset, GizmoHandles};
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
+use bevy_rapier3d::prelude::RigidBody;
 use std::any::TypeId;
 use std::f32::consts::FRAC_PI_2;
 
 /// Position of end B. End A is at the origin, rotated so that its Y axis points along −X.
 const B: Vec3 = Vec3::new(0.3, 1.0, 0.0);
 
-/// Start and end of each arrow shaft of an element under a tension of 40 N.
-fn arrows(axis: Option<SpringAxis>) -> Vec<[Vec3; 2]> {
+/// Start and end of each arrow shaft of an element under a tension of 40 N. With `below`, end A is a child of a body,
+/// and is itself turned by this against the body.
+fn arrows(axis: Option<SpringAxis>, below: Option<Quat>) -> Vec<[Vec3; 2]> {
     // Without the physics plugin, which would overwrite the readout.
     let mut lab = Lab::without_plugin(Engine::default());
     lab.app
@@ -24,7 +26,14 @@ fn arrows(axis: Option<SpringAxis>) -> Vec<[Vec3; 2]> {
         .init_asset::<Mesh>()
         .init_asset::<StandardMaterial>();
     lab.prime();
-    let a = lab.spawn(Transform::from_rotation(Quat::from_rotation_z(FRAC_PI_2)));
+    let turned = Transform::from_rotation(Quat::from_rotation_z(FRAC_PI_2));
+    let a = match below {
+        None => lab.spawn(turned),
+        Some(turn) => {
+            let body = lab.spawn((RigidBody::Fixed, turned));
+            lab.spawn((Transform::from_rotation(turn), ChildOf(body)))
+        }
+    };
     let b = lab.point(B);
     let tension = SpringReadout {
         spring_force: 40.0,
@@ -55,20 +64,23 @@ fn arrows(axis: Option<SpringAxis>) -> Vec<[Vec3; 2]> {
 
 #[test]
 fn forces_lie_along_the_line_between_the_ends_or_along_the_axis_of_the_element() {
-    for (axis, way) in [
-        (None, B.normalize()),
-        (Some(SpringAxis::World(2.0 * Vec3::X)), Vec3::X),
-        (Some(SpringAxis::BodyA(Vec3::Y)), Vec3::NEG_X),
+    let of_a = Some(SpringAxis::BodyA(Vec3::Y));
+    for (axis, below, way) in [
+        (None, None, B.normalize()),
+        (Some(SpringAxis::World(2.0 * Vec3::X)), None, Vec3::X),
+        (of_a, None, Vec3::NEG_X),
+        // The axis is in the frame of the body, whatever the turn of the end on it.
+        (of_a, Some(Quat::from_rotation_x(1.0)), Vec3::NEG_X),
     ] {
         // 5 mm per newton.
         let pull = 0.2 * way;
         let wanted = [[Vec3::ZERO, pull], [B, B - pull]];
-        let drawn = arrows(axis);
-        assert_eq!(drawn.len(), 2, "{axis:?}: {drawn:?}");
+        let drawn = arrows(axis, below);
+        assert_eq!(drawn.len(), 2, "{axis:?}, {below:?}: {drawn:?}");
         for (drawn, wanted) in drawn.into_iter().zip(wanted) {
             let is_near =
                 drawn[0].distance(wanted[0]) < 1e-5 && drawn[1].distance(wanted[1]) < 1e-5;
-            assert!(is_near, "{axis:?}: {drawn:?}, not {wanted:?}");
+            assert!(is_near, "{axis:?}, {below:?}: {drawn:?}, not {wanted:?}");
         }
     }
 }

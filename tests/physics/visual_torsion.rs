@@ -106,6 +106,30 @@ fn its_outer_end_goes_around_with_body_b_and_its_inner_end_stays() {
     }
 }
 
+#[test]
+fn ends_that_are_turned_children_of_bodies_neither_tilt_nor_wind_it() {
+    let mut lab = lab();
+    let mut end = |turn: Quat| {
+        let body = lab.spawn((RigidBody::Fixed, Transform::from_translation(Vec3::X)));
+        let child = (Transform::from_rotation(turn), ChildOf(body));
+        [body, lab.spawn(child)]
+    };
+    let [_, frame] = end(Quat::from_rotation_x(0.7));
+    let [door, leaf] = end(Quat::from_rotation_y(0.4));
+    let spring = TorsionSpring::new(frame, leaf, Vec3::Z).with_rest_angle(0.0);
+    let element = lab.spawn((spring, TorsionCoil::new(RADIUS, 4.0)));
+    lab.run(0.1);
+    let mut door = Door { lab, door, element };
+    let [_, outer] = door.ends();
+    assert!(outer.z.abs() < 1e-5, "it is tilted: {outer}");
+    for angle in [0.5, 1.5] {
+        door.turn(angle);
+        let [_, gone] = door.ends();
+        let wanted = Vec3::X + Quat::from_rotation_z(angle) * (outer - Vec3::X);
+        assert!(gone.distance(wanted) < 1e-5, "{gone}, not {wanted}");
+    }
+}
+
 /// Meshes of which a renderer has received an event.
 #[derive(Resource)]
 struct Known(HashSet<AssetId<Mesh>>);

@@ -209,3 +209,24 @@ fn a_disabled_element_is_told_to_be_disabled_and_keeps_its_name() {
     person.run(30);
     assert!(person.sees("Alone on its ends") && !person.sees("It is disabled"));
 }
+
+#[test]
+fn the_slope_of_an_axis_of_a_is_that_of_the_body_that_a_belongs_to() {
+    let mut person = Person::at_the_bench();
+    let (lamp, hook) = (person.lamp, person.lamp().body_a);
+    let world = person.app.world_mut();
+    let turned = Transform::from_rotation(Quat::from_rotation_z(1.0));
+    let eye = world.spawn((turned, ChildOf(hook))).id();
+    let mut spring = world.get_mut::<SpringDamper>(lamp).expect("an element");
+    spring.body_a = eye;
+    let down = SpringAxis::BodyA(Vec3::NEG_Y);
+    world.entity_mut(lamp).insert(down);
+    person.run(3);
+    person.click("Lamp spring");
+    assert!(person.sees("A: Hook (fixed)"), "{:?}", person.texts());
+    let bench = person.app.world().resource::<Bench>();
+    let slope = bench.subject.as_ref().expect("chosen").facts.slope;
+    // The load hangs, as the physics sees it.
+    let is_one = slope.is_some_and(|slope| (slope - 1.0).abs() < 1e-5);
+    assert!(is_one, "{slope:?}");
+}
