@@ -270,7 +270,7 @@ fn each_scene_ends_in_the_bits_that_are_noted() {
             "on the ground",
             on_the_ground,
             default(),
-            0x76d1_8ce9_46a9_3da4,
+            0x474d_6346_bf8f_466f,
         ),
         (
             "cloth, by a tolerance",

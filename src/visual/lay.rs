@@ -47,8 +47,7 @@ pub(super) fn lay(
         };
         let shows = || visibility.is_some_and(|v| v.get());
         let is_due = match placement.due {
-            Due::Nowhere => placement.is_known() && has_changed(),
-            Due::Laid => has_changed(),
+            Due::Nowhere | Due::Laid => has_changed(),
             Due::Hidden | Due::Visible => {
                 if shows() {
                     placement.bypass_change_detection().shows = true;
@@ -88,9 +87,12 @@ fn is_same(one: &Handle<Mesh>, other: &Handle<Mesh>) -> bool {
     }
 }
 
-/// Transform of a part in the world.
+/// Transform of a part in the world. A part that never had a place has no size.
 #[inline]
 fn world(placement: &Placement, part: Part) -> GlobalTransform {
+    if !placement.is_known() {
+        return GlobalTransform::from_scale(Vec3::ZERO);
+    }
     let columns = rotation(placement.axis, placement.side);
     let (at, scale) = placement.layout.lay(part, placement.length);
     GlobalTransform::from(Affine3A {

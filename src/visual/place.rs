@@ -44,11 +44,10 @@ pub struct Placement {
     first: Option<f32>,
 }
 
-/// Which parts of an element must be placed again in this frame. Parts that other code has changed are placed as well,
-/// once it was known where the ends are.
+/// Which parts of an element must be placed again in this frame. Parts that other code has changed are placed as well.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum Due {
-    /// No parts: it is not known where the ends are. Parts stay where they were placed last.
+    /// No parts: it is not known where the ends are. Parts stay where they were placed last. Before that they have no size.
     #[default]
     Nowhere,
     /// No parts: all are where they should be.

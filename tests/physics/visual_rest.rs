@@ -140,6 +140,20 @@ fn without_an_end_all_parts_stay_as_large_as_they_are_wherever_their_element_goe
 }
 
 #[test]
+fn parts_of_an_element_that_never_had_an_end_have_no_size() {
+    let mut lab = lab();
+    let (a, nobody) = (lab.point(Vec3::X), lab.spawn(()));
+    let element = lab.spawn((Damper::new(a, nobody), Telescope::default()));
+    for _ in 0..4 {
+        lab.get_mut::<Transform>(element).translation.x += 1.0;
+        lab.tick();
+    }
+    for part in parts(&lab, element) {
+        assert_eq!(part.scale(), Vec3::ZERO);
+    }
+}
+
+#[test]
 fn a_part_that_was_disabled_for_a_while_is_right_when_it_is_enabled() {
     let mut rest = Rest::new();
     rest.insert(rest.coil, Disabled);
