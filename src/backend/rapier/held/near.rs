@@ -42,9 +42,9 @@ struct Other<'a> {
 }
 
 impl Outlook<'_> {
-    /// Returns whether a component may hit a body outside it in the coming step, and if not, how long no new search is needed.
-    /// `rows` are the bodies of the component, `pushes` the speed that springs can add to each, m/s; `is_own`
-    /// says whether a body belongs to the component.
+    /// Returns how long no body of a component can hit a body outside it; `None` if one may do so in the coming step. `rows` are
+    /// the bodies of the component, `pushes` the speed that springs can add to each, m/s; `is_own` says whether a body belongs to
+    /// the component.
     pub(crate) fn look(
         &self,
         rows: &[&BodyRow],
@@ -74,7 +74,6 @@ impl Outlook<'_> {
             steps: MOST,
             way: most * fastest * self.time,
         };
-        let mut none_near = true;
         for (_, collider) in all.intersect_aabb_conservative(region) {
             let parent = collider.parent();
             if parent.is_some_and(&is_own) {
@@ -95,9 +94,8 @@ impl Outlook<'_> {
             let way = TRUSTED * free - most * other.speed * self.time;
             clear = Clear {
                 steps: clear.steps.min(steps as u8),
-                way: if none_near { way } else { clear.way.min(way) },
+                way: clear.way.min(way),
             };
-            none_near = false;
         }
         Some(clear)
     }
@@ -147,7 +145,7 @@ impl Outlook<'_> {
     }
 }
 
-/// How long no contact of a component can begin.
+/// How long no body of a component can hit anything outside it.
 pub(crate) struct Clear {
     /// Number of further steps without search.
     pub steps: u8,
