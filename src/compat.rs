@@ -7,7 +7,7 @@ use bevy_rapier3d::parry::query;
 use bevy_rapier3d::parry::shape::Shape;
 use bevy_rapier3d::prelude::{RapierContextJoints, RapierRigidBodySet};
 use bevy_rapier3d::rapier::dynamics::{IslandManager, RigidBodyHandle, RigidBodySet};
-use bevy_rapier3d::rapier::geometry::ColliderSet;
+use bevy_rapier3d::rapier::geometry::{ColliderSet, SolverFlags};
 use bevy_rapier3d::rapier::math::Pose;
 
 #[cfg(feature = "visual")]
@@ -32,6 +32,9 @@ pub(crate) const ROUND_WIRE: (&str, &str) = (
         include_str!("../assets/shaders/tube.wgsl"),
     ),
 );
+
+/// Flag of the contacts that the engine solves.
+pub(crate) const SOLVED: SolverFlags = SolverFlags::COMPUTE_IMPULSES;
 
 /// Distance between two shapes, m; 0 where they touch, or where Rapier cannot compute it for these shapes.
 pub(crate) fn distance(at: [&Pose; 2], shapes: [&dyn Shape; 2]) -> f32 {

@@ -3,6 +3,7 @@
 use super::joint::is_ours;
 use crate::backend::rapier::body;
 use crate::backend::rapier::held::near::{is_solid, may_press, skins, speed_of};
+use crate::compat;
 use crate::scene::rows::{BodyFlags, BodyRow, take};
 use bevy::math::Vec3;
 use bevy_rapier3d::parry;
@@ -10,9 +11,7 @@ use bevy_rapier3d::parry::bounding_volume::BoundingVolume;
 use bevy_rapier3d::parry::partitioning::{Bvh, BvhBuildStrategy};
 use bevy_rapier3d::prelude::RapierContextJoints;
 use bevy_rapier3d::rapier::dynamics::{RigidBody as RapierBody, RigidBodyHandle};
-use bevy_rapier3d::rapier::geometry::{
-    ColliderHandle, ColliderSet, ContactPair, NarrowPhase, SolverFlags,
-};
+use bevy_rapier3d::rapier::geometry::{ColliderHandle, ColliderSet, ContactPair, NarrowPhase};
 
 /// How long a body counts as held after its last contact, s. So a hopping wheel or a drumming foot does not change between
 /// the two solvers in every step. Pinned by `ground::drumming`.
@@ -89,7 +88,7 @@ fn will_press(pair: &ContactPair, way: f32) -> bool {
         .solver_manifolds()
         .iter()
         .map(|manifold| &manifold.data);
-    let mut solved = all.filter(|data| data.solver_flags.contains(SolverFlags::COMPUTE_IMPULSES));
+    let mut solved = all.filter(|data| data.solver_flags.contains(compat::SOLVED));
     solved.any(|data| {
         data.solver_contacts
             .iter()
