@@ -23,8 +23,7 @@ use bevy::math::DVec3;
 mod kinked;
 mod placement;
 
-use placement::steep;
-pub(super) use placement::{damper_placement, placement, settling};
+pub(super) use placement::{damper_placement, placement, settling, steep};
 
 /// (ω h)² of the stiffest mode up to which θ makes its frequency exact.
 const PLACED: f64 = 9.0;

@@ -6,15 +6,16 @@
 //! too long for the stiffness) the mean force over the step does exactly the work of the law's energy. This is the step of
 //! D. Greenspan and R. LaBudde (1974), which conserves energy and angular momentum for any law and any step.
 
+mod motion;
 mod pair_view;
 
 pub(crate) use pair_view::PairView;
 
 use super::kick::Memo;
 use super::law::Law;
+use super::network::{damper_placement, steep};
 use super::pair::{Line, Pair, Separation};
 use super::poles::{Poles, RESOLVED_PHASE, UNRESOLVED_DECAY, decay_ratio};
-use super::tolerance::{Least, Motion, VELOCITY_COUNTS};
 use bevy::math::DVec3;
 
 /// (ω h)² up to which the kick is used for a law without kinks.
@@ -74,15 +75,28 @@ impl<'a> NonlinearPair<'a> {
         self.pair.rest_length
     }
 
-    /// Whether the law has no kink between two lengths, and damping is light at both.
-    fn is_smooth(&self, from: f64, to: f64, rate: f64, step: f64) -> bool {
-        let (law, rest) = (self.law, self.rest_length());
-        let weight = self.pair.inverse_mass * step;
-        from > 0.0
-            && to > 0.0
-            && law.part(from, rest) == law.part(to, rest)
-            && law.drag(from, rest, rate).slope * weight < LIGHT
-            && law.drag(to, rest, rate).slope * weight < LIGHT
+    /// Linear damping that the law has at a length and rate, if damping is light there. It is zero where a limit or a slack rope
+    /// cuts the damper.
+    fn light_damping(&self, length: f64, rate: f64, step: f64) -> Option<f64> {
+        let drag = self.law.drag(length, self.rest_length(), rate);
+        let is_light = steep(drag, rate) * self.pair.inverse_mass * step < LIGHT;
+        let linear = self.law.drag.linear().unwrap_or(0.0);
+        is_light.then(|| drag.slope.min(linear))
+    }
+
+    /// Whether the law has no kink between two lengths.
+    fn is_one_part(&self, [from, to]: [f64; 2]) -> bool {
+        let rest = self.rest_length();
+        from > 0.0 && to > 0.0 && self.law.part(from, rest) == self.law.part(to, rest)
+    }
+
+    /// Linear damping between two lengths, if the law has no kink there and damping is light and the same at both.
+    fn smooth_damping(&self, ends: [f64; 2], rate: f64, step: f64) -> Option<f64> {
+        if !self.is_one_part(ends) {
+            return None;
+        }
+        let [first, last] = ends.map(|length| self.light_damping(length, rate, step));
+        first.filter(|_| first == last)
     }
 
     /// Whether a step resolves the stiffness at all lengths that the motion can reach with its present energy. Frequent
@@ -126,9 +140,12 @@ impl<'a> NonlinearPair<'a> {
         if let Some(line) = self.pair.line(&before) {
             let ahead = (before.d + step * before.v).length();
             let turns = step * step * line.lateral_square > 0.25 * from * from;
-            if resolved && !turns && self.is_smooth(from, ahead, line.axial, step) {
-                self.kick_through(step);
-                if self.is_smooth(from, self.state.d.length(), line.axial, step) {
+            let smooth = self.smooth_damping([from, ahead], line.axial, step);
+            if let Some(damping) = smooth.filter(|_| resolved && !turns) {
+                self.kick_through(step, damping);
+                let to = self.state.d.length();
+                let rate = self.state.v.dot(self.state.d) / to;
+                if self.is_one_part([from, to]) && self.light_damping(to, rate, step) == smooth {
                     return;
                 }
                 self.state = before;
@@ -137,20 +154,24 @@ impl<'a> NonlinearPair<'a> {
         let ahead = (before.d + step * before.v).length();
         let stiffest = self.law.stiffest([from, ahead], self.rest_length());
         let z = stiffest * self.pair.inverse_mass * step * step;
-        let parts = (z.sqrt() / FINE).ceil().clamp(PARTS[0], PARTS[1]);
+        let damped = self.damping_at(from).1 * self.pair.inverse_mass * step;
+        let parts = (z.sqrt() / FINE).max(damped).ceil();
+        let parts = parts.clamp(PARTS[0], PARTS[1]);
         for _ in 0..parts as u32 {
             self.keep_energy_through(step / parts);
         }
     }
 
-    /// Takes a micro-step: velocity map, half drift, kick, half drift, velocity map.
-    fn kick_through(&mut self, step: f64) {
-        self.map(step, |axial, offset, speed| (axial - offset) / speed);
+    /// Takes a micro-step: velocity map, half drift, kick, half drift, velocity map. `damping` is the linear damping of the law there.
+    fn kick_through(&mut self, step: f64, damping: f64) {
+        self.map(step, damping, |axial, offset, speed| {
+            (axial - offset) / speed
+        });
         self.state.d += 0.5 * step * self.state.v;
         self.kick(step);
         self.state.d += 0.5 * step * self.state.v;
         self.note_side();
-        self.map(step, |axial, offset, speed| speed * axial + offset);
+        self.map(step, damping, |axial, offset, speed| speed * axial + offset);
     }
 
     fn note_side(&mut self) {
@@ -186,11 +207,12 @@ impl<'a> NonlinearPair<'a> {
     }
 
     /// Maps the axial velocity between the true and the stepped motion, as in [`super::pair`].
-    fn map(&mut self, step: f64, to: impl Fn(f64, f64, f64) -> f64) {
+    fn map(&mut self, step: f64, damping: f64, to: impl Fn(f64, f64, f64) -> f64) {
         let Some(line) = self.pair.line(&self.state) else {
             return;
         };
-        let poles = self.poles_at(&line, step);
+        // Only linear damping, because a slope that depends on speed would differ before and after the map.
+        let poles = self.poles_at(&line, step, damping);
         let outside = line.pushed + line.turning(line.lateral_square, step);
         let elastic = self.law.elastic(line.length, self.rest_length());
         let residual_acceleration = elastic.force * self.pair.inverse_mass - outside;
@@ -202,11 +224,9 @@ impl<'a> NonlinearPair<'a> {
         self.state.v += (axial - line.axial) * line.direction;
     }
 
-    fn poles_at(&mut self, line: &Line, step: f64) -> Poles {
+    fn poles_at(&mut self, line: &Line, step: f64, damping: f64) -> Poles {
         let weight = self.pair.inverse_mass * step;
         let elastic = self.law.elastic(line.length, self.rest_length());
-        // Only linear damping, because a slope that depends on speed would differ before and after the map.
-        let damping = self.law.drag.linear().unwrap_or(0.0);
         self.memo
             .poles(elastic.stiffness * weight * step, damping * weight / 2.0)
     }
@@ -214,22 +234,43 @@ impl<'a> NonlinearPair<'a> {
     /// Takes one step whose mean force does the work of the law's energy.
     fn keep_energy_through(&mut self, step: f64) {
         let from = self.state.d.length();
-        let to = self.length_after(from, step);
-        let sigma = self.share(from, to, step);
+        let braking = self.braking(from, step);
+        let to = self.length_after(from, step, braking);
+        let sigma = self.share(from, to, step, braking);
         let d = self.after(sigma, step);
         self.state.v = 2.0 / step * (d - self.state.d) - self.state.v;
         self.state.d = d;
         self.note_side();
     }
 
+    /// Rate at the start of a step from the length `from`, m/s, and the time whose rate determines the force of the damper, in halves
+    /// of the step. With the middle of the step, a strong damper would throw its ends back and forth.
+    fn braking(&self, from: f64, step: f64) -> [f64; 2] {
+        let (rate, damping) = self.damping_at(from);
+        let placement = damper_placement(damping * self.pair.inverse_mass * step);
+        [rate, 2.0 * placement]
+    }
+
+    /// Rate now, m/s, and damping at that rate, N s/m. `length` is that of now.
+    fn damping_at(&self, length: f64) -> (f64, f64) {
+        let rate = if length > 0.0 {
+            self.state.v.dot(self.state.d) / length
+        } else {
+            0.0
+        };
+        let drag = self.law.drag(length, self.rest_length(), rate);
+        (rate, steep(drag, rate))
+    }
+
     /// Displacement towards end A by the step's mean force, as a share of the sum of the separations at both ends of the step.
-    /// `from` and `to` are the lengths there.
-    fn share(&self, from: f64, to: f64, step: f64) -> f64 {
+    /// `from` and `to` are the lengths there; `braking` is that of [`Self::braking`].
+    fn share(&self, from: f64, to: f64, step: f64, [start, halves]: [f64; 2]) -> f64 {
         let (law, rest) = (self.law, self.rest_length());
         let middle = 0.5 * (from + to);
         let rate = (to - from) / step;
         let mean = law.mean_force([from, to], rest);
-        let mut drag = law.drag(middle, rest, rate).force;
+        let braked = start + halves * (rate - start);
+        let mut drag = law.drag(middle, rest, braked).force;
         // As in `poles`, unresolved motion is damped a little, because rounding of the engine's f32 excites it.
         let slope = law.elastic(middle, rest).stiffness;
         let z = slope * self.pair.inverse_mass * step * step;
@@ -247,8 +288,12 @@ impl<'a> NonlinearPair<'a> {
     }
 
     /// Length at the end of the step, m. The mean force depends on it, so the equation is solved by iteration.
-    fn length_after(&self, from: f64, step: f64) -> f64 {
-        let miss = |to: f64| self.after(self.share(from, to, step), step).length() - to;
+    fn length_after(&self, from: f64, step: f64, braking: [f64; 2]) -> f64 {
+        let miss = |to: f64| {
+            self.after(self.share(from, to, step, braking), step)
+                .length()
+                - to
+        };
         let mut low = (0.0, miss(0.0));
         let free = self.after(0.0, step).length();
         let mut high = (free, miss(free));
@@ -298,59 +343,6 @@ impl<'a> NonlinearPair<'a> {
         } else {
             high.0
         }
-    }
-}
-
-impl Motion for NonlinearPair<'_> {
-    fn save(&mut self, slot: usize) {
-        self.saved[slot] = self.state;
-    }
-
-    fn load(&mut self, slot: usize) {
-        self.state = self.saved[slot];
-    }
-
-    /// Returns one, because a micro-step takes finer steps itself where it needs them.
-    fn least(&mut self, _: f64, _: u32) -> Least {
-        Least {
-            count: 1,
-            suffice: true,
-        }
-    }
-
-    fn run(&mut self, time: f64, count: u32) {
-        self.time = time;
-        let step = time / f64::from(count);
-        self.note_side();
-        let resolved = self.is_resolved_in_reach(step);
-        for _ in 0..count {
-            self.microstep(step, resolved);
-        }
-    }
-
-    fn distance(&self, slot: usize) -> f64 {
-        let (a, b) = (&self.state, &self.saved[slot]);
-        (a.d - b.d).length() + VELOCITY_COUNTS * (a.v - b.v).length()
-    }
-
-    fn travelled(&self, slot: usize) -> f64 {
-        self.distance(slot)
-    }
-
-    fn extrapolate(&mut self, slot: usize) {
-        self.state.towards(&self.saved[slot]);
-    }
-
-    /// Whether the motion is smooth, as extrapolation requires.
-    fn is_resolved(&mut self, step: f64) -> bool {
-        let Some(line) = self.pair.line(&self.state) else {
-            return false;
-        };
-        let to = (self.state.d + step * self.state.v).length();
-        let turned = step * step * line.lateral_square;
-        self.is_resolved_in_reach(step)
-            && self.is_smooth(line.length, to, line.axial, step)
-            && turned < line.length * line.length
     }
 }
 

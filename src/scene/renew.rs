@@ -265,7 +265,7 @@ impl ElementRow {
             let can_touch = finder.tune(tuning, guide, &found.places, &mut tuned)?;
             tuned.check()?;
             companion = companions.of(entity, &tuned)?;
-            self.set_parameters(tuned);
+            self.change(|row| row.set_parameters(tuned));
             let again = can_touch && self.has(ElementFlags::TUNED_AGAIN) == waits;
             self.flags.insert(ElementFlags::TUNED);
             self.flags.set(ElementFlags::TUNED_AGAIN, again);

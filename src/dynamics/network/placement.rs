@@ -16,7 +16,7 @@ pub(in crate::dynamics) fn settling(z: f64) -> f64 {
 
 /// Slope of a damping force over the rate, or the slope of the secant from zero if that is steeper, N s/m. A force that
 /// flattens at speed must not count as weak.
-pub(super) fn steep(drag: Drag, rate: f64) -> f64 {
+pub(in crate::dynamics) fn steep(drag: Drag, rate: f64) -> f64 {
     if rate == 0.0 {
         return drag.slope;
     }

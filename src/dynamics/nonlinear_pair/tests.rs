@@ -1,5 +1,6 @@
 use super::*;
 use crate::dynamics::law::{DragLaw, Recipe, SpringForce, Stop};
+use crate::dynamics::tolerance::Motion;
 
 fn pair(rest_length: f64, outside: DVec3) -> Pair {
     Pair {

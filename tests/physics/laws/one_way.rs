@@ -89,6 +89,7 @@ fn a_slack_rope_with_a_damper_neither_brakes_nor_pushes() {
     let rope = lab.spawn((rope, SpringAction::Pull));
     lab.run(0.9);
     assert!((lab.velocity(body).x - 1.0).abs() < 1e-6);
+    assert!((lab.position(body).x - 1.9).abs() < 1e-4);
     let mut least = f32::MAX;
     for _ in 0..lab.ticks(3.0) {
         lab.tick();

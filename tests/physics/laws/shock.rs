@@ -242,3 +242,66 @@ fn degressive_quadratic_and_tabled_dampers_brake_as_their_equations_say() {
         assert!(worst < 8e-3, "{name}: {worst}");
     }
 }
+
+/// A cart of 1 kg that leaves a wall at 1 m/s.
+fn leaving() -> (Lab, Entity, Entity) {
+    let mut lab = Lab::weightless();
+    let wall = lab.point(Vec3::ZERO);
+    let cart = lab.moving(body(1.0, Vec3::X), Velocity::linear(Vec3::X));
+    (lab, wall, cart)
+}
+
+#[test]
+fn a_damper_with_a_limit_brakes_like_a_slipping_clutch_and_then_holds() {
+    for damping in [50.0, 1e3, 1e5, 1e8] {
+        let (mut lab, wall, cart) = leaving();
+        let damper = Damper::new(wall, cart).with_damping(damping);
+        let damper = lab.spawn((damper, MaxForce(6.0)));
+        for tick in 1..=30 {
+            lab.tick();
+            let speed = f64::from(lab.velocity(cart).x);
+            let slipping = 1.0 - 0.1 * f64::from(tick);
+            println!("{damping} N s/m: {speed:.6} m/s after {tick} ticks");
+            assert!(speed <= 1.0 && speed > -1e-3, "{damping}: {speed}");
+            if slipping > 6.0 / f64::from(damping) + 0.1 {
+                assert!(
+                    (speed - slipping).abs() < 0.01,
+                    "{damping}: {speed} {slipping}"
+                );
+            }
+        }
+        let heat = lab.readout(damper).dissipated_energy;
+        assert!((heat - 0.5).abs() < 0.01, "{damping}: {heat} J");
+        assert!(lab.velocity(cart).x.abs() < 0.02, "{damping}");
+    }
+}
+
+#[test]
+fn a_strong_damper_with_a_law_stops_a_body_as_one_without_does() {
+    for damping in [20.0_f32, 600.0, 6e3, 6e5] {
+        let law = DampingLaw::sided(damping, damping);
+        let ways: [fn(&mut EntityWorldMut); 3] = [
+            |_| (),
+            |element| _ = element.insert(SpringTravel::new(0.5, 3.0, 1e4)),
+            |element| _ = element.insert(Preload(0.0)),
+        ];
+        for (way, add) in ways.into_iter().enumerate() {
+            let (mut lab, wall, cart) = leaving();
+            let element = lab.spawn(Damper::new(wall, cart).with_damping(damping));
+            let mut element = lab.app.world_mut().entity_mut(element);
+            if way == 0 {
+                element.insert(law.clone());
+            }
+            add(&mut element);
+            lab.run(0.5);
+            let (speed, at) = (lab.velocity(cart).x, lab.position(cart).x - 1.0);
+            let exact = (1.0 - (-0.5 * damping).exp()) / damping;
+            println!("{damping} N s/m, {way}: {speed:.2e} m/s at {at:.3e} m of {exact:.3e} m");
+            assert!(speed.abs() < 1e-3, "{damping} {way}: {speed} m/s");
+            assert!(
+                (at - exact).abs() < 0.02 * exact + 6e-4,
+                "{damping} {way}: {at} m"
+            );
+        }
+    }
+}

@@ -207,3 +207,31 @@ fn a_sag_is_the_sag_under_another_gravity_scale_and_a_fault_without_gravity() {
     assert_eq!(fault.field, "SpringTuning");
     assert!(fault.reason.contains("no gravity"), "{fault}");
 }
+
+#[test]
+fn a_spring_that_is_tuned_while_it_is_stretched_does_the_work_of_the_change() {
+    let mut lab = Lab::weightless();
+    let (hook, load) = (lab.point(Vec3::ZERO), lab.body(1.0, Vec3::X * 1.1));
+    let spring = SpringDamper::new(hook, load).with_stiffness(100.0);
+    let spring = lab.spawn(spring.with_rest_length(1.0));
+    lab.run(0.5);
+    let before = lab.readout(spring);
+    lab.app
+        .world_mut()
+        .entity_mut(spring)
+        .insert(SpringTuning::frequency(20.0 / TAU, 0.0));
+    let sum = |read: &SpringReadout, lab: &Lab| {
+        let speed = lab.velocity(load).x;
+        read.stored_energy + read.dissipated_energy - read.work + 0.5 * speed * speed
+    };
+    let first = sum(&before, &lab);
+    lab.run(0.5);
+    let after = lab.readout(spring);
+    println!("{before:?} {after:?}");
+    assert!((lab.get::<SpringDamper>(spring).stiffness - 400.0).abs() < 0.1);
+    assert!(
+        (sum(&after, &lab) - first).abs() < 0.01,
+        "{first} {}",
+        sum(&after, &lab)
+    );
+}
