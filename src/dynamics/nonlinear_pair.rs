@@ -144,7 +144,7 @@ impl<'a> NonlinearPair<'a> {
             if let Some(damping) = smooth.filter(|_| resolved && !turns) {
                 self.kick_through(step, damping);
                 let to = self.state.d.length();
-                let rate = self.state.v.dot(self.state.d) / to;
+                let rate = self.rate(to);
                 if self.is_one_part([from, to]) && self.light_damping(to, rate, step) == smooth {
                     return;
                 }
@@ -251,13 +251,18 @@ impl<'a> NonlinearPair<'a> {
         [rate, 2.0 * placement]
     }
 
-    /// Rate now, m/s, and damping at that rate, N s/m. `length` is that of now.
-    fn damping_at(&self, length: f64) -> (f64, f64) {
-        let rate = if length > 0.0 {
+    /// Rate of the length now, m/s. `length` is that of now.
+    fn rate(&self, length: f64) -> f64 {
+        if length > 0.0 {
             self.state.v.dot(self.state.d) / length
         } else {
             0.0
-        };
+        }
+    }
+
+    /// Rate now, m/s, and damping at that rate, N s/m. `length` is that of now.
+    fn damping_at(&self, length: f64) -> (f64, f64) {
+        let rate = self.rate(length);
         let drag = self.law.drag(length, self.rest_length(), rate);
         (rate, steep(drag, rate))
     }

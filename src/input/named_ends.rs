@@ -14,6 +14,15 @@ use bevy::prelude::*;
 /// game. Pinned by `ends`.
 pub(crate) const MOST_LEVELS: usize = 4096;
 
+/// An entity and its ancestors, from below.
+pub(crate) fn and_above<'a>(
+    entity: Entity,
+    parents: &'a Query<'a, '_, &'static ChildOf>,
+) -> impl Iterator<Item = Entity> {
+    let above = parents.iter_ancestors(entity).take(MOST_LEVELS);
+    std::iter::once(entity).chain(above)
+}
+
 /// Filter: an element that the engine leaves out until its ends are found.
 type Waits = (With<EndNames>, With<AwaitsEnds>, IsElement);
 
@@ -163,7 +172,7 @@ impl Look<'_, '_> {
             bearers.count += 1;
         };
         add(Some(entity));
-        for above in self.places_above(entity) {
+        for above in and_above(entity, &self.parents).skip(1) {
             if self.named.get(above).is_ok_and(|(_, other)| other == name) {
                 return;
             }
@@ -179,15 +188,10 @@ impl Look<'_, '_> {
         number: usize,
         index: &Index,
     ) -> Option<(Option<Entity>, Bearers)> {
-        let places = [entity].into_iter().chain(self.places_above(entity));
-        places
+        and_above(entity, &self.parents)
             .map(Some)
             .chain([None])
             .find_map(|place| Some((place, *index.get(&(place, number))?)))
-    }
-
-    fn places_above(&self, entity: Entity) -> impl Iterator<Item = Entity> {
-        self.parents.iter_ancestors(entity).take(MOST_LEVELS)
     }
 }
 

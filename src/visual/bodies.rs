@@ -1,6 +1,6 @@
 //! Which body an end belongs to. Axes and angles are those of bodies, also where an end is a descendant of one.
 
-use crate::input::named_ends::MOST_LEVELS;
+use crate::input::named_ends::and_above;
 use bevy::ecs::system::SystemParam;
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::RigidBody;
@@ -16,11 +16,8 @@ impl Bodies<'_, '_> {
     /// The body that an end belongs to: the end itself or its nearest ancestor that is a body. If there is none, it is
     /// the end.
     pub fn of(&self, end: Entity) -> Entity {
-        // Parents in a circle would hang the game. The element itself reports them.
-        let up = self.parents.iter_ancestors(end).take(MOST_LEVELS);
-        std::iter::once(end)
-            .chain(up)
-            .find(|entity| self.bodies.contains(*entity))
-            .unwrap_or(end)
+        let mut up = and_above(end, &self.parents);
+        let body = up.find(|entity| self.bodies.contains(*entity));
+        body.unwrap_or(end)
     }
 }

@@ -9,7 +9,7 @@ use super::model::snapshot::Snapshot;
 use crate::element::{CustomDampingLaw, CustomSpringLaw, SpringAxis, SpringFault};
 use crate::input::companions::Beside;
 use crate::input::curve::Curve;
-use crate::input::named_ends::MOST_LEVELS;
+use crate::input::named_ends::and_above;
 use crate::input::parts::{IsElement, Parts};
 use crate::readout::SpringReadout;
 use crate::settings::CoiloverSettings;
@@ -146,15 +146,9 @@ impl Look<'_, '_> {
 
     /// Returns the name of an entity, or of its nearest ancestor that has one.
     fn named(&self, entity: Entity) -> Option<&str> {
-        let mut names = self.up(entity).filter_map(|it| self.names.get(it).ok());
-        names.next().map(Name::as_str)
-    }
-
-    /// Returns an entity and its ancestors.
-    fn up(&self, entity: Entity) -> impl Iterator<Item = Entity> {
-        // Parents in a circle would hang the game. The element itself reports them.
-        let parents = self.parents.iter_ancestors(entity).take(MOST_LEVELS);
-        std::iter::once(entity).chain(parents)
+        let mut up = and_above(entity, &self.parents);
+        let name = up.find_map(|entity| self.names.get(entity).ok());
+        name.map(Name::as_str)
     }
 
     fn facts(&self, entity: Entity, now: &Snapshot) -> Facts {
@@ -215,7 +209,7 @@ impl Look<'_, '_> {
 
     /// Returns the entity of the body that an entity belongs to: itself or its nearest ancestor that is a body.
     fn bearer(&self, entity: Entity) -> Option<Entity> {
-        self.up(entity).find(|it| self.bodies.contains(*it))
+        and_above(entity, &self.parents).find(|entity| self.bodies.contains(*entity))
     }
 
     /// Returns the body that an entity belongs to.

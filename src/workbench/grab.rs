@@ -3,6 +3,7 @@
 use super::CoiloverWorkbench;
 use super::pointer::Pointer;
 use crate::MouseSpring;
+use crate::input::named_ends::and_above;
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::{QueryFilter, ReadRapierContext, RigidBody};
 
@@ -107,8 +108,8 @@ fn touched(
         let filter = QueryFilter::only_dynamic().exclude_sensors();
         let (origin, along) = (ray.origin, *ray.direction);
         let (collider, distance) = context.cast_ray(origin, along, f32::MAX, true, filter)?;
-        let mut up = std::iter::once(collider).chain(parents.iter_ancestors(collider));
-        Some((up.find(is_dynamic)?, distance))
+        let body = and_above(collider, parents).find(is_dynamic)?;
+        Some((body, distance))
     };
     contexts
         .rapier_context

@@ -12,14 +12,16 @@ const REST: f32 = 0.5;
 
 /// Shape of the ground.
 #[derive(Clone, Copy, Debug)]
-enum Ground {
+pub enum Ground {
     HalfSpace,
     Cuboid,
     Trimesh,
     HeightField,
+    /// A row of boxes in one compound.
+    Flags,
 }
 
-fn ground(scene: &mut Stand, kind: Ground) {
+pub fn ground(scene: &mut Stand, kind: Ground) {
     let collider = match kind {
         Ground::HalfSpace => Collider::halfspace(Vec3::Y).expect("up"),
         Ground::Cuboid => Collider::compound(vec![(
@@ -34,6 +36,13 @@ fn ground(scene: &mut Stand, kind: Ground) {
         }
         Ground::HeightField => {
             Collider::heightfield(vec![0.0; 6 * 401], 6, 401, Vec3::new(800.0, 1.0, 10.0))
+        }
+        Ground::Flags => {
+            let flags = (-4..=4).map(|x| {
+                let at = Vec3::new(0.7 * x as f32, -0.1, 0.0);
+                (at, Quat::IDENTITY, Collider::cuboid(0.35, 0.1, 3.0))
+            });
+            Collider::compound(flags.collect())
         }
     };
     scene

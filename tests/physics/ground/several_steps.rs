@@ -4,25 +4,6 @@ use super::stand::*;
 use crate::harness::*;
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
-use bevy_rapier3d::prelude::*;
-
-/// A body of 1 kg on a vertical guide, on a spring below a hook without a body. Returns hook and body.
-fn hung(scene: &mut Stand) -> [Entity; 2] {
-    let base = scene.lab.spawn((RigidBody::Fixed, Transform::default()));
-    let guide = GenericJointBuilder::new(
-        JointAxesMask::LIN_X | JointAxesMask::LIN_Z | JointAxesMask::ANG_AXES,
-    );
-    let body = scene.body(
-        Transform::from_translation(Vec3::NEG_Y),
-        (
-            AdditionalMassProperties::Mass(1.0),
-            ImpulseJoint::new(base, TypedJoint::GenericJoint(guide.build())),
-        ),
-    );
-    let hook = scene.lab.point(Vec3::Y);
-    scene.coil([hook, body], [Vec3::ZERO; 2], [2e4, 60.0], Some(2.0));
-    [hook, body]
-}
 
 #[test]
 fn an_end_without_a_body_moves_evenly_through_all_engine_steps() {
@@ -32,7 +13,8 @@ fn an_end_without_a_body_moves_evenly_through_all_engine_steps() {
             ..Engine::weightless()
         };
         let mut scene = Stand::new(CoiloverPlugin::default(), engine);
-        let [hook, body] = hung(&mut scene);
+        let (hook, body) = (scene.lab.point(Vec3::Y), scene.guided(Vec3::NEG_Y, 1.0));
+        scene.coil([hook, body], [Vec3::ZERO; 2], [2e4, 60.0], Some(2.0));
         let speed = 2.0_f32;
         let mut worst = 0.0_f32;
         let mut last = 0.0;

@@ -72,6 +72,17 @@ impl Stand {
         self.body(Transform::from_translation(at), body)
     }
 
+    /// Spawns a body that a joint guides up and down. Its mass is in kg.
+    pub fn guided(&mut self, at: Vec3, mass: f32) -> Entity {
+        let base = self.lab.spawn((RigidBody::Fixed, Transform::default()));
+        let guide = GenericJointBuilder::new(
+            JointAxesMask::LIN_X | JointAxesMask::LIN_Z | JointAxesMask::ANG_AXES,
+        );
+        let joint = ImpulseJoint::new(base, TypedJoint::GenericJoint(guide.build()));
+        let mass = AdditionalMassProperties::Mass(mass);
+        self.body(Transform::from_translation(at), (mass, joint))
+    }
+
     /// Spawns a spring between two anchors. Without a `rest_length` it is at rest where it is.
     pub fn coil(
         &mut self,

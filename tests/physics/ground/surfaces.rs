@@ -1,5 +1,6 @@
 //! What counts as a surface that holds a body: meshes, gentle landings and skins do; sensors and ghosts do not.
 
+use super::rolling::{Ground, ground};
 use super::scenes::joints;
 use super::stand::*;
 use crate::harness::*;
@@ -11,42 +12,18 @@ const LOAD: f32 = 100.0;
 const WHEEL: f32 = 20.0;
 const RADIUS: f32 = 0.3;
 
-/// A flat road of triangles, one of them under the wheel.
-fn mesh() -> Collider {
-    let corners = [(-9.0, -9.0), (-9.0, 9.0), (9.0, 9.0), (9.0, -9.0)];
-    let points = corners.map(|(x, z)| Vec3::new(x, 0.0, z));
-    Collider::trimesh(points.to_vec(), vec![[0, 1, 2], [0, 2, 3]]).expect("two triangles")
-}
-
-/// Flat roads of each kind.
-fn roads() -> [(&'static str, Collider); 5] {
-    let flags = (-4..=4).map(|x| {
-        let at = Vec3::new(0.7 * x as f32, -0.1, 0.0);
-        (at, Quat::IDENTITY, Collider::cuboid(0.35, 0.1, 3.0))
-    });
-    [
-        ("plane", Collider::halfspace(Vec3::Y).expect("up")),
-        (
-            "box",
-            Collider::compound(vec![(
-                Vec3::NEG_Y,
-                Quat::IDENTITY,
-                Collider::cuboid(9.0, 1.0, 9.0),
-            )]),
-        ),
-        ("flags", Collider::compound(flags.collect())),
-        ("mesh", mesh()),
-        (
-            "field",
-            Collider::heightfield(vec![0.0; 81], 9, 9, Vec3::new(8.0, 1.0, 8.0)),
-        ),
-    ]
-}
+const ROADS: [Ground; 5] = [
+    Ground::HalfSpace,
+    Ground::Cuboid,
+    Ground::Flags,
+    Ground::Trimesh,
+    Ground::HeightField,
+];
 
 /// A load that is guided up and down over a wheel, `gap` metres above a road. Returns the scene and the spring.
-fn on_wheel(road: Collider, gap: f32, skin: f32, stiffness: f32) -> (Stand, Entity) {
+fn on_wheel(road: Ground, gap: f32, skin: f32, stiffness: f32) -> (Stand, Entity) {
     let mut scene = Stand::new(CoiloverPlugin::default(), Engine::default());
-    scene.lab.spawn((road, Transform::default()));
+    ground(&mut scene, road);
     let guided = LockedAxes::ROTATION_LOCKED
         | LockedAxes::TRANSLATION_LOCKED_X
         | LockedAxes::TRANSLATION_LOCKED_Z;
@@ -66,18 +43,18 @@ fn on_wheel(road: Collider, gap: f32, skin: f32, stiffness: f32) -> (Stand, Enti
 
 #[test]
 fn on_every_kind_of_road_a_wheel_counts_as_held() {
-    for (name, road) in roads() {
+    for road in ROADS {
         let (mut scene, element) = on_wheel(road, 0.0, 0.0, 30e3);
         scene.lab.run(0.5);
         let mass = scene.lab.readout(element).effective_mass;
-        println!("{name}: effective mass {mass:.2} kg");
-        assert!((mass / LOAD - 1.0).abs() < 0.01, "{name}: {mass} kg");
+        println!("{road:?}: effective mass {mass:.2} kg");
+        assert!((mass / LOAD - 1.0).abs() < 0.01, "{road:?}: {mass} kg");
     }
 }
 
 #[test]
 fn on_every_kind_of_road_a_spring_is_tuned_for_its_load() {
-    for (name, road) in roads() {
+    for road in ROADS {
         let (mut scene, element) = on_wheel(road, 0.0, 0.0, 30e3);
         let world = scene.lab.app.world_mut();
         world
@@ -87,10 +64,10 @@ fn on_every_kind_of_road_a_spring_is_tuned_for_its_load() {
         let stiffness = scene.lab.get::<SpringDamper>(element).stiffness;
         let omega = std::f32::consts::TAU * 1.5;
         let wanted = LOAD * omega * omega;
-        println!("{name}: {stiffness:.0} N/m of {wanted:.0}");
+        println!("{road:?}: {stiffness:.0} N/m of {wanted:.0}");
         assert!(
             (stiffness / wanted - 1.0).abs() < 0.01,
-            "{name}: {stiffness}"
+            "{road:?}: {stiffness}"
         );
     }
 }
@@ -98,8 +75,7 @@ fn on_every_kind_of_road_a_spring_is_tuned_for_its_load() {
 #[test]
 fn a_wheel_that_settles_gently_is_held_and_so_is_one_with_a_skin() {
     for (gap, skin) in [(0.0, 0.0), (0.015, 0.0), (0.0, 0.02), (0.01, 0.01)] {
-        let (_, road) = roads()[0].clone();
-        let (mut scene, element) = on_wheel(road, gap, skin, 5e3);
+        let (mut scene, element) = on_wheel(Ground::HalfSpace, gap, skin, 5e3);
         scene.lab.run(3.0);
         let read = scene.lab.readout(element);
         println!(
@@ -152,17 +128,7 @@ fn what_collides_with_nothing_is_held_by_nothing() {
 #[test]
 fn a_held_spring_goes_on_while_the_body_at_its_other_end_is_disabled() {
     let mut scene = Stand::new(CoiloverPlugin::default(), Engine::default());
-    let base = scene.lab.spawn((RigidBody::Fixed, Transform::default()));
-    let guide = GenericJointBuilder::new(
-        JointAxesMask::LIN_X | JointAxesMask::LIN_Z | JointAxesMask::ANG_AXES,
-    );
-    let load = scene.body(
-        Transform::from_xyz(0.0, -1.0, 0.0),
-        (
-            AdditionalMassProperties::Mass(10.0),
-            ImpulseJoint::new(base, TypedJoint::GenericJoint(guide.build())),
-        ),
-    );
+    let load = scene.guided(Vec3::NEG_Y, 10.0);
     let hook = scene
         .lab
         .spawn((RigidBody::Dynamic, Transform::from_xyz(0.0, 1.0, 0.0)));

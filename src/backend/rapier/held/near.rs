@@ -15,7 +15,7 @@ use bevy_rapier3d::rapier::math::Pose;
 use bevy_rapier3d::rapier::pipeline::QueryFilter;
 
 /// Distance below which two shapes count as touching, m.
-const NEAR: f32 = 0.005;
+pub(crate) const NEAR: f32 = 0.005;
 
 /// Assumed greatest speed of other bodies in the search for near colliders, m/s.
 const OTHERS: f32 = 30.0;
@@ -111,8 +111,7 @@ impl Outlook<'_> {
             fastest = fastest.max(speed_of(body) + push);
             for own in self.of(body) {
                 let skin = own.contact_skin();
-                let own = own.shape().compute_aabb(&place(own, body));
-                let own = own.loosened(skin);
+                let own = own.shape().compute_aabb(&place(own, body)).loosened(skin);
                 bounds = Some(bounds.map_or(own, |bounds| bounds.merged(&own)));
             }
         }
@@ -161,7 +160,7 @@ pub(crate) fn is_clear(row: &BodyRow, body: &RapierBody, time: f32) -> bool {
 }
 
 /// Where a collider of a body is now. The engine moves the colliders of a body that was put elsewhere only in its step.
-fn place(collider: &Collider, body: &RapierBody) -> Pose {
+pub(crate) fn place(collider: &Collider, body: &RapierBody) -> Pose {
     let local = collider.position_wrt_parent();
     local.map_or(*collider.position(), |local| *body.position() * local)
 }

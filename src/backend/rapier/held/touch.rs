@@ -2,7 +2,7 @@
 
 use super::joint::is_ours;
 use crate::backend::rapier::body;
-use crate::backend::rapier::held::near::{is_solid, may_press, skins, speed_of};
+use crate::backend::rapier::held::near::{NEAR, is_solid, may_press, place, skins, speed_of};
 use crate::compat;
 use crate::scene::rows::{BodyFlags, BodyRow, take};
 use bevy::math::Vec3;
@@ -16,9 +16,6 @@ use bevy_rapier3d::rapier::geometry::{ColliderHandle, ColliderSet, ContactPair, 
 /// How long a body counts as held after its last contact, s. So a hopping wheel or a drumming foot does not change between
 /// the two solvers in every step. Pinned by `ground::drumming`.
 const LINGER: f32 = 0.1;
-
-/// Distance below which shapes count as touching before the first step, m.
-const NEAR: f32 = 0.005;
 
 /// All solid colliders of a context, to find contacts of bodies that the engine has not stepped yet. The engine finds contacts
 /// only within a step, but a stiff spring needs them before the first step.
@@ -57,8 +54,10 @@ impl Crowd {
         all: &ColliderSet,
     ) -> bool {
         let own = body.colliders().iter().filter_map(|own| all.get(*own));
-        let mut own = own.map(|own| (own, own.compute_aabb().loosened(way + own.contact_skin())));
-        own.any(|(own, bounds)| {
+        let mut own = own.map(|own| (own, place(own, body)));
+        own.any(|(own, at)| {
+            let bounds = own.shape().compute_aabb(&at);
+            let bounds = bounds.loosened(way + own.contact_skin());
             let near = self.tree.intersect_aabb(&bounds);
             let bounded = near.map(|leaf| self.bounded[leaf as usize]);
             let mut others = bounded.chain(self.boundless.iter().copied());
@@ -66,7 +65,7 @@ impl Crowd {
                 let Some(other) = all.get(other) else {
                     return false;
                 };
-                let [a, b] = [own, other].map(|c| (c.position(), c.shape()));
+                let (a, b) = ((&at, own.shape()), (other.position(), other.shape()));
                 let way = way + skins(own, other);
                 other.parent() != Some(handle)
                     && may_press(own, other)
