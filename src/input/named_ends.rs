@@ -17,7 +17,7 @@ pub(crate) const MOST_LEVELS: usize = 4096;
 /// An entity and its ancestors, from below.
 pub(crate) fn and_above<'a>(
     entity: Entity,
-    parents: &'a Query<'a, '_, &'static ChildOf>,
+    parents: &'a Query<'a, '_, &ChildOf>,
 ) -> impl Iterator<Item = Entity> {
     let above = parents.iter_ancestors(entity).take(MOST_LEVELS);
     std::iter::once(entity).chain(above)
