@@ -95,7 +95,11 @@ fn tolerance_prices(scenes: &[(&Scene, Vec<Row>)]) -> String {
             let price = best.map_or("–".into(), |best| {
                 format!("{:.2}", row.times.median / best)
             });
-            let _ = write!(text, " {} · {price} |", length(&row));
+            let _ = if row.strayed.diverged {
+                write!(text, " diverges |")
+            } else {
+                write!(text, " {} · {price} |", length(&row))
+            };
         }
         text.push('\n');
     }

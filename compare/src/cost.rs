@@ -1,9 +1,10 @@
 //! Table and chart of the cheapest setting of every method that stays within an error, for each scene.
 
-use crate::method::Method;
+use crate::method::{Method, Setting};
 use crate::paint::{Drawn, FAINT, INK, Sheet, colour, font};
 use crate::scenes::Scene;
 use crate::table::Row;
+use crate::words::{name, time};
 use plotters::prelude::*;
 use std::fmt::Write;
 use std::path::Path;
@@ -14,8 +15,8 @@ const WITHIN: [f64; 3] = [1e-2, 1e-3, 1e-4];
 /// Fewest steps per second: the frame rate of a game.
 const SLOWEST: u32 = 60;
 
-/// The columns of the table, each with the methods that count as variants of one method.
-const WAYS: [&[Method]; 4] = [
+/// The columns of the tables, each with the methods that count as variants of one method.
+pub const WAYS: [&[Method]; 4] = [
     &[Method::Ours],
     &[Method::Joint],
     &[Method::Avian, Method::AvianBare],
@@ -39,15 +40,31 @@ fn price(row: &Row) -> f64 {
     1e6 * row.work() / 60.0
 }
 
+/// The shortest frame at 60 steps per second, of all settings that do not diverge, with its scene.
+fn shortest<'a>(scenes: &Measured<'a>) -> Option<(&'a Scene, Row)> {
+    scenes
+        .iter()
+        .flat_map(|(scene, rows)| rows.iter().map(move |row| (*scene, *row)))
+        .filter(|(_, row)| row.setting.rate == SLOWEST && !row.strayed.diverged)
+        .min_by(|(_, a), (_, b)| a.times.median.total_cmp(&b.times.median))
+}
+
 /// The table with its introduction and the link to the chart.
 pub fn section(scenes: &Measured) -> String {
-    let mut text = String::from(
+    let frame = shortest(scenes).map_or(String::new(), |(scene, row)| {
+        let (name, time) = (name(row.setting), time(&row));
+        format!(
+            " Even the shortest frame of all, that of {name} in \"{}\", takes {time}.",
+            scene.title
+        )
+    });
+    let mut text = format!(
         "## What truth costs\n\n\
          ![For each scene the cheapest setting of every method](speed_vs_error/cost.svg)\n\n\
          For each scene and each error, the cheapest setting of every method that stays within that error, of all \
          settings at 60 to 960 steps a second. The numbers are computing time per 1/60 s of the scene in µs. It is \
-         that of the whole frame of a small app, which takes about 9 µs without any spring. A dash means that no \
-         setting has so small an error, or that the method has no such spring. \
+         that of the whole frame, with all that Bevy and the engine do in it.{frame} A dash means that no \
+         setting has so small an error; *not run*, that the method has no such spring or was not measured. \
          The settings are in the CSV files of the scenes, beside the chart.\n\n\
          | scene | within | bevy_coilover | Rapier SpringJoint | Avian distance joint | force once per step |\n\
          |---|---|---|---|---|---|\n",
@@ -56,20 +73,23 @@ pub fn section(scenes: &Measured) -> String {
         for within in WITHIN {
             let _ = write!(text, "| {} | {} mm |", scene.title, 1e3 * within);
             for way in WAYS {
-                let cell = cheapest(rows, way, within).map_or("–".into(), |row| {
-                    format!(
-                        "{:.1} ({}, {} Hz)",
-                        price(&row),
-                        row.setting.dial,
-                        row.setting.rate
-                    )
-                });
-                let _ = write!(text, " {cell} |");
+                let _ = write!(text, " {} |", cell(rows, way, within));
             }
             text.push('\n');
         }
     }
     text + "\n"
+}
+
+/// Price and setting of the cheapest row of a column.
+fn cell(rows: &[Row], way: &[Method], within: f64) -> String {
+    if !rows.iter().any(|row| way.contains(&row.setting.method)) {
+        return "not run".into();
+    }
+    cheapest(rows, way, within).map_or("–".into(), |row| {
+        let Setting { dial, rate, .. } = row.setting;
+        format!("{:.1} ({dial}, {rate} Hz)", price(&row))
+    })
 }
 
 /// Draws a panel for each error limit, with a line for each scene and a dot for each method.
@@ -162,29 +182,8 @@ fn legend(sheet: &Sheet, y: i32) -> Drawn {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::clock::Times;
-    use crate::follow::Strayed;
-    use crate::method::Setting;
-
-    fn row(method: Method, rate: u32, step: f64, error: f64) -> Row {
-        let strayed = Strayed {
-            error,
-            energy: None,
-            momentum: None,
-            diverged: false,
-        };
-        let times = Times {
-            median: step,
-            low: step,
-            high: step,
-        };
-        Row {
-            setting: Setting::default_of(method, rate),
-            strayed,
-            times,
-            turns: 1,
-        }
-    }
+    use crate::scenes::SCENES;
+    use crate::table::row;
 
     #[test]
     fn the_cheapest_that_is_true_enough_is_taken() {
@@ -202,5 +201,24 @@ mod tests {
         );
         assert_eq!(rate(1e-3), Some(120));
         assert_eq!(rate(1e-5), None);
+    }
+
+    #[test]
+    fn the_shortest_frame_is_one_that_was_measured() {
+        let mut lost = row(Method::Force, 60, 8e-6, 1.0);
+        lost.strayed.diverged = true;
+        let rows = vec![
+            lost,
+            row(Method::Joint, 60, 21e-6, 1.0),
+            row(Method::Ours, 60, 23e-6, 1.0),
+            row(Method::Ours, 240, 9e-6, 1.0),
+        ];
+        let text = section(&[(&SCENES[0], rows)]);
+        let told = "that of Rapier SpringJoint, 4 iterations, at 60 Hz in \"Single oscillator\", takes 21.0 µs.";
+        assert!(text.contains(told), "{text}");
+        assert!(
+            text.contains("| – | – | not run | – |"),
+            "no row of Avian: {text}"
+        );
     }
 }

@@ -58,29 +58,25 @@ pub fn find(rows: &[Row], setting: Setting) -> Option<Row> {
     rows.iter().find(|r| r.setting == setting).copied()
 }
 
+/// The row of a method's default at 60 steps per second. For Avian, the variant with the smaller error.
+pub fn best_of(rows: &[Row], method: Method) -> Option<Row> {
+    let one = find(rows, Setting::default_of(method, 60));
+    if method != Method::Avian {
+        return one;
+    }
+    let other = find(rows, Setting::default_of(Method::AvianBare, 60));
+    match (one, other) {
+        (Some(a), Some(b)) if a.strayed.error.is_nan() || b.strayed.error < a.strayed.error => {
+            Some(b)
+        }
+        (one, other) => one.or(other),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::clock::Times;
-    use crate::follow::Strayed;
-
-    fn row(method: Method, rate: u32, step: f64, error: f64) -> Row {
-        Row {
-            setting: Setting::default_of(method, rate),
-            strayed: Strayed {
-                error,
-                energy: None,
-                momentum: None,
-                diverged: false,
-            },
-            times: Times {
-                median: step,
-                low: step,
-                high: step,
-            },
-            turns: 1,
-        }
-    }
+    use crate::table::row;
 
     #[test]
     fn less_error_in_no_more_time() {

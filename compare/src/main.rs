@@ -27,6 +27,7 @@ mod stability;
 mod study;
 mod sweep;
 mod table;
+mod verdict;
 mod words;
 
 use ground::Ground;
@@ -123,9 +124,10 @@ fn publish(options: &Options, folder: &Path, extras: &str) -> Result<(), Box<dyn
     let headline = report::headline(&scenes);
     cost::draw(&folder.join("cost.svg"), &scenes)?;
     let mut text = format!(
-        "{}{}## In short\n\n{headline}\n\n",
+        "{}{}## In short\n\n{headline}\n\n{}",
         report::opening(),
-        cost::section(&scenes)
+        cost::section(&scenes),
+        report::diverging(&scenes)
     );
     for (scene, rows) in &scenes {
         text.push_str(&report::section(scene, rows));

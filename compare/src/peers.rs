@@ -26,7 +26,8 @@ impl Peer {
         let [engine, setting, scene, rate, error, diverged, _] = cells.as_slice() else {
             return None;
         };
-        let error = error.parse::<f64>().ok().filter(|_| *diverged == "0");
+        let error = error.parse::<f64>().ok();
+        let error = error.filter(|error| *diverged == "0" && error.is_finite());
         Some(Self {
             name: [engine, setting].map(|name| (*name).to_owned()),
             scene: (*scene).to_owned(),
@@ -58,7 +59,8 @@ pub fn section(folder: &Path, scenes: &[(&Scene, Vec<Row>)]) -> String {
          WebAssembly), Box3D's distance joint, springs between Newton's particles, and edges of the soft bodies that newer \
          versions of Rapier have. Box3D and Rapier state a spring as a frequency and a damping ratio, which are worked out \
          from stiffness, damping and masses. Each engine runs in its own language, so their times, in `speed_vs_error/peers.csv`, are \
-         not comparable with those above. Their errors are: largest distance from the truth, in millimetres.\n\n",
+         not comparable with those above. Their errors are: largest distance from the truth, in millimetres. \
+         An engine that diverges or gives up is said to diverge; a dash means that it was not run.\n\n",
     );
     for rate in [60, 240] {
         let _ = write!(text, "At {rate} steps a second:\n\n| engine | setting |");

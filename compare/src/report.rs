@@ -1,12 +1,14 @@
 //! Builds docs/speed_vs_error.md from the stored tables.
 
-use crate::front::{find, front};
+use crate::cost::WAYS;
+use crate::front::{best_of, find, front};
 use crate::machine;
 use crate::marked::mark;
 use crate::method::{Dial, Method, Setting};
 use crate::scenes::Scene;
 use crate::table::Row;
-use crate::words::{best_of, digits, length, time, verdict};
+use crate::verdict::verdict;
+use crate::words::{digits, length, time};
 use std::fmt::Write;
 
 /// Title of the report and an explanation of how to read it.
@@ -21,8 +23,9 @@ pub fn opening() -> String {
          substeps. That damping also brakes motion across the line, and Avian has none along the line alone. So Avian \
          is run with and without it, and the smaller error is given.\n\
          - **Error** is the largest distance of a watched body from its place in an analytic solution or in one by \
-         DOP853 (1e-10 to 1e-12), over the whole time that the scene's description names. A method has diverged if \
-         its error is ten times the size of the motion.\n\
+         DOP853 or Radau (1e-10 to 1e-12), over the whole time that the scene's description names. A setting has \
+         diverged if its error is more than ten times the size of the motion, or not a number. Such settings are \
+         named, ours too, and no comparison counts them as beaten.\n\
          - **Time per step** is one whole `app.update()`, everything that Bevy and the engine do included: median \
          of 15 turns or more, all methods in turns, after a warm-up, on bodies that may not sleep. *Computing \
          time* is that times the steps in 1/60 s of the scene, so that different time steps can be compared.\n\
@@ -52,14 +55,12 @@ pub fn headline(scenes: &[(&Scene, Vec<Row>)]) -> String {
             },
         );
         let cell = |row: Option<Row>| {
-            row.map_or("–".into(), |r| format!("{} · {}", length(&r), time(&r)))
+            row.map_or("not run".into(), |r| {
+                format!("{} · {}", length(&r), time(&r))
+            })
         };
         let joint = best_of(rows, Method::Joint);
-        let (mut less, mut longer) = ("–".into(), "–".into());
-        if let (Some(ours), Some(joint)) = (ours, joint) {
-            less = digits(joint.strayed.error / ours.strayed.error);
-            longer = format!("{:.2}", ours.times.median / joint.times.median);
-        }
+        let [less, longer] = ratios(ours, joint);
         let _ = writeln!(
             text,
             "| {} | {} | {} | {} | {} | {} | {less} | {longer} |",
@@ -72,6 +73,51 @@ pub fn headline(scenes: &[(&Scene, Vec<Row>)]) -> String {
         );
     }
     mark(&text)
+}
+
+/// The joint's error divided by ours, and our time divided by the joint's. A row that diverges has no error to divide.
+fn ratios(ours: Option<Row>, joint: Option<Row>) -> [String; 2] {
+    let (Some(ours), Some(joint)) = (ours, joint) else {
+        return ["–", "–"].map(String::from);
+    };
+    let less = match (ours.strayed.diverged, joint.strayed.diverged) {
+        (true, true) => "both diverge".into(),
+        (true, false) => "ours diverges".into(),
+        (false, true) => "diverges".into(),
+        (false, false) => digits(joint.strayed.error / ours.strayed.error),
+    };
+    let longer = format!("{:.2}", ours.times.median / joint.times.median);
+    [less, longer]
+}
+
+/// Table of how many settings of each method diverge, in the scenes where some do. Empty if none does.
+pub fn diverging(scenes: &[(&Scene, Vec<Row>)]) -> String {
+    let mut lines = String::new();
+    for (scene, rows) in scenes {
+        if !rows.iter().any(|row| row.strayed.diverged) {
+            continue;
+        }
+        let _ = write!(lines, "| {} |", scene.title);
+        for way in WAYS {
+            let of = rows.iter().filter(|r| way.contains(&r.setting.method));
+            let lost = of.clone().filter(|r| r.strayed.diverged).count();
+            let cell = match of.count() {
+                0 => "not run".into(),
+                sum => format!("{lost} of {sum}"),
+            };
+            let _ = write!(lines, " {cell} |");
+        }
+        lines.push('\n');
+    }
+    if lines.is_empty() {
+        return lines;
+    }
+    format!(
+        "## What diverges\n\nHow many settings diverge, of all that were run, at all time steps. In the scenes that are not \
+         named here, none does. The sections of the scenes name the settings.\n\n\
+         | scene | bevy_coilover | Rapier SpringJoint | Avian distance joint | force once per step |\n\
+         |---|---|---|---|---|\n{lines}\n"
+    )
 }
 
 /// Chart, sentences and tables of a scene.
@@ -132,5 +178,40 @@ fn table(text: &mut String, rows: &[Row]) {
             let _ = write!(text, " {} |", share(row.strayed.momentum));
         }
         text.push('\n');
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scenes::SCENES;
+    use crate::table::row;
+
+    #[test]
+    fn what_diverges_has_no_ratio_of_errors() {
+        let (ours, joint) = (
+            row(Method::Ours, 60, 30e-6, 1e-3),
+            row(Method::Joint, 60, 20e-6, 1e-2),
+        );
+        let lost = |mut row: Row| {
+            row.strayed.diverged = true;
+            Some(row)
+        };
+        assert_eq!(ratios(Some(ours), Some(joint)), ["10", "1.50"]);
+        assert_eq!(ratios(Some(ours), lost(joint)), ["diverges", "1.50"]);
+        assert_eq!(ratios(lost(ours), Some(joint)), ["ours diverges", "1.50"]);
+        assert_eq!(ratios(Some(ours), None), ["–", "–"]);
+        let rows = vec![
+            row(Method::Ours, 60, 30e-6, 1e-3),
+            row(Method::Force, 30, 30e-6, 1e-3),
+        ];
+        let lost = [ours, joint].map(lost).into_iter().flatten();
+        let told = diverging(&[(&SCENES[0], rows), (&SCENES[1], lost.collect())]);
+        assert!(!told.contains(SCENES[0].title), "{told}");
+        let line = format!(
+            "| {} | 1 of 1 | 1 of 1 | not run | not run |",
+            SCENES[1].title
+        );
+        assert!(told.contains(&line), "{told}");
     }
 }

@@ -247,33 +247,51 @@ fn section(points: &[Point]) -> String {
     text
 }
 
-/// Counts for each ζ at how many ω·dt bevy_coilover has the smallest error, and lists the others.
+/// Counts for each ζ at how many ω·dt bevy_coilover has the smallest error, and lists the others. What diverges is
+/// not compared, and is named.
 fn verdict(points: &[Point]) -> String {
     let mut text = String::new();
     for zeta in ZETAS {
-        let of = |p: &&Point| p.zeta == zeta;
-        let error = |p: &Point| p.error.unwrap_or(f64::INFINITY);
-        let ours = points.iter().filter(|p| of(p) && p.method == Method::Ours);
+        let of = |method: Method| {
+            points
+                .iter()
+                .filter(move |p| p.zeta == zeta && p.method == method)
+        };
         let (mut sum, mut lost) = (0, Vec::new());
-        for our in ours {
+        for our in of(Method::Ours) {
             let mut peers = points
                 .iter()
-                .filter(|p| of(p) && p.method != Method::Ours && p.phase == our.phase);
+                .filter(|p| p.zeta == zeta && p.method != Method::Ours && p.phase == our.phase)
+                .filter_map(|p| p.error)
+                .peekable();
+            if peers.peek().is_none() {
+                continue;
+            }
             sum += 1;
-            if peers.any(|peer| error(peer) <= error(our)) {
+            if our.error.is_none_or(|our| peers.any(|peer| peer <= our)) {
                 lost.push(digits(our.phase));
             }
         }
         let won = sum - lost.len();
         let _ = write!(
             text,
-            "- ζ = {zeta}: our error is below every other's at {won} of {sum} ω·dt"
+            "- ζ = {zeta}: our error is below every other's that does not diverge at {won} of {sum} ω·dt"
         );
-        if lost.is_empty() {
-            text.push_str(".\n");
-        } else {
-            let _ = writeln!(text, "; it is not at {}.", lost.join(", "));
+        if !lost.is_empty() {
+            let _ = write!(text, "; it is not at {}", lost.join(", "));
         }
+        text.push('.');
+        for method in Method::ALL {
+            let phases: Vec<String> = of(method)
+                .filter(|p| p.error.is_none())
+                .map(|p| digits(p.phase))
+                .collect();
+            if !phases.is_empty() {
+                let (title, phases) = (method.title(), phases.join(", "));
+                let _ = write!(text, " At {phases}, {title} diverges.");
+            }
+        }
+        text.push('\n');
     }
     text.push('\n');
     text
@@ -281,7 +299,34 @@ fn verdict(points: &[Point]) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::poles;
+    use super::{Point, poles, verdict};
+    use crate::method::Method;
+
+    fn point(method: Method, phase: f64, error: Option<f64>) -> Point {
+        Point {
+            method,
+            zeta: 0.0,
+            phase,
+            error,
+            frequency: None,
+            damping: None,
+        }
+    }
+
+    #[test]
+    fn what_diverges_is_named_and_not_beaten() {
+        let told = verdict(&[
+            point(Method::Ours, 0.1, Some(1e-3)),
+            point(Method::Ours, 1.0, Some(1e-3)),
+            point(Method::Ours, 10.0, None),
+            point(Method::Force, 0.1, Some(1e-2)),
+            point(Method::Force, 1.0, None),
+            point(Method::Joint, 10.0, Some(1.0)),
+        ]);
+        let wanted = "- ζ = 0: our error is below every other's that does not diverge at 1 of 2 ω·dt; it is not at 10. \
+                      At 10, bevy_coilover diverges. At 1.0, force once per step diverges.\n";
+        assert!(told.starts_with(wanted), "{told}");
+    }
 
     #[test]
     fn poles_of_a_fading_wave() {

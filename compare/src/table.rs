@@ -127,6 +127,26 @@ impl Row {
     }
 }
 
+/// A row of a method's default that takes `step` seconds and does not diverge.
+#[cfg(test)]
+pub fn row(method: Method, rate: u32, step: f64, error: f64) -> Row {
+    Row {
+        setting: Setting::default_of(method, rate),
+        strayed: Strayed {
+            error,
+            energy: None,
+            momentum: None,
+            diverged: false,
+        },
+        times: Times {
+            median: step,
+            low: step,
+            high: step,
+        },
+        turns: 1,
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

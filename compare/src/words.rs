@@ -1,9 +1,7 @@
-//! Formats measurements for the report and writes sentences that compare the methods.
+//! Formats measurements and settings for the report.
 
-use crate::front::{find, unbeaten, unbeaten_at_their_step};
-use crate::method::{Dial, Method, Setting};
+use crate::method::{Dial, Setting};
 use crate::table::Row;
-use std::fmt::Write;
 
 /// Rounds to two significant digits, but keeps all three digits from 100 to 999 and only one digit below 0.001.
 pub fn digits(x: f64) -> String {
@@ -40,126 +38,18 @@ pub fn time(row: &Row) -> String {
     format!("{:.1} µs", 1e6 * row.times.median)
 }
 
-fn name(setting: Setting) -> String {
+/// A setting with its time step.
+pub fn name(setting: Setting) -> String {
+    name_at(setting, &setting.rate.to_string())
+}
+
+/// A setting with a list of tick rates.
+pub fn name_at(setting: Setting, rates: &str) -> String {
     let title = setting.method.title();
     match setting.dial {
-        Dial::None => format!("{title} at {} Hz", setting.rate),
-        dial => format!("{title}, {dial}, at {} Hz", setting.rate),
+        Dial::None => format!("{title} at {rates} Hz"),
+        dial => format!("{title}, {dial}, at {rates} Hz"),
     }
-}
-
-/// Sentences that sum up a scene's table.
-pub fn verdict(rows: &[Row]) -> String {
-    let peers: Vec<&Row> = rows
-        .iter()
-        .filter(|r| r.setting.method != Method::Ours)
-        .collect();
-    let ours: Vec<&Row> = rows
-        .iter()
-        .filter(|r| r.setting.method == Method::Ours)
-        .collect();
-    if peers.is_empty() || ours.is_empty() {
-        return String::new();
-    }
-    let mut text = String::new();
-    let lost = peers.iter().filter(|r| r.strayed.diverged).count();
-    let left = unbeaten(rows);
-    let sum = peers.len();
-    if left.is_empty() {
-        let _ = write!(
-            text,
-            "**Our error is below that of all {sum} settings of the others, in no more computing time.**"
-        );
-    } else {
-        let _ = write!(
-            text,
-            "**Our error is below that of {} of the {sum} settings of the others, in no more computing time.**",
-            sum - left.len()
-        );
-        let cheapest = ours.iter().map(|o| o.work()).fold(f64::INFINITY, f64::min);
-        let (cheap, close): (Vec<Row>, Vec<Row>) =
-            left.into_iter().partition(|r| r.work() < cheapest);
-        if !cheap.is_empty() {
-            let _ = write!(
-                text,
-                " Cheaper than every setting of ours: {}.",
-                list(&cheap)
-            );
-        }
-        if !close.is_empty() {
-            let _ = write!(
-                text,
-                " No less exact than ours in the same time: {}.",
-                list(&close)
-            );
-        }
-    }
-    let left = unbeaten_at_their_step(rows).len();
-    let _ = write!(
-        text,
-        " With the same time step as theirs, our error is below that of {} of {sum}.",
-        sum - left
-    );
-    match lost {
-        0 => {}
-        1 => text.push_str(" One setting of the others diverges."),
-        _ => {
-            let _ = write!(text, " {lost} settings of the others diverge.");
-        }
-    }
-    for method in [Method::Joint, Method::Force, Method::Avian] {
-        text.push_str(&against(rows, method));
-    }
-    text
-}
-
-/// Compares the default of bevy_coilover with the default of another method, at 60 steps per second.
-fn against(rows: &[Row], method: Method) -> String {
-    let ours = find(rows, Setting::default_of(Method::Ours, 60));
-    let (Some(ours), Some(peer)) = (ours, best_of(rows, method)) else {
-        return String::new();
-    };
-    let ratio = ours.times.median / peer.times.median;
-    let errors = if peer.strayed.diverged {
-        "it diverges".into()
-    } else {
-        format!(
-            "the error {} times smaller",
-            digits(peer.strayed.error / ours.strayed.error)
-        )
-    };
-    format!(
-        " Our default step takes {ratio:.2} times as long as {}: {errors}.",
-        name(peer.setting)
-    )
-}
-
-/// The row of a method's default at 60 steps per second. For Avian, the variant with the smaller error.
-pub fn best_of(rows: &[Row], method: Method) -> Option<Row> {
-    let one = find(rows, Setting::default_of(method, 60));
-    if method != Method::Avian {
-        return one;
-    }
-    let other = find(rows, Setting::default_of(Method::AvianBare, 60));
-    match (one, other) {
-        (Some(a), Some(b)) if a.strayed.error.is_nan() || b.strayed.error < a.strayed.error => {
-            Some(b)
-        }
-        (one, other) => one.or(other),
-    }
-}
-
-fn list(rows: &[Row]) -> String {
-    const MOST: usize = 5;
-    let mut parts: Vec<String> = rows
-        .iter()
-        .take(MOST)
-        .map(|r| format!("{} ({})", name(r.setting), length(r)))
-        .collect();
-    if rows.len() > MOST {
-        parts.push(format!("and {} more", rows.len() - MOST));
-    }
-    parts.join("; ")
 }
 
 #[cfg(test)]

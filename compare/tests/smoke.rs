@@ -120,3 +120,44 @@ fn the_page_on_accuracy_tells_what_the_report_tells() {
     assert_eq!(marked(&report), marked(&copied));
     assert!(marked(&copied).lines().count() > 8);
 }
+
+/// The report without the line on the machine, which tells of the one that writes it.
+fn without_machine(report: &str) -> Vec<&str> {
+    let lines = report.lines();
+    lines
+        .filter(|line| !line.starts_with("- **Machine.**"))
+        .collect()
+}
+
+#[test]
+fn the_report_is_what_the_code_makes_of_the_tables() {
+    let out = Path::new(env!("CARGO_TARGET_TMPDIR")).join("smoke-report");
+    let _ = fs::remove_dir_all(&out);
+    let copies = out.join("docs/speed_vs_error");
+    fs::create_dir_all(&copies).expect("a folder");
+    let tables = repository().join("docs/speed_vs_error");
+    for entry in fs::read_dir(tables).expect("a folder") {
+        let path = entry.expect("an entry").path();
+        if path.extension().is_some_and(|ending| ending == "csv") {
+            let name = path.file_name().expect("a name");
+            fs::copy(&path, copies.join(name)).expect("a copy");
+        }
+    }
+    let status = Command::new(env!("CARGO_BIN_EXE_compare"))
+        .arg("--report")
+        .arg("--out")
+        .arg(&out)
+        .status()
+        .expect("it runs");
+    assert!(status.success());
+    let made = read(&out.join("docs/speed_vs_error.md"));
+    let stored = read(&repository().join("docs/speed_vs_error.md"));
+    let (made, stored) = (without_machine(&made), without_machine(&stored));
+    for (made, stored) in made.iter().zip(&stored) {
+        assert_eq!(
+            made, stored,
+            "run `cargo run --release -p compare -- --report` and commit what it writes"
+        );
+    }
+    assert_eq!(made.len(), stored.len());
+}
