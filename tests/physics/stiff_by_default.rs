@@ -49,6 +49,38 @@ fn a_lone_spring_keeps_its_phase_at_any_stiffness() {
 }
 
 #[test]
+fn a_lone_spring_too_stiff_to_be_followed_loses_a_little_energy_in_each_step() {
+    const TICKS: u32 = 60;
+    // The speed stays far below that at which the engine holds a body back.
+    const STRETCH: f64 = 5e-3;
+    for phase in [70.0, 100.0, 300.0] {
+        let stiffness = f64::from((phase / f64::from(DT)).powi(2) as f32);
+        let mut lab = Lab::with(CoiloverPlugin::default(), Engine::weightless());
+        let hook = lab.point(Vec3::ZERO);
+        let ball = lab.body(1.0, Vec3::X * (1.0 + STRETCH as f32));
+        lab.spawn(
+            Spring::new(hook, ball)
+                .with_stiffness(stiffness as f32)
+                .with_rest_length(1.0),
+        );
+        let energy = |lab: &Lab| {
+            let x = f64::from(lab.position(ball).x) - 1.0;
+            let v = f64::from(lab.velocity(ball).x);
+            0.5 * (stiffness * x * x + v * v)
+        };
+        let first = energy(&lab);
+        (0..TICKS).for_each(|_| lab.tick());
+        let left = energy(&lab) / first;
+        let lost = 1.0 - left.powf(f64::from(TICKS).recip());
+        println!(
+            "lone spring, ω·dt {phase}: loses {:.2} % of its energy a step",
+            100.0 * lost
+        );
+        assert!((0.0..0.04).contains(&lost), "ω·dt {phase}: {lost}");
+    }
+}
+
+#[test]
 fn a_heavy_body_behind_a_light_one_keeps_its_phase() {
     for (phase, ratio) in [(0.5, 1.0), (0.1, 1e3), (1.0, 300.0), (10.0, 3.0)] {
         let wanted = ratio * (phase / f64::from(DT)).powi(2);

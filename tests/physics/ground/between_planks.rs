@@ -9,14 +9,17 @@ use bevy_rapier3d::prelude::*;
 const PLANKS: usize = 10;
 const PITCH: f32 = 0.5;
 
-/// Ten planks of 4 kg on springs between two points, and a box of 80 kg that is dropped on them at `x`. `air` is the damping of all
-/// bodies by air, 1/s.
-fn loaded_bridge(x: f32, air: f32) -> Stand {
-    let mut scene = Stand::new(CoiloverPlugin::default(), Engine::default());
-    let damping = Damping {
+/// Damping of a body by air, 1/s.
+fn drag(air: f32) -> Damping {
+    Damping {
         linear_damping: air,
         angular_damping: air,
-    };
+    }
+}
+
+/// Ten planks of 4 kg on springs between two points, level and without tension. `air` is the damping of all bodies by air, 1/s.
+fn bridge(air: f32) -> Stand {
+    let mut scene = Stand::new(CoiloverPlugin::default(), Engine::default());
     let (k, mass) = (5e4_f32, 4.0_f32);
     let mut last = scene.lab.point(Vec3::ZERO);
     for i in 1..=PLANKS + 1 {
@@ -25,7 +28,7 @@ fn loaded_bridge(x: f32, air: f32) -> Stand {
             let plank = (
                 Collider::cuboid(0.4 * PITCH, 0.03, 0.5),
                 ColliderMassProperties::Mass(mass),
-                damping,
+                drag(air),
             );
             scene.body(Transform::from_translation(at), plank)
         } else {
@@ -38,11 +41,17 @@ fn loaded_bridge(x: f32, air: f32) -> Stand {
         }
         last = next;
     }
+    scene
+}
+
+/// The bridge, and a box of 80 kg that is dropped on it at `x`.
+fn loaded_bridge(x: f32, air: f32) -> Stand {
+    let mut scene = bridge(air);
     let load = (
         Collider::cuboid(0.2, 0.2, 0.2),
         ColliderMassProperties::Mass(80.0),
         Friction::new(0.8),
-        damping,
+        drag(air),
     );
     scene.body(Transform::from_xyz(x, 0.25, 0.0), load);
     scene
@@ -64,6 +73,31 @@ fn a_bridge_sleeps_with_a_box_across_a_gap_between_its_planks() {
             scene.awake()
         );
     }
+}
+
+/// Greatest force of an element in the last step, N.
+fn hardest(scene: &mut Stand) -> f32 {
+    let world = scene.lab.app.world_mut();
+    let mut readouts = world.query::<&SpringReadout>();
+    let forces = readouts.iter(world).map(|r| r.force().abs());
+    forces.fold(0.0, f32::max)
+}
+
+/// A level rope has no stiffness across at first, so its tension grows with the square of the sag, and its energy with the
+/// fourth power. The deepest sag is then the cube root of 4 times that at rest, and the tension 2.5 times.
+#[test]
+fn a_bridge_that_sinks_into_its_curve_pulls_less_than_three_times_as_hard_as_at_rest() {
+    let mut scene = bridge(0.5);
+    let mut most = 0.0_f32;
+    for _ in 0..scene.lab.ticks(5.0) {
+        scene.lab.tick();
+        most = most.max(hardest(&mut scene));
+    }
+    scene.lab.run(40.0);
+    let rest = hardest(&mut scene);
+    let ratio = most / rest;
+    println!("bridge: {most:.0} N as it sinks, {rest:.0} N at rest, {ratio:.2} times");
+    assert!((2.0..3.0).contains(&ratio), "{most} N, then {rest} N");
 }
 
 #[test]
