@@ -3,7 +3,7 @@
 use crate::fault::{Fault, caught};
 use crate::left::nothing_is_left;
 use crate::numbers::are_finite;
-use crate::plan::{Plan, TICKS};
+use crate::plan::{Deed, Plan, TICKS};
 use crate::stage::Stage;
 use bevy_coilover::prelude::*;
 
@@ -75,10 +75,13 @@ fn play(plan: &Plan, with_springs: bool, met: &mut Met) -> Result<(), Fault> {
     deeds.sort_by_key(|(tick, _)| *tick);
     let mut deeds = deeds.iter().peekable();
     let mut kept = vec![None; plan.goes_back.len()];
+    let is_push = |(_, deed): &(u8, Deed)| matches!(deed, Deed::Push(..));
+    // Whether all forces on bodies are of springs.
+    let mut unpushed = !plan.deeds.iter().any(is_push);
     for tick in 0..TICKS {
         for ([_, back], kept) in plan.goes_back.iter().zip(&kept) {
             if *back == tick {
-                go_back(&mut stage, kept, met);
+                unpushed &= go_back(&mut stage, kept, met);
             }
         }
         while let Some((_, deed)) = deeds.next_if(|(at, _)| *at == tick) {
@@ -94,7 +97,7 @@ fn play(plan: &Plan, with_springs: bool, met: &mut Met) -> Result<(), Fault> {
         }
     }
     // Done without springs as well: a paused engine continues here, and may show its own faults only then.
-    nothing_is_left(&mut stage).map_err(|fault| fault.at("at the end"))
+    nothing_is_left(&mut stage, unpushed).map_err(|fault| fault.at("at the end"))
 }
 
 type Kept = (RapierSnapshot, CoiloverSnapshot);
@@ -104,13 +107,18 @@ fn keep(stage: &Stage) -> Kept {
     (RapierSnapshot::take(world), CoiloverSnapshot::take(world))
 }
 
-/// Restores a snapshot if it fits. Changes since it was taken may forbid that, and then nothing changes.
-fn go_back(stage: &mut Stage, kept: &Option<Kept>, met: &mut Met) {
+/// Restores a snapshot if it fits. Changes since it was taken may forbid that, and then nothing changes. Returns whether the
+/// springs did not go back alone: then the forces of their later bodies stay in the engine, as in a jump by the game.
+fn go_back(stage: &mut Stage, kept: &Option<Kept>, met: &mut Met) -> bool {
     let Some((engine, springs)) = kept else {
-        return;
+        return true;
     };
     let world = stage.app.world_mut();
-    // The springs' side may fit where the engine's does not. That is no worse than a jump by the game.
-    met.engines_restored += u64::from(engine.restore(world).is_ok());
-    met.springs_restored += u64::from(springs.restore(world).is_ok());
+    let [engine, springs] = [
+        engine.restore(world).is_ok(),
+        springs.restore(world).is_ok(),
+    ];
+    met.engines_restored += u64::from(engine);
+    met.springs_restored += u64::from(springs);
+    engine || !springs
 }

@@ -12,8 +12,9 @@ use bevy_rapier3d::prelude::*;
 use bevy_rapier3d::rapier::dynamics::IntegrationParameters;
 use std::collections::HashSet;
 
-/// Despawns all elements and goes on for three ticks. Returns a fault if something of theirs is left.
-pub(crate) fn nothing_is_left(stage: &mut Stage) -> Result<(), Fault> {
+/// Despawns all elements and goes on for three ticks. Returns a fault if something of theirs is left. `unpushed` tells
+/// whether the game gave no body a force.
+pub(crate) fn nothing_is_left(stage: &mut Stage, unpushed: bool) -> Result<(), Fault> {
     let mut configurations = stage.app.world_mut().query::<&mut RapierConfiguration>();
     for mut configuration in configurations.iter_mut(stage.app.world_mut()) {
         configuration.physics_pipeline_active = true;
@@ -31,7 +32,11 @@ pub(crate) fn nothing_is_left(stage: &mut Stage) -> Result<(), Fault> {
     no_component_is_left(world)?;
     nothing_of_ours_is_in_the_engine(world)?;
     all_belongs_to_entities(world)?;
-    settings_are_the_games(world)
+    settings_are_the_games(world)?;
+    if unpushed {
+        no_force_is_left(world)?;
+    }
+    Ok(())
 }
 
 fn no_component_is_left(world: &mut World) -> Result<(), Fault> {
@@ -147,6 +152,27 @@ fn settings_are_the_games(world: &mut World) -> Result<(), Fault> {
             if ahead != *prediction {
                 let seen = format!("{ahead} m, of which the game ordered {prediction} m");
                 return Err(Fault::new("a contact prediction is left on a body", seen));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Checks that no force acts on any body, neither by its component nor in the engine alone.
+fn no_force_is_left(world: &mut World) -> Result<(), Fault> {
+    const KIND: &str = "a force of springs is left on a body";
+    let mut forces = world.query::<(Entity, &ExternalForce)>();
+    for (entity, force) in forces.iter(world) {
+        if *force != ExternalForce::default() {
+            return Err(Fault::ours(KIND, format!("{entity}: {force:?}")));
+        }
+    }
+    for set in world.query::<&RapierRigidBodySet>().iter(world) {
+        for (handle, body) in set.bodies.iter() {
+            let [force, torque] = [body.user_force(), body.user_torque()];
+            if [force, torque] != [Vec3::ZERO; 2] {
+                let seen = format!("{handle:?}: {force} N, {torque} N m in the engine");
+                return Err(Fault::ours(KIND, seen));
             }
         }
     }
