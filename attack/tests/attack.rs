@@ -7,7 +7,7 @@
 //! snapshot that fits.
 
 use attack::judge::{Met, Verdict, judge};
-use attack::plan::plans;
+use attack::plan::{Plan, plans};
 use lexopt::prelude::*;
 use proptest::strategy::{Strategy, ValueTree};
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
@@ -61,13 +61,7 @@ fn search() -> Result<bool, Box<dyn Error>> {
         .into_iter()
         .chain(seed..seed.saturating_add(scenes));
     for (scene, seed) in (1..).zip(seeds) {
-        let mut bytes = [0; 32];
-        bytes[..8].copy_from_slice(&seed.to_le_bytes());
-        let rng = TestRng::from_seed(RngAlgorithm::ChaCha, &bytes);
-        let mut runner = TestRunner::new_with_rng(Config::default(), rng);
-        let mut tree = plans()
-            .new_tree(&mut runner)
-            .map_err(|why| format!("seed {seed} gives no scene: {why}"))?;
+        let mut tree = scene_of(seed)?;
         match judge(&tree.current(), &mut met) {
             Verdict::Sound => {}
             Verdict::Engines(fault) => *engines.entry(fault.kind).or_default() += 1,
@@ -99,8 +93,18 @@ fn search() -> Result<bool, Box<dyn Error>> {
     Ok(ours.is_empty() && missing.is_empty())
 }
 
+/// The scene of a seed, and all smaller ones.
+fn scene_of(seed: u64) -> Result<impl ValueTree<Value = Plan>, String> {
+    let mut bytes = [0; 32];
+    bytes[..8].copy_from_slice(&seed.to_le_bytes());
+    let rng = TestRng::from_seed(RngAlgorithm::ChaCha, &bytes);
+    let mut runner = TestRunner::new_with_rng(Config::default(), rng);
+    let tree = plans().new_tree(&mut runner);
+    tree.map_err(|why| format!("seed {seed} gives no scene: {why}"))
+}
+
 /// Shrinks a scene while it fails in the same way. Returns the smallest failing scene that was tried, and its verdict.
-fn shrink(tree: &mut impl ValueTree<Value = attack::plan::Plan>, wanted: &str) -> String {
+fn shrink(tree: &mut impl ValueTree<Value = Plan>, wanted: &str) -> String {
     // If no smaller scene fails, the scene itself is shown.
     let mut best = format!("{:#?}", tree.current());
     let mut fails = true;
