@@ -4,6 +4,9 @@
 //! it. `tests/attack.rs` searches for faults. It shrinks a scene that fails and prints it.
 
 pub mod endurance;
+pub mod fault;
 pub mod judge;
+mod left;
+mod numbers;
 pub mod plan;
 pub mod stage;

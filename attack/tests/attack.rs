@@ -3,17 +3,19 @@
 //!
 //! `cargo test --workspace --test attack` runs a few. `cargo test --release --workspace --test attack -- --scenes 100000`
 //! is the long search. `--seed N` starts at another seed than 0. This is a program of its own and not a list of tests, so
-//! that it prints its findings as it goes on.
+//! that it prints its findings as it goes on. It also fails if it met nothing of a kind that it is to judge, such as a
+//! snapshot that fits.
 
-use attack::judge::{Verdict, judge};
-use attack::plan::plans;
+use attack::judge::{Met, Verdict, judge};
+use attack::plan::{Plan, plans};
 use lexopt::prelude::*;
 use proptest::strategy::{Strategy, ValueTree};
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 use std::collections::BTreeMap;
+use std::error::Error;
 use std::process::ExitCode;
 
-/// Number of scenes of a short search.
+/// Number of scenes of a short search. A search of fewer scenes, as for one seed, need not meet everything.
 const SCENES: u64 = 200;
 
 /// Seeds whose scenes failed once. Every search runs them first.
@@ -35,8 +37,8 @@ fn main() -> ExitCode {
     }
 }
 
-/// Returns whether no fault of this crate was found.
-fn search() -> Result<bool, lexopt::Error> {
+/// Returns whether no fault of this crate was found, and everything was met that the search is to judge.
+fn search() -> Result<bool, Box<dyn Error>> {
     let (mut scenes, mut seed) = (SCENES, 0_u64);
     let mut words = lexopt::Parser::from_env();
     while let Some(word) = words.next()? {
@@ -44,62 +46,65 @@ fn search() -> Result<bool, lexopt::Error> {
             Long("scenes") => scenes = words.value()?.parse()?,
             Long("seed") => seed = words.value()?.parse()?,
             // Arguments that Cargo passes to every test program.
-            Value(filter) if !"attack".contains(&*filter.to_string_lossy()) => return Ok(true),
+            Value(filter) if !"attack".contains(&*filter.to_string_lossy()) => {
+                println!("attack: filtered out, no scene was run");
+                return Ok(true);
+            }
             Value(_) | Long("nocapture" | "quiet") | Short('q') => {}
-            other => return Err(other.unexpected()),
+            other => return Err(other.unexpected().into()),
         }
     }
     let mut engines = BTreeMap::<String, u64>::new();
     let mut ours = BTreeMap::<String, u64>::new();
+    let mut met = Met::default();
     let seeds = ONCE_WRONG
         .into_iter()
         .chain(seed..seed.saturating_add(scenes));
     for (scene, seed) in (1..).zip(seeds) {
-        let mut bytes = [0; 32];
-        bytes[..8].copy_from_slice(&seed.to_le_bytes());
-        let rng = TestRng::from_seed(RngAlgorithm::ChaCha, &bytes);
-        let mut runner = TestRunner::new_with_rng(Config::default(), rng);
-        let Ok(mut tree) = plans().new_tree(&mut runner) else {
-            continue;
-        };
-        match judge(&tree.current()) {
+        let mut tree = scene_of(seed)?;
+        match judge(&tree.current(), &mut met) {
             Verdict::Sound => {}
-            Verdict::Engines(wrong) => *engines.entry(kind(&wrong)).or_default() += 1,
-            Verdict::Ours(wrong) => {
-                let kind = kind(&wrong);
-                let count = ours.entry(kind.clone()).or_default();
+            Verdict::Engines(fault) => *engines.entry(fault.kind).or_default() += 1,
+            Verdict::Ours(fault) => {
+                println!("seed {seed}: {fault}");
+                let count = ours.entry(fault.kind.clone()).or_default();
                 *count += 1;
-                println!("seed {seed}: {wrong}");
-                if *count > 1 {
-                    continue;
+                if *count == 1 {
+                    let smallest = shrink(&mut tree, &fault.kind);
+                    println!("as small as can be: {smallest}\n");
                 }
-                let smallest = shrink(&mut tree, &kind);
-                println!("as small as can be: {smallest}\n");
             }
         }
         if scene % 1000 == 0 {
             println!("{scene} scenes, ours {ours:?}, the engine's {engines:?}");
         }
     }
-    println!("{scenes} scenes from seed {seed}: ours {ours:#?}, the engine's {engines:#?}");
-    Ok(ours.is_empty())
+    println!(
+        "{scenes} scenes from seed {seed}: ours {ours:#?}, the engine's {engines:#?}, {met:?}"
+    );
+    let missing = if scenes < SCENES {
+        Vec::new()
+    } else {
+        met.missing()
+    };
+    for name in &missing {
+        println!("the search shows too little: {name}");
+    }
+    Ok(ours.is_empty() && missing.is_empty())
 }
 
-/// A failure message without its numbers, to count failures by.
-fn kind(wrong: &str) -> String {
-    match wrong.find("panicked at ") {
-        Some(at) => wrong[at..].chars().take(100).collect(),
-        None => wrong
-            .split(|c: char| c == ':' || c.is_ascii_digit())
-            .map(str::trim)
-            .find(|part| part.len() > 6)
-            .unwrap_or("not a number")
-            .into(),
-    }
+/// The scene of a seed, and all smaller ones.
+fn scene_of(seed: u64) -> Result<impl ValueTree<Value = Plan>, String> {
+    let mut bytes = [0; 32];
+    bytes[..8].copy_from_slice(&seed.to_le_bytes());
+    let rng = TestRng::from_seed(RngAlgorithm::ChaCha, &bytes);
+    let mut runner = TestRunner::new_with_rng(Config::default(), rng);
+    let tree = plans().new_tree(&mut runner);
+    tree.map_err(|why| format!("seed {seed} gives no scene: {why}"))
 }
 
 /// Shrinks a scene while it fails in the same way. Returns the smallest failing scene that was tried, and its verdict.
-fn shrink(tree: &mut impl ValueTree<Value = attack::plan::Plan>, wanted: &str) -> String {
+fn shrink(tree: &mut impl ValueTree<Value = Plan>, wanted: &str) -> String {
     // If no smaller scene fails, the scene itself is shown.
     let mut best = format!("{:#?}", tree.current());
     let mut fails = true;
@@ -112,8 +117,8 @@ fn shrink(tree: &mut impl ValueTree<Value = attack::plan::Plan>, wanted: &str) -
             break;
         }
         let plan = tree.current();
-        let verdict = judge(&plan);
-        fails = matches!(&verdict, Verdict::Ours(wrong) if kind(wrong) == wanted);
+        let verdict = judge(&plan, &mut Met::default());
+        fails = matches!(&verdict, Verdict::Ours(fault) if fault.kind == wanted);
         if fails {
             best = format!("{plan:#?}\n{verdict:?}");
         }

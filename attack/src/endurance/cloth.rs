@@ -4,6 +4,7 @@ use super::{Endurance, GRAVITY, body, direction, lab};
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
+use std::collections::BTreeMap;
 
 const SIDE: usize = 16;
 /// Distance between neighbouring points, m.
@@ -81,6 +82,10 @@ pub fn cloth() -> Endurance {
             (f64::from((mean + row).abs() / row), 0.01)
         },
         strikes: 0,
-        explained: Some(0.02),
+        missing: Some(0.02),
+        surplus: 0.02,
+        // A fifth of the strongest wind's speed: columns between those with air dampers swing on for long.
+        rests: 0.3,
+        faults: BTreeMap::new(),
     }
 }

@@ -15,6 +15,7 @@ use bevy::time::TimeUpdateStrategy;
 use bevy::transform::StaticTransformOptimizations;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
+use std::collections::BTreeMap;
 use std::time::Duration;
 
 /// Length of a tick, s.
@@ -40,21 +41,35 @@ pub struct Endurance {
     stands: fn(&Self) -> (f64, f64),
     /// Number of strikes so far.
     pub strikes: u64,
-    /// Greatest error of the energy balance as a share of the energy turned over. `None` where contacts dissipate energy as well.
-    pub explained: Option<f64>,
+    /// Greatest share of the energy turned over that may be missing. `None` where contacts dissipate energy as well.
+    pub missing: Option<f64>,
+    /// Greatest share of the energy turned over that may appear without a cause.
+    pub surplus: f64,
+    /// Greatest speed of a body just before the next strike, m/s, if strikes are no closer than the scene has them.
+    pub rests: f64,
+    /// What was found wrong so far, in earlier runs too: the first fault of each kind.
+    pub faults: BTreeMap<String, String>,
 }
 
 /// Results of the time from one strike to the next.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Interval {
-    /// Energy that the strike gave or took, and energy that dampers dissipated, J.
+    /// Energy that the strike gave, or took if it is negative, J.
+    pub work: f64,
+    /// Energy that went into the interval and out of it again, J. Each joule counts once: it came from the strike or from
+    /// what the scene had before, and it left as heat, to the strike, or is there afterwards in addition.
     pub turned_over: f64,
-    /// Error of the energy balance beyond the rounding of readouts, J.
-    pub unexplained: f64,
+    /// Energy that went in and did not come out, beyond the rounding of readouts, J.
+    pub missing: f64,
+    /// Energy that came out and had not gone in, beyond the rounding of readouts, J.
+    pub surplus: f64,
     /// Error of the pose just before the next strike, and the greatest error allowed.
     pub off: (f64, f64),
-    /// Greatest speed of a body just before the next strike, m/s.
+    /// Greatest speed of a body just before the next strike, m/s. Its spin counts too: it is the speed at which it has its
+    /// kinetic energy without spin. Infinite if one is not a number.
     pub speed: f64,
+    /// Number of springs that the last step did not solve.
+    pub idle: usize,
 }
 
 /// The state of a scene between two strikes, from which a later run can continue.
@@ -63,6 +78,8 @@ pub struct Saved {
     strikes: u64,
     engine: RapierSnapshot,
     springs: CoiloverSnapshot,
+    /// What was found wrong before it was saved.
+    pub faults: BTreeMap<String, String>,
 }
 
 /// An app with nothing but Rapier and springs.
@@ -103,6 +120,7 @@ impl Endurance {
             strikes: self.strikes,
             engine: RapierSnapshot::take(world),
             springs: CoiloverSnapshot::take(world),
+            faults: self.faults.clone(),
         }
     }
 
@@ -114,7 +132,19 @@ impl Endurance {
         saved.engine.restore(world)?;
         saved.springs.restore(world)?;
         self.strikes = saved.strikes;
+        self.faults.clone_from(&saved.faults);
         Ok(())
+    }
+
+    /// Whether bodies and readouts of a scene of the same kind are the same.
+    pub fn is_like(&self, other: &Self) -> bool {
+        let places = |scene: &Self| scene.read::<Transform, _>(&scene.bodies, |at| *at);
+        let motions =
+            |scene: &Self| scene.read::<Velocity, _>(&scene.bodies, |v| (v.linear, v.angular));
+        let readouts = |scene: &Self| scene.read::<SpringReadout, _>(&scene.springs, |read| *read);
+        places(self) == places(other)
+            && motions(self) == motions(other)
+            && readouts(self) == readouts(other)
     }
 
     /// Strikes the scene and runs until the next strike.
@@ -122,64 +152,97 @@ impl Endurance {
         let before = self.energy();
         (self.strike)(self, self.strikes);
         self.strikes += 1;
-        let struck = self.energy();
+        // A strike only changes velocities, so the energy rises by its work.
+        let work = self.energy() - before;
         let warm = self.heat();
         for _ in 0..(self.period / DT).round() as usize {
             self.app.update();
         }
-        let taken = self.heat() - warm;
+        let after = self.energy();
+        let heat = self.heat() - warm;
         // Readouts are in f32. After a day their rounding exceeds the energy of a weak blow.
         let rounding = f64::from(f32::EPSILON) * warm;
-        let beyond = (self.energy() + taken - struck).abs() - rounding;
+        // Not by `max`, which would ignore NaN.
+        let beyond = |error: f64| {
+            if error < rounding {
+                0.0
+            } else {
+                error - rounding
+            }
+        };
+        let idle = |read: &SpringReadout| read.method == SpringMethod::None;
         Interval {
-            turned_over: (struck - before).abs() + taken,
-            // Not by `max`, which would ignore NaN.
-            unexplained: if beyond < 0.0 { 0.0 } else { beyond },
+            work,
+            turned_over: work.max(0.0) + (before - after).max(0.0),
+            missing: beyond(before + work - after - heat),
+            surplus: beyond(after + heat - before - work),
             off: (self.stands)(self),
             speed: self.speed(),
+            idle: self
+                .read::<SpringReadout, _>(&self.springs, idle)
+                .into_iter()
+                .filter(|idle| *idle != Some(false))
+                .count(),
         }
     }
 
-    fn of<T: Component>(&self, entities: &[Entity]) -> impl Iterator<Item = &T> {
+    /// Reads a component of each entity. `None` where it is missing.
+    fn read<T: Component, V>(&self, of: &[Entity], read: impl Fn(&T) -> V) -> Vec<Option<V>> {
         let world = self.app.world();
-        entities.iter().filter_map(|entity| world.get::<T>(*entity))
+        let each = of.iter().map(|entity| world.get::<T>(*entity).map(&read));
+        each.collect()
+    }
+
+    /// Sum of a number of all readouts. NaN if one is missing, so that it is noticed.
+    fn sum(&self, number: impl Fn(&SpringReadout) -> f32) -> f64 {
+        let each = self
+            .read::<SpringReadout, _>(&self.springs, number)
+            .into_iter();
+        each.map(|number| number.map_or(f64::NAN, f64::from)).sum()
+    }
+
+    /// Kinetic energy of a body, J. NaN if a component of it is missing.
+    fn kinetic(&self, index: usize) -> f64 {
+        let (body, (mass, inertia)) = (self.bodies[index], self.masses[index]);
+        let world = self.app.world();
+        let motion = world
+            .get::<Transform>(body)
+            .zip(world.get::<Velocity>(body));
+        motion.map_or(f64::NAN, |(at, v)| {
+            let spin = at.rotation.inverse() * v.angular;
+            0.5 * f64::from(mass * v.linear.length_squared() + (inertia * spin).dot(spin))
+        })
     }
 
     /// Kinetic energy, energy of height and energy stored in springs, J.
     fn energy(&self) -> f64 {
-        let moving = |(body, (mass, inertia)): (&Entity, &(f32, Vec3))| {
-            let world = self.app.world();
-            let places = world.get::<Transform>(*body);
-            let Some((at, v)) = places.zip(world.get::<Velocity>(*body)) else {
-                return 0.0;
-            };
-            let spin = at.rotation.inverse() * v.angular;
-            let twice = mass * v.linear.length_squared() + (*inertia * spin).dot(spin);
-            let weight = f64::from(mass * self.gravity);
-            0.5 * f64::from(twice) + weight * f64::from(at.translation.y)
-        };
-        let stored = self
-            .of::<SpringReadout>(&self.springs)
-            .map(|read| f64::from(read.stored_energy));
-        self.bodies
-            .iter()
-            .zip(&self.masses)
-            .map(moving)
-            .sum::<f64>()
-            + stored.sum::<f64>()
+        let each = (0..self.bodies.len()).map(|index| {
+            let weight = f64::from(self.masses[index].0 * self.gravity);
+            let height = f64::from(self.place(self.bodies[index]).y);
+            self.kinetic(index) + weight * height
+        });
+        each.sum::<f64>() + self.sum(|read| read.stored_energy)
     }
 
     /// Energy that all dampers have dissipated so far, J.
     fn heat(&self) -> f64 {
-        self.of::<SpringReadout>(&self.springs)
-            .map(|read| f64::from(read.dissipated_energy))
-            .sum()
+        self.sum(|read| read.dissipated_energy)
     }
 
     fn speed(&self) -> f64 {
-        self.of::<Velocity>(&self.bodies)
-            .map(|v| f64::from(v.linear.length()))
-            .fold(0.0, f64::max)
+        let each = (0..self.bodies.len()).map(|index| {
+            let mass = f64::from(self.masses[index].0);
+            (2.0 * self.kinetic(index) / mass).sqrt()
+        });
+        // Infinity instead of NaN, which `max` would ignore.
+        let finite = |speed: f64| {
+            if speed.is_finite() {
+                speed
+            } else {
+                f64::INFINITY
+            }
+        };
+        each.map(finite).fold(0.0, f64::max)
     }
 
     fn place(&self, body: Entity) -> Vec3 {

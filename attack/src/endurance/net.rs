@@ -3,6 +3,7 @@
 use super::{Endurance, body, direction, lab};
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
+use std::collections::BTreeMap;
 
 const SIDE: usize = 8;
 const DEEP: usize = 6;
@@ -80,6 +81,10 @@ pub fn net() -> Endurance {
             (f64::from((sum / mass).distance(middle)), 0.5)
         },
         strikes: 0,
-        explained: Some(0.05),
+        missing: Some(0.05),
+        surplus: 0.05,
+        // A fifth of the speed that the strongest blow gives the lightest box: at first nothing resists shear.
+        rests: 0.7,
+        faults: BTreeMap::new(),
     }
 }

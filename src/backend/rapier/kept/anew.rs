@@ -2,7 +2,8 @@
 //! the time of the snapshot; then springs start afresh.
 
 use super::check::is_in;
-use crate::backend::rapier::body::id;
+use crate::backend::rapier::body::{give, handle, id};
+use crate::backend::{Push, Wrench};
 use crate::scene::kept::Kept;
 use crate::scene::rows::Raised;
 use crate::scene::state::Scene;
@@ -33,6 +34,21 @@ impl Kept {
             Some((context, id, body.raised))
         });
         let raised: Vec<_> = raised.chain(self.unloaded.iter().copied()).collect();
+        let loaded = self.bodies.iter().filter_map(|body| {
+            let [force, torque] = body.user;
+            let (context, id) = place(body.entity)?;
+            let is_known = force.is_finite() && torque.is_finite();
+            is_known.then_some((context, id, Wrench { force, torque }))
+        });
+        let loaded: Vec<_> = loaded.collect();
+        // The engine contains the elements' share of that time. No step takes it from a body that has no elements now.
+        for (context, id, user) in loaded {
+            if let Some(mut set) = world.get_mut::<RapierRigidBodySet>(context)
+                && let Some(body) = set.bodies.get_mut(handle(id))
+            {
+                give(body, &Push::default(), &user);
+            }
+        }
         let Some(mut scene) = world.get_resource_mut::<Scene>() else {
             return;
         };
@@ -45,6 +61,10 @@ impl Kept {
         }
         scene.left = insides;
         scene.unloaded = raised;
+        let sweeps = self.contexts.iter();
+        scene.sweeps = sweeps
+            .map(|context| (context.entity, context.sweeps))
+            .collect();
         scene.stale = true;
     }
 }

@@ -33,7 +33,9 @@ impl Kept {
         let engine_went_back = engine_went_back(world);
         let fits = self.check(world, engine_went_back);
         if fits.is_err() && engine_went_back {
-            self.begin_anew(world);
+            let mut kept = self.clone();
+            kept.name_contexts(world);
+            kept.begin_anew(world);
         }
         fits?;
         let mut kept = self.clone();
