@@ -194,11 +194,22 @@ impl Pieces {
             // The damper is a piece of its own, so that the range of neither side cuts it off. Its range is what the
             // spring leaves of the limits.
             let tangent = Tangent::linear(0.0, share * damping, kink);
-            let [from, to] = reach.way.map(|length| {
+            let forces = reach.way.map(|length| {
                 let force = share * spring(length).force;
                 force.max(least).min(greatest)
             });
-            let left = [least - from.min(to), greatest - from.max(to)];
+            let [from, to] = forces;
+            let one_way = least == 0.0 || greatest == 0.0;
+            let left = if one_way && forces == [0.0; 2] {
+                // A rope or buffer that stays slack does not damp. The range is not quite empty, because the joints of a
+                // component are made anew if their number changes, and that of a range about zero has no second motor.
+                [
+                    least.max(-f64::MIN_POSITIVE),
+                    greatest.min(f64::MIN_POSITIVE),
+                ]
+            } else {
+                [least - from.min(to), greatest - from.max(to)]
+            };
             self.push(reach.piece(tangent, left));
         }
         let middle = (share * spring(kink).force).max(least).min(greatest);

@@ -1,7 +1,7 @@
 use bevy::prelude::*;
 
 /// Breaks the element if its force or its length exceeds a limit after a step. On a torsion element, the limits are a
-/// moment (N m) and an angle (rad). A limit that is NaN is a [`SpringFault`](crate::SpringFault).
+/// moment (N m) and an angle (rad). A limit that is negative or NaN is a [`SpringFault`](crate::SpringFault).
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
 #[type_path = "bevy_coilover"]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]

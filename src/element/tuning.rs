@@ -12,6 +12,10 @@ use std::f32::consts::TAU;
 /// freely then counts as free. For a body that will land later, use [`SpringTuning::coefficients`] with the mass that
 /// the spring is to carry.
 ///
+/// On a joint to something that cannot move, and for a torsion element, the sag is that under the load in the present
+/// pose, not under the weight of the effective mass: a stiffness of tension/sag. If no weight loads the element there, it
+/// gets a [`SpringFault`](crate::SpringFault).
+///
 /// A sag also sets the rest length if the element has none, so that the load stays where it was spawned. A rest length
 /// that you give is kept, and the load sags from there. If both ends move, and neither stands on the ground after the
 /// first step, it is not known which end is the load. The rest length is then the length in the first step; put a
@@ -30,9 +34,10 @@ pub enum SpringTuning {
         /// Damping ratio c/(2 √(k m)), not negative: 0 oscillates for ever, 1 is critical damping.
         damping_ratio: f32,
     },
-    /// By the sag under the weight of the effective mass. Also sets the rest length if that is `None`.
+    /// By the sag under the weight of the effective mass, or under the load on a joint. Also sets the rest length if that is
+    /// `None`.
     Sag {
-        /// Static sag, m, above zero.
+        /// Static sag, m, above zero; for a torsion element rad.
         sag: f32,
         /// Damping ratio c/(2 √(k m)), not negative: 0 oscillates for ever, 1 is critical damping.
         damping_ratio: f32,

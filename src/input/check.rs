@@ -164,7 +164,17 @@ impl Ties {
 
     /// Whether both are held at the same ends and anchors, about the same axis.
     pub(crate) fn is_held_like(&self, other: &Self) -> bool {
-        self.ends == other.ends && self.anchors == other.anchors && self.twist == other.twist
+        self.anchors == other.anchors && self.turns_like(other)
+    }
+
+    /// Whether an element acts alike on both. Where a torsion element holds its ends has no effect.
+    pub(crate) fn acts_like(&self, other: &Self) -> bool {
+        self.turns_like(other) && (self.twist.is_some() || self.anchors == other.anchors)
+    }
+
+    /// Whether both have the same ends, and the same axis if they have one.
+    pub(crate) fn turns_like(&self, other: &Self) -> bool {
+        self.ends == other.ends && self.twist == other.twist
     }
 }
 

@@ -97,10 +97,9 @@ impl BesideItem<'_, '_> {
     /// Combines the companions of an element.
     pub(crate) fn companion(&self, p: &Parameters) -> Result<Companion, Fault> {
         let mut guide = p.guide();
-        if let Some(limit) = self.breakable
-            && (limit.force.is_nan() || limit.length.is_nan())
-        {
-            return Err(Fault::new("Breakable", "is NaN"));
+        if let Some(limit) = self.breakable {
+            check_limit(limit.force, "Breakable::force")?;
+            check_limit(limit.length, "Breakable::length")?;
         }
         if let Some(axis) = self.axis {
             if guide != Guide::Centres {
@@ -286,6 +285,17 @@ fn table(table: &ForceTable, field: &'static str) -> Result<Table, Fault> {
         return fault("has a slope larger than 1e12");
     }
     Ok(Table::new(&points))
+}
+
+/// Checks a limit of [`Breakable`]. A magnitude is never below zero, so a negative limit would break the element at once.
+fn check_limit(limit: f32, field: &'static str) -> Result<(), Fault> {
+    if limit.is_nan() {
+        Err(Fault::new(field, "is NaN"))
+    } else if limit < 0.0 {
+        Err(Fault::new(field, "is negative"))
+    } else {
+        Ok(())
+    }
 }
 
 fn check_most(MaxForce(most): MaxForce) -> Result<f64, Fault> {

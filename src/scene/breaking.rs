@@ -15,8 +15,8 @@ pub(crate) fn break_overloaded(
         if force.abs() <= limit.force && readout.length.abs() <= limit.length {
             continue;
         }
-        if limit.force.is_nan() || limit.length.is_nan() {
-            // A NaN limit is reported as a fault.
+        if !(limit.force >= 0.0 && limit.length >= 0.0) {
+            // A limit that is NaN or negative is reported as a fault.
             continue;
         }
         commands.trigger(SpringBroke {

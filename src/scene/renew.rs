@@ -3,12 +3,12 @@
 use crate::backend::{Finder, Found, Place};
 use crate::dynamics::guide::Guide;
 use crate::element::{HoldPose, Preload};
-use crate::input::check::{Fault, Parameters};
+use crate::input::check::{Fault, Parameters, Ties};
 use crate::input::companions::Companions;
 use crate::input::parts::{Acts, Parts, PartsItem};
 use crate::scene::lone;
 use crate::scene::report::report;
-use crate::scene::rows::{BodyFlags, BodyRow, ElementFlags, ElementRow, mix};
+use crate::scene::rows::{BodyFlags, BodyRow, ElementFlags, ElementRow, Held, mix};
 use crate::scene::state::Scene;
 use crate::scene::wanted::Wanted;
 use bevy::ecs::entity::EntityHashSet;
@@ -53,7 +53,7 @@ impl Scene {
                 self.faulty.push(index);
             }
             let elsewhere = found.as_ref().is_ok_and(|found| row.is_elsewhere(found));
-            if found.is_err() || elsewhere || !held_by.is_held_like(&row.rare.ties) {
+            if found.is_err() || elsewhere || !held_by.acts_like(&row.rare.ties) {
                 self.left.extend(row.take_inside());
             }
             found_all.push(found.ok());
@@ -226,6 +226,37 @@ impl ElementRow {
         inside.is_some() && found.places.iter().any(is_other)
     }
 
+    /// Forgets what does not hold for the element on other ties. On the same ends, the places of its ends are kept, because an end
+    /// without a body has no other speed than the way from its last place.
+    fn retie(&mut self, ties: &Ties, finder: &impl Finder) {
+        let known = self.rare.ties;
+        if ties.is_held_like(&known) {
+            return;
+        }
+        self.set_direction(None);
+        let rare = &mut *self.rare;
+        if !ties.turns_like(&known) {
+            rare.places = [None; 2];
+            rare.scales = [None; 2];
+            rare.angle = 0.0;
+            return;
+        }
+        for end in 0..2 {
+            let mut scale = rare.scales[end];
+            let mut at = |anchor| {
+                let field = ties.names.ends[end];
+                finder.place(ties.ends[end], anchor, field, &mut scale)
+            };
+            let found = (at(known.anchors[end]), at(ties.anchors[end]));
+            if let (Ok(Place::Point(before)), Ok(Place::Point(now))) = found
+                && let Some(place) = &mut rare.places[end]
+            {
+                // The new anchor is not a motion of the end.
+                *place += now - before;
+            }
+        }
+    }
+
     /// Reads the components of an element as if it were new. Returns where its ends are, or its fault.
     fn read_anew(
         &mut self,
@@ -238,28 +269,30 @@ impl ElementRow {
         let entity = parts.entity;
         // Whether its coefficients were computed in an earlier tick and there was no step since.
         let waits = self.has(ElementFlags::TUNED);
+        let was_on_body = self.rare.held.map(|held| matches!(held, Held::Body { .. }));
         self.reset();
         let parameters = parts
             .parameters()
             .inspect_err(|_| self.set_parameters(Parameters::NONE))?;
-        if !parameters.ties.is_held_like(&self.rare.ties) {
-            // The remembered state belongs to other ends.
-            self.rare.places = [None; 2];
-            self.rare.scales = [None; 2];
-            self.set_direction(None);
-            self.rare.angle = 0.0;
-        }
+        self.retie(&parameters.ties, &*finder);
         if parameters != self.parameters() || companions.touched.contains(&entity) {
             self.flags.insert(ElementFlags::REFITTED);
         }
         self.change(|row| row.set_parameters(parameters));
         parameters.check()?;
         let mut companion = companions.of(entity, &parameters)?;
-        if companion.guide != self.rare.guide {
-            self.rare.places = [None; 2];
-        }
         let guide = companion.guide;
+        if guide != self.rare.guide {
+            // It is not kept up to date along an axis.
+            self.set_direction(None);
+        }
         let found = finder.find(&parameters, guide, &mut self.rare.scales, modified)?;
+        for (end, was_on_body) in was_on_body.into_iter().enumerate() {
+            if was_on_body && matches!(found.places[end], Place::Point(_)) {
+                // The place is a point of a body that is gone, and no path leads from there.
+                self.rare.places[end] = None;
+            }
+        }
         if let Some(tuning) = companions.tuning(entity) {
             let mut tuned = parameters;
             let can_touch = finder.tune(tuning, guide, &found.places, &mut tuned)?;

@@ -81,6 +81,8 @@ pub struct Scene {
     pub(crate) since: Option<Tick>,
     /// Whether Rapier's snapshot was restored since the last step, but the springs' snapshot not yet.
     pub(crate) engine_went_back: bool,
+    /// Whether `disturbed` only tells what restoring Rapier's snapshot did, which the springs' snapshot takes into account.
+    pub(crate) undisturbed: bool,
 }
 
 impl Scene {
@@ -89,6 +91,12 @@ impl Scene {
         self.index.contains_key(&entity)
             || self.walls.contains(&entity)
             || self.row_of.contains_key(&entity)
+    }
+
+    /// Makes the next tick make all rows anew.
+    pub(crate) fn disturb(&mut self) {
+        self.disturbed = true;
+        self.undisturbed = false;
     }
 
     /// Resets what belongs to the last step only, and counts the tick.
@@ -100,6 +108,7 @@ impl Scene {
         self.delivered = false;
         self.noting = false;
         self.engine_went_back = false;
+        self.undisturbed = false;
     }
 
     /// Forgets contexts that no longer exist.

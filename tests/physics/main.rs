@@ -34,6 +34,7 @@ mod mouse_spring;
 mod named_ends;
 mod natural_frequency;
 mod networks;
+mod other_anchors;
 mod passenger;
 mod paused;
 mod quarter_car;

@@ -297,3 +297,62 @@ fn a_box_that_goes_to_another_world_harms_nobody_there() {
         assert!(lab.position(*other).distance(before) < 1e-3);
     }
 }
+
+/// Number of joints and of bodies in each world, in the order of the worlds' entities.
+fn held_in(lab: &mut Lab) -> Vec<(usize, usize)> {
+    let world = lab.app.world_mut();
+    let mut contexts = world.query::<(Entity, &RapierContextJoints, &RapierRigidBodySet)>();
+    let mut all: Vec<_> = contexts.iter(world).collect();
+    all.sort_by_key(|(entity, ..)| *entity);
+    all.iter()
+        .map(|(_, joints, set)| (joints.impulse_joints.len(), set.bodies.len()))
+        .collect()
+}
+
+/// Two worlds with a box on a spring in each, and snapshots of them. Returns the springs.
+fn two_boxes(lab: &mut Lab) -> ([Entity; 2], RapierSnapshot, CoiloverSnapshot) {
+    let first = first_world(lab);
+    let [.., one] = box_on_floor(lab, first);
+    let link = second_world(lab, Vec3::NEG_Y * GRAVITY as f32);
+    let [.., other] = box_on_floor(lab, link);
+    lab.run(0.5);
+    for element in [one, other] {
+        assert_eq!(lab.readout(element).method, SpringMethod::Engine);
+    }
+    let world = lab.app.world();
+    let (engine, springs) = (RapierSnapshot::take(world), CoiloverSnapshot::take(world));
+    ([one, other], engine, springs)
+}
+
+#[test]
+fn springs_that_have_a_fault_when_a_snapshot_is_restored_leave_nothing_in_any_world() {
+    let mut lab = Lab::new();
+    let (elements, engine, springs) = two_boxes(&mut lab);
+    for element in elements {
+        lab.get_mut::<SpringDamper>(element).stiffness = f32::NAN;
+    }
+    lab.tick();
+    let world = lab.app.world_mut();
+    assert_eq!(engine.restore(world), Ok(()));
+    assert_eq!(springs.restore(world), Ok(()));
+    lab.run(0.1);
+    // No joints, and no bodies but the boxes.
+    assert_eq!(held_in(&mut lab), [(0, 1), (0, 1)]);
+}
+
+#[test]
+fn springs_that_start_afresh_leave_nothing_of_a_snapshot_that_does_not_fit_in_any_world() {
+    let mut lab = Lab::new();
+    let gone = lab.point(Vec3::X * 9.0);
+    let free = lab.body(1.0, Vec3::X * 10.0);
+    let gone = lab.spawn(Spring::new(gone, free));
+    let (_, engine, springs) = two_boxes(&mut lab);
+    let before = held_in(&mut lab);
+    lab.app.world_mut().despawn(gone);
+    let world = lab.app.world_mut();
+    assert_eq!(engine.restore(world), Ok(()));
+    let told = springs.restore(world);
+    assert_eq!(told, Err(SnapshotError::NoElement(gone)));
+    lab.run(0.1);
+    assert_eq!(held_in(&mut lab), before);
+}

@@ -1,6 +1,6 @@
 //! Snapshots of Rapier's own state, and how they are restored.
 
-use crate::backend::rapier::kept::note_engine;
+use crate::backend::rapier::kept::{is_disturbed, note_engine};
 use crate::compat::{self, SoftBodies};
 use crate::snapshot::SnapshotError;
 use bevy::ecs::entity::{EntityHashSet, EntityMapper, MapEntities};
@@ -26,9 +26,12 @@ use std::collections::HashMap;
 /// - First despawn bodies, colliders and joints that were spawned after the snapshot.
 /// - In another world, handles are the same if everything was spawned in the same order and nothing was despawned before.
 ///
-/// Restoring also sets `Transform`, `Velocity` and `Sleeping` of bodies, as Rapier writes them after a step. The snapshot
-/// contains no events and no components of the game, such as `ExternalForce` of bodies without springs. Restore such a force
-/// with `bypass_change_detection`, because Rapier wakes a body whose force is written.
+/// Restoring also sets `Transform`, `Velocity` and `Sleeping` of bodies, as Rapier writes them after a step, and gives
+/// `RigidBodyDisabled` to the bodies that had it, and takes it from all others. A body that is disabled both in the snapshot and
+/// now keeps its `Transform`, because Rapier writes none of a disabled body.
+///
+/// The snapshot contains no events and no other components of the game, such as `ExternalForce` of bodies without springs.
+/// Restore such a force with `bypass_change_detection`, because Rapier wakes a body whose force is written.
 #[derive(Clone)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub struct RapierSnapshot(Vec<Context>);
@@ -51,6 +54,8 @@ struct Context {
     ccd_solver: CCDSolver,
     parameters: IntegrationParameters,
     handles: Handles,
+    /// Bodies that the game has disabled.
+    disabled: Vec<Entity>,
 }
 
 /// The handle of each entity.
@@ -115,6 +120,7 @@ impl RapierSnapshot {
                         impulse_joints: sorted(joints.entity2impulse_joint()),
                         multibody_joints: sorted(joints.entity2multibody_joint()),
                     },
+                    disabled: disabled(world, set),
                 },
             )
             .collect();
@@ -140,9 +146,18 @@ impl RapierSnapshot {
                 context.put(parts);
             }
         }
-        note_engine(world);
+        let disturbed = is_disturbed(world);
+        // Rapier writes back only the bodies that are enabled by the components of both times.
+        let mut behind = false;
+        for context in &self.0 {
+            behind |= context.set_disabled(false, world);
+        }
         // The write-back also records what it wrote, so that bevy_rapier does not take it for changes by the game.
         let written = world.run_system_cached(writeback_rigid_bodies);
+        for context in &self.0 {
+            behind |= context.set_disabled(true, world);
+        }
+        note_engine(world, !(disturbed || behind));
         written.map_err(|_| SnapshotError::NoPlugin)
     }
 
@@ -175,6 +190,38 @@ impl Context {
         // The pipeline detects changes of joints by a counter, which now has an earlier value.
         simulation.pipeline = PhysicsPipeline::new();
     }
+
+    /// Gives `RigidBodyDisabled` to the bodies that had it (`is`), or takes it from those that had it not. Returns whether the
+    /// engine did not follow the component of such a body yet.
+    fn set_disabled(&self, is: bool, world: &mut World) -> bool {
+        let then: EntityHashSet = self.disabled.iter().copied().collect();
+        let mut behind = false;
+        for (entity, handle) in &self.handles.bodies {
+            let Ok(mut body) = world.get_entity_mut(*entity) else {
+                continue;
+            };
+            if then.contains(entity) != is || body.contains::<RigidBodyDisabled>() == is {
+                continue;
+            }
+            if is {
+                body.insert(RigidBodyDisabled);
+            } else {
+                body.remove::<RigidBodyDisabled>();
+            }
+            let of = self.bodies.get(*handle);
+            behind |= of.is_some_and(|body| body.is_enabled() == is);
+        }
+        behind
+    }
+}
+
+/// The bodies of a context that the game has disabled, sorted, so that the same world gives the same snapshot.
+fn disabled(world: &World, set: &RapierRigidBodySet) -> Vec<Entity> {
+    let bodies = set.entity2body().keys().copied();
+    let has = |body: &Entity| world.get::<RigidBodyDisabled>(*body).is_some();
+    let mut all: Vec<_> = bodies.filter(has).collect();
+    all.sort_unstable();
+    all
 }
 
 impl Handles {
@@ -261,6 +308,9 @@ impl MapEntities for RapierSnapshot {
                 rename(entity, mapper);
             }
             for (entity, _) in &mut handles.multibody_joints {
+                rename(entity, mapper);
+            }
+            for entity in &mut context.disabled {
                 rename(entity, mapper);
             }
         }

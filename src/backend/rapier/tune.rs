@@ -14,6 +14,14 @@ use bevy::math::DVec3;
 use bevy::prelude::*;
 use bevy_rapier3d::rapier::dynamics::RigidBodyHandle;
 
+/// Acceleration of a load along its element without the element, as a share of gravity (for a twist per metre), above which the
+/// element is loaded. Below it there is rounding only.
+const LOADED: f64 = 1e-5;
+
+/// Why no stiffness gives the sag.
+const UNLOADED: &str = "asks for a sag where no weight loads the element in its present pose, or it is not clear which end is \
+                        the load; use SpringTuning::Frequency, or give the stiffness";
+
 /// The bodies on which an element acts, and its line.
 pub(crate) struct Lever {
     pub line: Line,
@@ -66,19 +74,19 @@ impl RapierFinder<'_, '_> {
         let Some((lever, left)) = lever.filter(|(_, left)| *left > 0.0) else {
             return fault("stands on an element whose ends cannot move or coincide");
         };
-        let mass = left.recip() as f32;
-        let gravity = lever.gravity();
-        if matches!(tuning, SpringTuning::Sag { .. }) && gravity == 0.0 {
-            return fault("asks for a sag where no gravity acts on the ends");
-        }
-        let (stiffness, damping) = tuning.coefficients(mass, gravity as f32);
+        let (gravity, carried) = match tuning {
+            SpringTuning::Frequency { .. } => (0.0, None),
+            SpringTuning::Sag { .. } => self.load_of(&lever, left, guide)?,
+        };
+        let (stiffness, damping) = tuning.coefficients(left.recip() as f32, gravity as f32);
         parameters.numbers.stiffness = stiffness;
         if !parameters.ties.names.damping.is_empty() {
             parameters.numbers.damping = damping;
         }
-        let sags =
-            matches!(tuning, SpringTuning::Sag { .. }) && parameters.numbers.rest_length.is_none();
-        if let Some(stretch) = self.stretch(&lever, stiffness).filter(|_| sags) {
+        let stretch = carried.map(|tension| tension / f64::from(stiffness));
+        if let Some(stretch) = stretch.filter(|stretch| stretch.is_finite())
+            && parameters.numbers.rest_length.is_none()
+        {
             let rest = lever.line.distance() - stretch;
             if guide == Guide::Centres && rest < 0.0 {
                 return fault("has a sag that is longer than the element");
@@ -88,17 +96,33 @@ impl RapierFinder<'_, '_> {
         Ok(lever.can_touch)
     }
 
-    /// Stretch with which a spring of this stiffness carries its load in the present pose, m. `None` if it is not clear which end
-    /// is the load.
-    fn stretch(&self, lever: &Lever, stiffness: f32) -> Option<f64> {
+    /// Returns the gravity that makes the load of an element from its effective mass, m/s² (for a twist rad/s²), and the tension
+    /// with which it carries its load in the present pose, N, if it is clear which end is the load. `left` is the inverse of the
+    /// effective mass.
+    fn load_of(&self, lever: &Lever, left: f64, guide: Guide) -> Result<(f64, Option<f64>), Fault> {
+        let fault = |reason| Err(Fault::new("SpringTuning", reason));
+        let gravity = lever.gravity();
+        if gravity == 0.0 {
+            return fault("asks for a sag where no gravity acts on the ends");
+        }
         let one_sided = |end: usize| {
             let mut line = lever.line;
             line.holds[1 - end].body = None;
             self.left(lever, line)
         };
-        let (tension, _) = self.tension_alone(lever, lever.load(one_sided)?, None)?;
-        let stretch = tension / f64::from(stiffness);
-        Some(stretch).filter(|stretch| stretch.is_finite())
+        let load = lever.load(one_sided);
+        let carried = load.and_then(|end| self.tension_alone(lever, end, None));
+        let tension = carried.map(|(tension, _)| tension);
+        if !(guide.is_twist() || carried.is_some_and(|(_, helped)| helped)) {
+            return Ok((gravity, tension));
+        }
+        // On a lever, the load is not the weight of the effective mass, which is an inertia.
+        let along = tension.map_or(0.0, |tension| tension.abs() * left);
+        if along > LOADED * gravity && along.is_finite() {
+            Ok((along, tension))
+        } else {
+            fault(UNLOADED)
+        }
     }
 
     /// Inverse mass along a line that joints and contacts leave, 1/kg.

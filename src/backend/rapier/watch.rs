@@ -65,7 +65,7 @@ pub(crate) fn watch(app: &mut App) {
 /// is to be noted.
 fn notice(entity: Entity, scene: Option<ResMut<Scene>>) {
     if let Some(mut scene) = scene.filter(|scene| scene.knows(entity)) {
-        scene.disturbed = true;
+        scene.disturb();
     }
 }
 
@@ -83,7 +83,7 @@ fn lost<C: Component>(app: &mut App) {
 fn unloaded<C: Component>(app: &mut App) {
     app.add_observer(|on: Removed<C>, scene: Option<ResMut<Scene>>| {
         if let Some(mut scene) = scene.filter(|scene| scene.index.contains_key(&on.entity)) {
-            scene.disturbed = true;
+            scene.disturb();
         }
     });
 }

@@ -104,6 +104,37 @@ fn a_limit_holds_for_spring_and_damper_together_where_a_spring_is_stiffer_one_wa
 }
 
 #[test]
+fn what_acts_one_way_with_a_limit_damps_only_where_it_is_not_slack() {
+    for sign in [1.0, -1.0] {
+        let limits = if sign > 0.0 {
+            [0.0, 100.0]
+        } else {
+            [-100.0, 0.0]
+        };
+        let mut recipe = recipe(limits);
+        recipe.most = 100.0;
+        recipe.drag = DragLaw::Linear(50.0);
+        let [near, far] = [300.0, 500.0].map(|linear| [linear, 0.0, 0.0]);
+        let [pull, push] = if sign > 0.0 { [near, far] } else { [far, near] };
+        recipe.spring = SpringForce::Polynomial { pull, push };
+        let law = Law::new(recipe);
+        // Stretches, and the tension at the last one: slack, on the way out of that, and taut.
+        for (stretch, wanted) in [
+            ([-0.3, -0.28], 0.0),
+            ([-0.02, -0.01], 0.0),
+            ([-0.01, 0.02], 31.0),
+            ([0.1, 0.12], 61.0),
+        ] {
+            let way = stretch.map(|stretch: f64| 1.0 + sign * stretch);
+            let rate = sign * 0.5;
+            let pieces = Pieces::of(&law, 1.0, reach(way, rate));
+            let tension = sign * pieces.tension(way[1], rate);
+            assert!((tension - wanted).abs() < 1e-9, "{way:?}: {tension}");
+        }
+    }
+}
+
+#[test]
 fn a_slack_rope_is_ready_and_has_no_force() {
     let law = law([0.0, f64::INFINITY]);
     let pieces = Pieces::of(&law, 1.0, reach([0.9, 0.9], 0.0));

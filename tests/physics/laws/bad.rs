@@ -146,7 +146,11 @@ fn numbers_out_of_range() {
     check(Preload(f32::NAN), "Preload", "NaN");
     check(SpringAxis::World(Vec3::ZERO), "SpringAxis::World", "zero");
     check(SpringAxis::BodyA(Vec3::X), "SpringDamper::body_a", "frame");
-    check(Breakable::at_force(f32::NAN), "Breakable", "NaN");
+    check(Breakable::at_force(f32::NAN), "Breakable::force", "NaN");
+    check(Breakable::at_length(f32::NAN), "Breakable::length", "NaN");
+    check(Breakable::at_force(-1.0), "Breakable::force", "negative");
+    let below = Breakable::at_length(f32::NEG_INFINITY);
+    check(below, "Breakable::length", "negative");
     check(
         SpringTuning::frequency(-1.0, 0.1),
         "SpringTuning",

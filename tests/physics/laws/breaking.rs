@@ -95,3 +95,21 @@ fn twisted_too_far_either_way_a_torsion_spring_breaks() {
         assert!(world.get_entity(element).is_err(), "{turn}: it breaks");
     }
 }
+
+#[test]
+fn with_a_negative_limit_it_is_inert_and_does_not_break() {
+    let (mut lab, body, element) = rope(Breakable::at_force(15.0));
+    lab.run(0.1);
+    lab.get_mut::<Breakable>(element).force = -15.0;
+    let speed = lab.velocity(body).y;
+    lab.run(0.1);
+    assert!(lab.app.world().resource::<Broken>().0.is_empty());
+    assert_eq!(lab.get::<SpringFault>(element).field, "Breakable::force");
+    let fallen = lab.velocity(body).y - speed + 0.1 * GRAVITY as f32;
+    assert!(fallen.abs() < 1e-3, "it falls freely");
+    // Mended, it acts again.
+    lab.get_mut::<Breakable>(element).force = 1e3;
+    lab.run(0.5);
+    assert!(lab.app.world().get::<SpringFault>(element).is_none());
+    assert!(lab.readout(element).force() != 0.0);
+}

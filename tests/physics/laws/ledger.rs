@@ -180,6 +180,23 @@ fn what_an_actuator_does_is_its_work() {
     assert!((seen.stored_energy + motion - 0.4).abs() < 1e-3);
 }
 
+#[test]
+fn an_anchor_that_is_put_elsewhere_on_its_body_does_the_work_of_the_stretch() {
+    let mut lab = Lab::weightless();
+    let hook = lab.point(Vec3::ZERO);
+    let body = lab.body(1.0, Vec3::X);
+    let spring = Spring::new(hook, body).with_stiffness(80.0);
+    let element = lab.spawn(spring.with_rest_length(1.0));
+    lab.run(0.1);
+    let farther = Anchors::new(Vec3::ZERO, Vec3::X * 0.1);
+    lab.app.world_mut().entity_mut(element).insert(farther);
+    lab.run(0.5);
+    let seen = lab.readout(element);
+    let motion = 0.5 * lab.velocity(body).length_squared();
+    assert!((seen.work - 0.4).abs() < 1e-4, "{seen:?}");
+    assert!((seen.stored_energy + motion - 0.4).abs() < 1e-3);
+}
+
 /// A car body of 1200 kg at 3 m/s on four springs with dampers at its corners. All energy it loses is heat.
 #[test]
 fn the_heat_of_a_network_is_as_exact_as_its_motion() {

@@ -98,3 +98,31 @@ fn a_slack_rope_with_a_damper_neither_brakes_nor_pushes() {
     assert!(least >= 0.0, "the rope pushed with {least} N");
     assert!(lab.velocity(body).x.abs() < 1.0);
 }
+
+#[test]
+fn a_slack_rope_with_a_limit_does_not_brake_a_cart_on_its_rail() {
+    let mut lab = Lab::weightless();
+    let rail = lab.spawn((RigidBody::Fixed, Transform::default()));
+    let cart = lab.moving(body(1.0, Vec3::X), Velocity::linear(Vec3::X));
+    let joint = ImpulseJoint::new(rail, PrismaticJointBuilder::new(Vec3::X));
+    lab.app.world_mut().entity_mut(cart).insert(joint);
+    // Within damping · speed / stiffness, half a metre before it is taut, spring and damper together would pull.
+    let rope = SpringDamper::new(rail, cart)
+        .with_damping(50.0)
+        .with_rest_length(2.0);
+    let [pull, push] = [100.0, 10.0].map(|linear| Polynomial::new(linear, 0.0, 0.0));
+    let law = SpringLaw::sided(pull, push);
+    let rope = lab.spawn((rope, law, SpringAction::Pull, MaxForce(500.0)));
+    lab.run(0.9);
+    assert_eq!(lab.readout(rope).method, SpringMethod::Engine);
+    let speed = lab.velocity(cart).x;
+    assert!((speed - 1.0).abs() < 1e-3, "{speed} m/s of 1");
+    let mut least = f32::MAX;
+    for _ in 0..lab.ticks(3.0) {
+        lab.tick();
+        least = least.min(lab.readout(rope).force());
+    }
+    assert!(least >= 0.0, "the rope pushed with {least} N");
+    let speed = lab.velocity(cart).x;
+    assert!(speed.abs() < 0.5, "taut, it brakes: {speed} m/s");
+}

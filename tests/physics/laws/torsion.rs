@@ -79,6 +79,35 @@ fn three_turns_are_wound_up_and_let_go() {
 }
 
 #[test]
+fn turns_that_are_wound_up_stay_while_the_anchors_change() {
+    let turns = 3.0 * TAU as f32;
+    for is_hinged in [false, true] {
+        let [plain, changed] = [false, true].map(|changes| {
+            let mut lab = Lab::weightless();
+            let (wall, wheel) = wheel(&mut lab, 0.0);
+            if is_hinged {
+                let hinge = RevoluteJointBuilder::new(Vec3::Z).local_anchor1(Vec3::X);
+                let hinge = ImpulseJoint::new(wall, hinge);
+                lab.app.world_mut().entity_mut(wheel).insert(hinge);
+            }
+            let spring = TorsionSpring::new(wall, wheel, Vec3::Z).with_stiffness(0.8);
+            let element = lab.spawn(spring.with_rest_angle(turns));
+            // By theory, it is wound by four and a quarter turns then.
+            lab.run(1.0);
+            if changes {
+                let anchors = Anchors::new(Vec3::Y * 0.1, Vec3::X * 0.2);
+                lab.app.world_mut().entity_mut(element).insert(anchors);
+            }
+            lab.run(0.1);
+            f64::from(lab.readout(element).length)
+        });
+        assert!(plain > 4.0 * TAU, "{plain} rad");
+        let off = (changed - plain).abs();
+        assert!(off < 0.02, "hinged {is_hinged}: {changed}, not {plain} rad");
+    }
+}
+
+#[test]
 fn between_two_free_bodies_the_angular_momentum_stays() {
     let mut lab = Lab::weightless();
     let a = lab.spawn(brick(1.0, Vec3::new(0.1, 0.2, 0.3), Vec3::ZERO));

@@ -147,6 +147,70 @@ fn a_lamp_tuned_to_two_hertz_swings_twice_a_second() {
 }
 
 #[test]
+fn a_lamp_tuned_to_a_sag_sags_that_much() {
+    let (mut lab, _, element) =
+        lamp(|post, arm| SpringDamper::new(post, arm).with_rest_length(0.2));
+    let sag = 0.002;
+    let world = lab.app.world_mut();
+    world
+        .entity_mut(element)
+        .insert(SpringTuning::sag(sag, 1.0));
+    lab.tick();
+    // The moment of the weights about the hinge, over the lever of the spring.
+    let tension = 9.81 * (0.3 * 0.2 + 0.5 * 0.4) / 0.05;
+    let k = lab.get::<SpringDamper>(element).stiffness;
+    assert!((k * sag / tension - 1.0).abs() < 1e-3, "{k} N/m");
+    lab.run(3.0);
+    let sags = lab.readout(element).length - 0.2;
+    assert!((sags / sag - 1.0).abs() < 0.03, "{sags} m");
+}
+
+#[test]
+fn a_torsion_bar_tuned_to_a_sag_holds_its_arm_with_the_moment_of_its_weight() {
+    let mut lab = Lab::new();
+    let post = lab.spawn((RigidBody::Fixed, Transform::default()));
+    let hinge = RevoluteJointBuilder::new(Vec3::Z).local_anchor2(Vec3::NEG_X * 0.5);
+    let arm = lab.spawn((
+        brick(2.0, Vec3::splat(0.05), Vec3::X * 0.5),
+        ImpulseJoint::new(post, hinge),
+    ));
+    let bar = TorsionSpringDamper::new(post, arm, Vec3::Z);
+    let element = lab.spawn((bar, SpringTuning::sag(0.1, 0.3)));
+    lab.run(2.0);
+    let bar = lab.get::<TorsionSpringDamper>(element);
+    let moment = 2.0 * 9.81 * 0.5;
+    assert!((bar.stiffness * 0.1 / moment - 1.0).abs() < 1e-3, "{bar:?}");
+    let rest = bar.rest_angle.expect("it was found");
+    assert!((rest - 0.1).abs() < 1e-4, "{rest} rad");
+    assert!(lab.position(arm).distance(Vec3::X * 0.5) < 2e-3);
+}
+
+#[test]
+fn a_sag_where_no_weight_loads_the_element_is_a_fault() {
+    let on_a_rail = |lab: &mut Lab| {
+        let rail = lab.spawn((RigidBody::Fixed, Transform::default()));
+        let joint = ImpulseJoint::new(rail, PrismaticJointBuilder::new(Vec3::X));
+        let cart = lab.spawn((body(1.0, Vec3::X), joint));
+        let tuning = SpringTuning::sag(0.1, 0.3);
+        lab.spawn((SpringDamper::new(rail, cart), tuning))
+    };
+    let between_two = |lab: &mut Lab| {
+        let [a, b] = [Vec3::ZERO, Vec3::X].map(|at| lab.body(1.0, at));
+        let tuning = SpringTuning::sag(0.1, 0.3);
+        lab.spawn((TorsionSpring::new(a, b, Vec3::X), tuning))
+    };
+    let cases: [&dyn Fn(&mut Lab) -> Entity; 2] = [&on_a_rail, &between_two];
+    for spawn in cases {
+        let mut lab = Lab::new();
+        let element = spawn(&mut lab);
+        lab.run(0.1);
+        let fault = lab.get::<SpringFault>(element);
+        assert_eq!(fault.field, "SpringTuning", "{fault}");
+        assert!(fault.reason.contains("no weight"), "{fault}");
+    }
+}
+
+#[test]
 fn over_a_wheel_on_the_ground_it_is_the_load_that_swings() {
     for others in 0..3 {
         over_a_wheel(others);

@@ -116,6 +116,37 @@ fn a_thread_that_broke_since_is_whole_again() {
     assert_same("broken", &first, &film.watch(AFTER));
 }
 
+/// Which of the bodies are disabled, by their components and in Rapier.
+fn disabled(film: &mut Film) -> Vec<(Entity, bool, bool)> {
+    let world = film.lab.app.world_mut();
+    let mut sets = world.query::<&RapierRigidBodySet>();
+    let set = sets.single(world).expect("one context");
+    let of = |entity: &Entity| {
+        let handle = world.get::<RapierRigidBodyHandle>(*entity)?.0;
+        let is_off = !set.bodies.get(handle)?.is_enabled();
+        let has = world.get::<RigidBodyDisabled>(*entity).is_some();
+        Some((*entity, has, is_off))
+    };
+    film.cast.iter().filter_map(of).collect()
+}
+
+#[test]
+fn bodies_that_were_disabled_are_disabled_again_and_the_others_are_not() {
+    let mut film = played("disabled, plain");
+    let (then, at) = (Both::take(&film), film.tick);
+    let were = disabled(&mut film);
+    let count = were.iter().filter(|(_, has, is_off)| *has && *is_off);
+    assert_eq!(count.count(), 2);
+    let first = film.watch(AFTER);
+    assert!(disabled(&mut film) != were, "the game changed them");
+    for _ in 0..2 {
+        then.restore(&mut film);
+        film.tick = at;
+        assert_eq!(disabled(&mut film), were);
+        assert_same("disabled", &first, &film.watch(AFTER));
+    }
+}
+
 #[test]
 fn components_that_are_only_written_anew_change_nothing() {
     for name in [

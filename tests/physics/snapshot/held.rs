@@ -300,3 +300,37 @@ pub fn breaking(plugin: CoiloverPlugin) -> Film {
     }
     film
 }
+
+/// Weights and a box on the ground, each on a spring from a hook. The game disables one of each before the snapshot and enables
+/// it later, and disables another weight only later.
+pub fn disabled(plugin: CoiloverPlugin) -> Film {
+    let mut film = Film::new(plugin);
+    film.ground();
+    for x in [0.0, 3.0] {
+        let hook = film.point(Vec3::new(x, 2.0, 0.0));
+        let weight = film.brick(1.0, Vec3::new(x + 1.0, 2.0, 0.3));
+        film.spawn(coil(hook, weight, 30.0, 0.1));
+    }
+    let hook = film.point(Vec3::new(6.0, 1.0, 0.0));
+    let block = Collider::cuboid(0.2, 0.2, 0.2);
+    let block = film.solid(Vec3::new(6.0, 0.2, 0.3), block, 2.0);
+    film.spawn(coil(hook, block, 40.0, 0.5).with_rest_length(0.5));
+    film.deed = |film| {
+        let [first, second, block] = [film.cast[2], film.cast[5], film.cast[8]];
+        match film.tick {
+            100 => {
+                film.insert(first, RigidBodyDisabled);
+                film.insert(block, RigidBodyDisabled);
+            }
+            230 => {
+                for body in [first, block] {
+                    let world = film.lab.app.world_mut();
+                    world.entity_mut(body).remove::<RigidBodyDisabled>();
+                }
+            }
+            300 => film.insert(second, RigidBodyDisabled),
+            _ => {}
+        }
+    };
+    film
+}

@@ -18,7 +18,7 @@ pub fn all() -> Vec<(String, CoiloverPlugin, Play)> {
         ("tolerance", plain().with_tolerance(1e-4)),
         ("extrapolation", plain().with_extrapolation()),
     ];
-    let scenes: [(&str, Play); 16] = [
+    let scenes: [(&str, Play); 17] = [
         ("lone", lone),
         ("laws", laws),
         ("torsion", torsion),
@@ -35,6 +35,7 @@ pub fn all() -> Vec<(String, CoiloverPlugin, Play)> {
         ("car", car),
         ("actuator", actuator),
         ("breaking", breaking),
+        ("disabled", disabled),
     ];
     let named = |(name, scene): (&str, Play)| {
         ways.map(|(way, plugin)| (format!("{name}, {way}"), plugin, scene))

@@ -4,7 +4,7 @@
 use super::check::is_in;
 use crate::backend::rapier::body::{give, handle, id};
 use crate::backend::{Push, Wrench};
-use crate::scene::kept::Kept;
+use crate::scene::kept::{Kept, KeptElement};
 use crate::scene::rows::Raised;
 use crate::scene::state::Scene;
 use bevy::prelude::*;
@@ -12,14 +12,37 @@ use bevy_rapier3d::prelude::*;
 use std::mem::take;
 
 impl Kept {
+    /// The context of an element in the engine's solver: that of a body that it moves.
+    pub(super) fn context_of(&self, element: &KeptElement, world: &World) -> Option<Entity> {
+        let mut bodies = element
+            .on
+            .iter()
+            .filter_map(|body| self.bodies.get(*body as usize));
+        bodies.find_map(|body| {
+            let link = world.get::<RapierContextEntityLink>(body.entity)?;
+            Some(link.0)
+        })
+    }
+
     /// Makes the next step remove from the engine what springs had in it when the snapshot was taken.
     pub(crate) fn begin_anew(&self, world: &mut World) {
         let mut contexts = world.query::<(Entity, &RapierRigidBodySet, &RapierContextJoints)>();
-        let elements = self.elements.iter().filter_map(|e| e.inside.as_deref());
-        let left = self.left.iter().map(|(_, inside)| inside);
-        let insides = elements.chain(left).filter_map(|inside| {
-            let mut contexts = contexts.iter(world);
-            let (context, ..) = contexts.find(|(_, set, joints)| is_in(inside, set, joints))?;
+        let elements = self.elements.iter().filter_map(|element| {
+            let inside = element.inside.as_deref()?;
+            Some((self.context_of(element, world), inside))
+        });
+        let left = self.left.iter().map(|(of, inside)| (Some(*of), inside));
+        let insides = elements.chain(left).filter_map(|(known, inside)| {
+            // Two contexts may have the same handles.
+            let known = known.filter(|context| {
+                let parts = contexts.get(world, *context);
+                parts.is_ok_and(|(_, set, joints)| is_in(inside, set, joints))
+            });
+            let context = known.or_else(|| {
+                let mut contexts = contexts.iter(world);
+                let found = contexts.find(|(_, set, joints)| is_in(inside, set, joints));
+                found.map(|(context, ..)| context)
+            })?;
             Some((context, inside.put(context)))
         });
         let insides: Vec<_> = insides.collect();
@@ -75,9 +98,17 @@ pub(crate) fn engine_went_back(world: &mut World) -> bool {
     scene.is_some_and(|mut scene| take(&mut scene.engine_went_back))
 }
 
-/// Records that Rapier's snapshot was restored.
-pub(crate) fn note_engine(world: &mut World) {
+/// Whether the scene is to be made anew because some entity gained or lost a component.
+pub(crate) fn is_disturbed(world: &World) -> bool {
+    let scene = world.get_resource::<Scene>();
+    scene.is_some_and(|scene| scene.disturbed)
+}
+
+/// Records that Rapier's snapshot was restored. `undisturbed` tells whether a scene that is restored as well need not be made anew
+/// again in the next tick.
+pub(crate) fn note_engine(world: &mut World, undisturbed: bool) {
     if let Some(mut scene) = world.get_resource_mut::<Scene>() {
         scene.engine_went_back = true;
+        scene.undisturbed = undisturbed;
     }
 }

@@ -6,4 +6,4 @@ mod check;
 mod put;
 mod take;
 
-pub(crate) use anew::note_engine;
+pub(crate) use anew::{is_disturbed, note_engine};

@@ -18,6 +18,7 @@ use bevy::ecs::entity::{EntityHashMap, EntityHashSet};
 use bevy::ecs::system::SystemState;
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
+use std::mem::take;
 
 /// The system parameters that are needed to make rows.
 type Sources<'w, 's> = (
@@ -60,6 +61,7 @@ impl Kept {
         kept.fill_bodies(&mut scene);
         kept.fill_groups(&mut scene);
         kept.fill_scene(&mut scene);
+        kept.leave_faulty(&mut scene, world);
         kept.show(&scene, world);
         // Everything written so far belongs to the restored state. Only later writes count as changes.
         scene.since = Some(world.change_tick());
@@ -138,6 +140,9 @@ impl Kept {
         scene.assemblies.clear();
         scene.stale = false;
         scene.touched.clear();
+        if take(&mut scene.undisturbed) {
+            scene.disturbed = false;
+        }
     }
 
     fn fill_elements(&self, scene: &mut Scene, companions: &Companions) {
@@ -231,19 +236,6 @@ impl Kept {
             scene.left = left
                 .map(|(context, inside)| (*context, inside.put(*context)))
                 .collect();
-            // Joints and hidden bodies of elements that have a fault now.
-            if let [context] = &self.contexts[..] {
-                for kept in &self.elements {
-                    let row = scene.row_of.get(&kept.entity);
-                    let row = row.map(|i| &scene.elements[*i as usize]);
-                    if let Some(inside) = kept.inside.as_deref()
-                        && row.is_none_or(|row| row.inside.is_none())
-                    {
-                        let inside = inside.put(context.entity);
-                        scene.left.push((context.entity, inside));
-                    }
-                }
-            }
         }
         scene.still = default();
         // Also if there are elements or bodies that the snapshot does not contain.
@@ -253,6 +245,20 @@ impl Kept {
         (scene.loaded, scene.delivered) = (false, false);
         // Otherwise rows would be made anew after the next step if their order differs from that of the readouts.
         scene.unordered = true;
+    }
+
+    /// Makes the next step remove the joints and hidden bodies of elements that have a fault now.
+    fn leave_faulty(&self, scene: &mut Scene, world: &World) {
+        for kept in self.elements.iter().filter(|_| !self.engine_stays) {
+            let row = scene.row_of.get(&kept.entity);
+            let row = row.map(|i| &scene.elements[*i as usize]);
+            if let Some(inside) = kept.inside.as_deref()
+                && row.is_none_or(|row| row.inside.is_none())
+                && let Some(context) = self.context_of(kept, world)
+            {
+                scene.left.push((context, inside.put(context)));
+            }
+        }
     }
 
     /// Writes readouts, rest lengths and force shares into the components of elements and bodies.
