@@ -5,7 +5,10 @@ use bevy::prelude::*;
 /// entity, so the scale of the end applies to it. A force at a point off the centre of mass also turns the body.
 ///
 /// Without this component, both points are the origins of the ends. [`WorldAnchors`](crate::WorldAnchors) takes points
-/// of the world instead.
+/// of the world instead. Torsion elements have no anchors, so this component does not change what they do.
+///
+/// Each coordinate must be finite and at most 1e12 in magnitude. Otherwise the element gets a
+/// [`SpringFault`](crate::SpringFault) and does not act.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq)]
 #[type_path = "bevy_coilover"]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]

@@ -2,7 +2,8 @@ use bevy::prelude::*;
 
 /// Makes an element act along an axis instead of along the line between its ends. The length of the element is then the
 /// distance from end A to end B along this axis, m; it is negative where end B is behind end A. The vector may have any
-/// finite length but zero. Beside a torsion element, this component is a [`SpringFault`](crate::SpringFault).
+/// finite length but zero: only its direction counts. With another vector, or beside a torsion element, the element gets
+/// a [`SpringFault`](crate::SpringFault) and does not act.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
 #[type_path = "bevy_coilover"]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]

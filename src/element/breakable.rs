@@ -1,7 +1,8 @@
 use bevy::prelude::*;
 
 /// Breaks the element if its force or its length exceeds a limit after a step. On a torsion element, the limits are a
-/// moment (N m) and an angle (rad). A limit that is negative or NaN is a [`SpringFault`](crate::SpringFault).
+/// moment (N m) and an angle (rad). With a limit that is negative or NaN, the element gets a
+/// [`SpringFault`](crate::SpringFault) and does not act.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
 #[type_path = "bevy_coilover"]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
@@ -32,7 +33,7 @@ pub enum WhenBroken {
 }
 
 impl Breakable {
-    /// Breaks at a force, N. The element is then despawned.
+    /// Breaks at a force, N, or at a moment of a torsion element, N m. The element is then despawned.
     pub const fn at_force(force: f32) -> Self {
         Self {
             force,
@@ -41,7 +42,7 @@ impl Breakable {
         }
     }
 
-    /// Breaks at a length, m. The element is then despawned.
+    /// Breaks at a length, m, or at an angle of a torsion element, rad. The element is then despawned.
     pub const fn at_length(length: f32) -> Self {
         Self {
             force: f32::INFINITY,
@@ -62,8 +63,8 @@ impl Breakable {
 pub struct SpringBroke {
     /// The element that broke.
     pub entity: Entity,
-    /// Force of the element when it broke, N, tension positive.
+    /// Force of spring, damper and stops when it broke, N, tension positive; of a torsion element the moment, N m.
     pub force: f32,
-    /// Length of the element when it broke, m.
+    /// Length of the element when it broke, m; of a torsion element the angle, rad.
     pub length: f32,
 }

@@ -1,7 +1,10 @@
 use crate::readout::SpringReadout;
 use bevy::prelude::*;
 
-/// A viscous damper between two ends: tension = damping · rate of the length.
+/// A viscous damper between two ends: tension = damping · rate of the length. It resists every change of the length.
+///
+/// Each end is a rigid body, a descendant of one, or any other entity with a `Transform`. A field or an end that is not
+/// valid gives the element a [`SpringFault`](crate::SpringFault), and it does not act.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serialize", serde(default))]
@@ -10,10 +13,10 @@ use bevy::prelude::*;
 #[require(SpringReadout)]
 #[type_path = "bevy_coilover"]
 pub struct Damper {
-    /// End A: a rigid body, a descendant of one, or any other entity with a `Transform`.
+    /// End A, where the damper starts.
     #[entities]
     pub body_a: Entity,
-    /// End B: a rigid body, a descendant of one, or any other entity with a `Transform`.
+    /// End B, to which the damper goes.
     #[entities]
     pub body_b: Entity,
     /// Damping, N s/m, from 0 to 1e12.

@@ -86,10 +86,11 @@ impl SpringLaw {
 /// rises: then the element is as stable as any other. (Where the force falls, the element stays bounded but is less
 /// exact.) If the law returns NaN or infinity, the element gets a [`SpringFault`](crate::SpringFault) and does not act.
 pub trait ForceLaw: Send + Sync + 'static {
-    /// Force, N, tension positive. `x` is the stretch, m; for a damper it is the rate of the length, m/s.
+    /// Force, N, tension positive. `x` is the stretch, m; for a damper it is the rate of the length, m/s. On a torsion
+    /// element, this is the moment, N m, and `x` is in rad or rad/s.
     fn force(&self, x: f64) -> f64;
 
-    /// Slope of the force, N/m or N s/m. By default a central difference of two forces.
+    /// Slope of the force at `x`, N/m or N s/m. By default a central difference of two forces.
     fn slope(&self, x: f64) -> f64 {
         let h = 1e-6 * x.abs().max(1e-3);
         (self.force(x + h) - self.force(x - h)) / (2.0 * h)

@@ -1,6 +1,7 @@
 use bevy::prelude::*;
 
-/// In which directions an element acts: spring and damper together.
+/// In which directions an element acts: spring, [`Preload`] and damper together, but not the stops of a
+/// [`SpringTravel`]. On a torsion element, `Pull` allows only moments that turn towards smaller angles.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[type_path = "bevy_coilover"]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
@@ -23,6 +24,9 @@ pub enum SpringAction {
 /// It is part of [`SpringReadout::spring_force`](crate::SpringReadout::spring_force). Beside [`SpringAction::Pull`] or
 /// [`SpringAction::Push`], spring and preload are added first, and the sum is cut at zero: a slack rope has no force,
 /// whatever its preload. [`HoldPose`](crate::HoldPose) computes the preload that holds a load.
+///
+/// It must be finite and at most 1e12 in magnitude. Otherwise the element gets a [`SpringFault`](crate::SpringFault) and
+/// does not act. On a torsion element it is a moment, N m.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq)]
 #[type_path = "bevy_coilover"]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
@@ -31,7 +35,8 @@ pub enum SpringAction {
 pub struct Preload(pub f32);
 
 /// Greatest magnitude of the force of spring and damper together, N, above zero. A greater sum is cut to this value, as
-/// in a clutch that slips. It does not limit the stops of a [`SpringTravel`].
+/// in a clutch that slips. It does not limit the stops of a [`SpringTravel`]. On a torsion element it is a moment, N m. With
+/// a value that is not above zero, the element gets a [`SpringFault`](crate::SpringFault) and does not act.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
 #[type_path = "bevy_coilover"]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
@@ -42,6 +47,10 @@ pub struct MaxForce(pub f32);
 /// Least and greatest length of an element, with an elastic stop at each. At a penetration p, a stop pushes back with
 /// the force `stop_stiffness` · p · (1 + `progression` · p), and `stop_damping` takes energy while the stop is pressed.
 /// A stop never holds back an end that leaves it.
+///
+/// `stop_stiffness`, `progression` and `stop_damping` must be from 0 to 1e12, and `max_length` must be above `min_length`.
+/// Otherwise the element gets a [`SpringFault`](crate::SpringFault) and does not act. On a torsion element, lengths are
+/// angles (rad), and forces are moments (N m).
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
 #[type_path = "bevy_coilover"]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]

@@ -21,6 +21,9 @@ use std::f32::consts::TAU;
 /// first step, it is not known which end is the load. The rest length is then the length in the first step; put a
 /// [`HoldPose`](crate::HoldPose) beside it. For several springs under one load, use [`SpringTuning::coefficients`] with
 /// each spring's share of the mass, and [`HoldPose::share`](crate::HoldPose::share).
+///
+/// On a damper without a spring, with a number that is not valid, or where both ends cannot move or coincide, the element
+/// gets a [`SpringFault`](crate::SpringFault) and does not act.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
 #[type_path = "bevy_coilover"]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
@@ -61,7 +64,8 @@ impl SpringTuning {
     }
 
     /// Returns stiffness (N/m) and damping (N s/m) for a mass (kg) and a gravity (m/s²): k = m (2π f)² for a frequency
-    /// f or k = m g/s for a sag s, and c = 2 ζ √(k m).
+    /// f or k = m g/s for a sag s, and c = 2 ζ √(k m). For a torsion element, give a moment of inertia (kg m²) to get
+    /// N m/rad and N m s/rad. The arguments are not checked.
     pub fn coefficients(self, mass: f32, gravity: f32) -> (f32, f32) {
         let (stiffness, ratio) = match self {
             Self::Frequency {

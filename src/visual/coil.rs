@@ -6,6 +6,9 @@ use bevy::prelude::*;
 /// [`SpringDamper`](crate::SpringDamper) on the same entity. Its wire stays round at any length.
 ///
 /// Beside a [`Telescope`](crate::Telescope) the coil is wound around the telescope, between spring seats: a coilover.
+///
+/// If [`Helix::check`](crate::Helix::check) finds a fault in its sizes, a warning is logged and the coil is not drawn until
+/// that is corrected. The element acts all the same.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
 #[type_path = "bevy_coilover"]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]

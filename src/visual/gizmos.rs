@@ -12,7 +12,7 @@ use bevy::prelude::*;
 
 /// Gizmo group that draws elements as lines, for debugging: crosses at the ends, the rest length beside the line, and
 /// the forces on both ends as arrows, red for tension and blue for compression. Rest length and forces are drawn along
-/// the line between the ends, or along the element's [`SpringAxis`](crate::SpringAxis).
+/// the line between the ends, or along the element's [`SpringAxis`](crate::SpringAxis). Torsion elements are not drawn.
 ///
 /// Nothing is drawn unless `all` is set or an element has [`ShowSpringGizmos`]. It needs Bevy's `GizmoPlugin`, which
 /// `DefaultPlugins` contains with the feature `bevy_gizmos_render`.

@@ -7,6 +7,9 @@ use bevy::prelude::*;
 ///
 /// Tube and rod keep their lengths while the ends stay within the stroke. Beyond it, the tube or the rod is drawn
 /// longer or shorter than it is, so that they do not come apart or pass through the other end.
+///
+/// If a size is not finite and above zero, or the rod is not thinner than the tube, a warning is logged and the telescope
+/// is not drawn until that is corrected. The element acts all the same.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
 #[type_path = "bevy_coilover"]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]

@@ -9,6 +9,9 @@ use bevy::prelude::*;
 /// A. Its outer end is fixed to body B and moves around with it. So the spiral has its [`turns`](Self::turns) at the
 /// rest angle, and more or fewer of them when it is twisted.
 ///
+/// If a size is not finite and above zero, if there are more than 100 turns, or if the turns do not fit between the two
+/// radii, a warning is logged and the spiral is not drawn until that is corrected. The element acts all the same.
+///
 /// ```
 /// # use bevy::prelude::*;
 /// # use bevy_coilover::prelude::*;
