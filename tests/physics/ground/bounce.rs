@@ -97,3 +97,57 @@ fn a_hopper_that_is_heavy_above_wins_nothing() {
         }
     }
 }
+
+/// A ball of 1 kg on a spring of 1 N/m (ω·dt of 0.017), its lowest point `gap` metres above the ground. It moves with `velocity`, and
+/// nothing weighs.
+fn soft(gap: f32, velocity: Vec3) -> (Stand, Entity, Entity) {
+    let mut scene = Stand::new(CoiloverPlugin::default(), Engine::weightless());
+    scene.ground();
+    let radius = 0.1;
+    let ball = scene.body(
+        Transform::from_xyz(0.0, radius + gap, 0.0),
+        (
+            Collider::ball(radius),
+            ColliderMassProperties::Mass(1.0),
+            Velocity::linear(velocity),
+        ),
+    );
+    let hook = scene.lab.point(Vec3::Y * 3.0);
+    let element = scene.coil([hook, ball], [Vec3::ZERO; 2], [1.0, 0.0], None);
+    (scene, ball, element)
+}
+
+#[test]
+fn rapier_solves_a_soft_spring_from_the_step_in_which_its_ball_lands() {
+    // 1 cm per step: the ball is 1.5 cm high one step before the one in which it lands.
+    let (mut scene, ball, element) = soft(0.095, 0.6 * Vec3::NEG_Y);
+    for tick in 1..=20 {
+        let before = scene.lab.readout(element).method;
+        scene.lab.tick();
+        let method = scene.lab.readout(element).method;
+        if scene.lab.velocity(ball).y > -0.3 {
+            println!("the ball lands in tick {tick}, after {before:?}: {method:?}");
+            assert_eq!(before, SpringMethod::ClosedForm, "it was free before");
+            assert_eq!(method, SpringMethod::Engine);
+            return;
+        }
+    }
+    panic!("it never landed");
+}
+
+#[test]
+fn a_ball_that_passes_the_ground_slowly_stays_free() {
+    // Rapier knows of a contact up to 2 cm ahead.
+    let (mut scene, ball, element) = soft(0.015, 0.1 * Vec3::X);
+    for tick in 1..=30 {
+        scene.lab.tick();
+        let method = scene.lab.readout(element).method;
+        // Before its first step, the engine's own search decides.
+        assert!(
+            tick == 1 || method == SpringMethod::ClosedForm,
+            "tick {tick}: {method:?}"
+        );
+    }
+    let gap = scene.lab.position(ball).y - 0.1;
+    assert!((0.01..0.02).contains(&gap), "{gap}");
+}

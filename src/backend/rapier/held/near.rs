@@ -14,16 +14,20 @@ use bevy_rapier3d::rapier::geometry::{Collider, ColliderSet, DefaultBroadPhase};
 use bevy_rapier3d::rapier::math::Pose;
 use bevy_rapier3d::rapier::pipeline::QueryFilter;
 
-/// Distance below which two shapes count as touching, m.
+/// Distance below which two shapes count as touching, m. It is more than what Rapier's contacts leave open at rest, and so little
+/// that a body that passes by stays free. Pinned by `ground::bounce`.
 pub(crate) const NEAR: f32 = 0.005;
 
-/// Assumed greatest speed of other bodies in the search for near colliders, m/s.
+/// Assumed greatest speed of other bodies in the search for near colliders, m/s. What is faster may arrive between two searches. A
+/// greater speed only costs time, because a larger region is searched: 4 m at 60 steps a second. Pinned by `near::tests`.
 const OTHERS: f32 = 30.0;
 
-/// Greatest number of steps for which one search is valid. It is limited because bodies gain speed meanwhile.
+/// Greatest number of steps for which one search is valid. It is limited because bodies gain speed meanwhile: one that falls from
+/// rest moves by 11 cm in that time, at 60 steps a second. Fewer steps only cost time. Pinned by `near::tests`.
 const MOST: u8 = 8;
 
-/// Share of the free distance that is used to compute the number of steps without contact.
+/// Share of the free distance that is used to compute the number of steps without contact. The rest is for what bodies gain in
+/// speed meanwhile. Above 1, bodies meet before the next search; a smaller share only costs time. Pinned by `near::tests`.
 const TRUSTED: f32 = 0.7;
 
 /// The bodies and colliders of a context.
@@ -188,3 +192,6 @@ pub(crate) fn speed_of(body: &RapierBody) -> f32 {
     let reach = body.mass_properties().max_extent();
     body.linvel().length() + reach * body.angvel().length()
 }
+
+#[cfg(test)]
+mod tests;

@@ -75,10 +75,15 @@ impl Crowd {
     }
 }
 
-/// A contact that the engine predicts counts if its distance is less than this number of steps of the body's motion.
+/// A contact that the engine predicts counts if its distance is less than this number of steps of the body's motion. The distance
+/// is that at the start of the last step: a body that arrives in this step was up to two steps away then, and the third is for the
+/// motion of what it meets. With less, a soft spring's body lands before the solver knows of it; with far more, bodies that pass by
+/// slowly count as touched. Pinned by `ground::bounce`.
 const REACH: f32 = 3.0;
 
-/// Size of its bounding box above which a collider counts as boundless, m.
+/// Size of its bounding box above which a collider counts as boundless, m. This is no tuning constant: any number does between the
+/// size of a world in f32, some hundred kilometres, and that of a half-space's box, 3e38 m, whose sums would overflow in a tree.
+/// Pinned by `touch::tests`.
 const BOUNDLESS: f32 = 1e6;
 
 /// Whether a contact that the engine solves is nearer than `way` (m), contact skins included.
@@ -189,5 +194,22 @@ impl<'a> Surroundings<'a> {
         }
         let way = NEAR + 2.0 * (speed_of(body) + push) * time as f32;
         lingers || flags.contains(BodyFlags::PRESSED) || near(way)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bevy_rapier3d::parry::shape::SharedShape;
+    use bevy_rapier3d::rapier::geometry::ColliderBuilder;
+
+    #[test]
+    fn a_half_space_has_no_bounds_and_a_world_of_two_hundred_kilometres_has() {
+        let mut colliders = ColliderSet::new();
+        let ground = SharedShape::halfspace(Vec3::Y);
+        colliders.insert(ColliderBuilder::new(ground));
+        colliders.insert(ColliderBuilder::cuboid(1e5, 1.0, 1e5));
+        let crowd = Crowd::new(&colliders);
+        assert_eq!((crowd.bounded.len(), crowd.boundless.len()), (1, 1));
     }
 }
