@@ -13,10 +13,12 @@ use bevy::math::DVec3;
 use bevy_rapier3d::rapier::dynamics::RigidBodyHandle;
 
 /// Cosine of the angle between an element and the weight of its load below which the element counts as level: then its tension
-/// cannot carry the weight.
+/// cannot carry the weight. At this angle it is ten times the weight, and a spring that strong would throw the load sideways.
+/// Pinned by `laws::unloaded`.
 const LEVEL: f64 = 0.1;
 /// Share of the load's inverse mass along the element that joints must leave. Below it, joints hold the load without
-/// the element.
+/// the element: on the arm of a lamp, an element so near to the hinge would need hundreds of times its weight. Pinned by
+/// `laws::unloaded`.
 const HELD: f64 = 1e-4;
 
 fn fault<T>(reason: &'static str) -> Result<T, Fault> {

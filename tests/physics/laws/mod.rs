@@ -17,3 +17,4 @@ mod shock;
 mod smooth;
 mod torsion;
 mod tuning;
+mod unloaded;
