@@ -20,6 +20,8 @@ const BESIDE: f64 = 0.01;
 const HARDENS: f64 = 0.1;
 
 /// Bound on the force of a one-sided piece, as a multiple of the greatest force that it is expected to reach in the step.
+/// Below 1, a rope would be too weak for its load. Rapier needs a bound, and f32 loses what is small beside it, so it is not much more.
+/// Pinned by `pieces::tests`.
 const ROOM: f64 = 2.0;
 
 /// A force that is linear within its range and constant outside.

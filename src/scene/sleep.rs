@@ -9,7 +9,8 @@ use crate::dynamics::body::Body;
 use crate::scene::rows::{BodyFlags, BodyRow, ElementRow, Members, Rest, Rows, RowsMut, take};
 use crate::scene::step::Step;
 
-/// Speed below which a body counts as resting: m/s, times the engine's length unit, and rad/s.
+/// Speed below which a body counts as resting: m/s, times the engine's length unit, and rad/s. With ten times as much, slow swings
+/// fall asleep. Pinned by `sleeping::a_long_pendulum_on_a_stiff_spring_does_not_fall_asleep_at_its_turning_point`.
 const REST: f32 = 2e-4;
 
 /// Speed below which a body of a component that the engine solves counts as resting, m/s, times the engine's length unit. Pinned by
@@ -22,7 +23,7 @@ const HELD_REST: f32 = 2e-2;
 const CREEP: f32 = 1e-2;
 
 /// Time for which a body must rest before it may sleep, s. At a turning point with amplitude A and frequency ω a body rests for
-/// 2·REST/(A ω²), so a body that falls asleep has an acceleration below 2·REST/QUIET.
+/// 2·REST/(A ω²), so a body that falls asleep has an acceleration below 2·REST/QUIET. Pinned by the same test.
 const QUIET: f32 = 2.0;
 
 /// Change of a position that counts as rounding and not as motion, in units of the last place. A stiff spring answers a rounding

@@ -207,3 +207,13 @@ fn what_goes_farther_than_it_was_thought_to_meets_at_least_what_it_stores() {
         );
     }
 }
+
+#[test]
+fn a_rope_gives_all_the_force_that_it_can_reach_in_the_step() {
+    let law = law([0.0, f64::INFINITY]);
+    let reach = reach([1.1, 1.1], 1.0);
+    let pieces = Pieces::of(&law, 1.0, reach);
+    let tension = pieces.tension(1.1 + reach.change, reach.speed);
+    let wanted = STIFFNESS * (0.1 + reach.change) + 6.0 * reach.speed;
+    assert!((tension - wanted).abs() < 1e-9, "{tension}");
+}
