@@ -7,7 +7,7 @@ use bevy::prelude::*;
 ///
 /// Beside a [`Telescope`](crate::Telescope) the coil is wound around the telescope, between spring seats: a coilover.
 ///
-/// If [`Helix::check`](crate::Helix::check) finds a fault in its sizes, a warning is logged and the coil is not drawn until
+/// If [`Helix::check`] finds a fault in its sizes, a warning is logged and the coil is not drawn until
 /// that is corrected. The element acts all the same.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
 #[type_path = "bevy_coilover"]
