@@ -1,7 +1,6 @@
 //! Draws two plots of the guide: the futures of a game that goes back, and the frames that run again over a bad connection.
 //!
-//! Run `cargo run --release --no-default-features --example plots -- ../docs/guide` in the folder `netcode`. It writes
-//! `going_back.svg` and `frames_again.svg` there.
+//! Run `cargo run --release -p netcode --example plots -- docs/guide`. It writes `going_back.svg` and `frames_again.svg` there.
 
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;

@@ -1,7 +1,7 @@
 //! Two peers play over UDP with delay, jitter and loss, and their checksums are compared. Then a SyncTest session
 //! measures the cost of running frames again. The exit code is the verdict.
 //!
-//! Run `cargo run --release --no-default-features --example rollback -- SECONDS` in the folder `netcode`.
+//! Run `cargo run --release -p netcode --example rollback -- SECONDS`.
 
 use bevy_ggrs::{RollbackFrameCount, Session};
 use netcode::game::{self, Mismatches, RATE};

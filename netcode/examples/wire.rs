@@ -1,6 +1,6 @@
 //! Measures the bytes of springs on the wire when a server sends them with Replicon.
 //!
-//! Run `cargo run --example wire` in the folder `netcode`.
+//! Run `cargo run -p netcode --features server --example wire`.
 
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
