@@ -62,7 +62,8 @@ impl Outlook<'_> {
                 way: f32::INFINITY,
             });
         };
-        let way = most * (fastest + OTHERS) * self.time;
+        // The step of the search itself comes first.
+        let way = (most + 1.0) * (fastest + OTHERS) * self.time;
         let region = bounds.loosened(NEAR + way);
         let all = self.broad.as_query_pipeline(
             &DefaultQueryDispatcher,

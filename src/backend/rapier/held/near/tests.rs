@@ -51,7 +51,7 @@ fn steps_taken(apart: f32, speed: f32) -> Option<u8> {
 #[test]
 fn what_flies_in_is_searched_for_again_before_it_arrives() {
     for speed in [2.0, 5.0, 10.0, 20.0, 29.0] {
-        for apart in [0.3, 0.6, 1.2, 2.4, 3.6] {
+        for apart in [0.3, 0.6, 1.2, 2.4, 3.6, 4.1] {
             let Some(steps) = steps_taken(apart, speed) else {
                 continue;
             };
