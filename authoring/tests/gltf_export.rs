@@ -10,12 +10,24 @@ use serde_json::{Value, json};
 
 /// Exports a scene, loads it, and exports the loaded scene. Returns both exported files and the stage.
 pub fn round_trip(name: &str, build: impl FnOnce(&mut World) -> Entity) -> (Value, Value, Stage) {
+    round_trip_losing(name, &[], build)
+}
+
+/// [`round_trip`] of a scene of which the export says that it loses something: the ends of its sentences.
+fn round_trip_losing(
+    name: &str,
+    lost: &[&str],
+    build: impl FnOnce(&mut World) -> Entity,
+) -> (Value, Value, Stage) {
     let folder = Folder::new(name);
     let mut stage = Stage::new(&folder.0);
     let root = build(stage.app.world_mut());
     stage.app.update();
     let first = export_gltf(stage.app.world(), [root]);
-    assert_eq!(first.left_out, Vec::<String>::new());
+    let told = &first.left_out;
+    assert_eq!(told.len(), lost.len(), "{told:?}");
+    let mut pairs = told.iter().zip(lost);
+    assert!(pairs.all(|(line, end)| line.ends_with(end)), "{told:?}");
     folder.write("a.gltf", &first.text);
     stage.app.world_mut().despawn(root);
     let loaded = stage.load("a.gltf");
@@ -178,7 +190,8 @@ fn every_element_and_companion_goes_out_and_in_again_bit_for_bit() {
 
 #[test]
 fn bodies_colliders_and_joints_go_out_and_in_again() {
-    let (first, second, mut stage) = round_trip("bodies_out", |world| {
+    let lost = ["a motor of its joint comes back as an element"];
+    let (first, second, mut stage) = round_trip_losing("bodies_out", &lost, |world| {
         let root = root(world);
         let turned = Quat::from_rotation_x(0.3) * Quat::from_rotation_z(1.1);
         let body = world

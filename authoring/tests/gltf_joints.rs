@@ -6,7 +6,7 @@ use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
 use serde_json::{Value, json};
-use std::f32::consts::TAU;
+use std::f32::consts::{FRAC_PI_4, TAU};
 
 /// A fixed hook, a body of 2 kg one metre below it, and a joint between them.
 fn joint(name: &str, kind: Value) -> (Folder, Stage, Entity) {
@@ -199,6 +199,32 @@ fn an_angular_spring_pulls_the_frames_together_not_the_bodies() {
     );
     assert_eq!(stage.count::<TorsionSpringDamper>(), 1);
     assert!(stage.faults().is_empty(), "{:?}", stage.faults());
+}
+
+#[test]
+fn an_uneven_scale_of_a_body_does_not_skew_the_frame_of_a_joint() {
+    let eighth = Quat::from_rotation_z(FRAC_PI_4);
+    let motion = json!({ "mass": 2, "inertiaDiagonal": [0.1, 0.1, 0.1] });
+    let joint = json!({ "connectedNode": 2, "joint": 0 });
+    let mut body = physics("Body", [0.0, 1.0, 0.0], json!({ "motion": motion }));
+    body["scale"] = json!([1, 3, 0.5]);
+    body["children"] = json!([2]);
+    let nodes = json!([
+        physics("Hook", [0.0, 2.0, 0.0], json!({ "joint": joint })),
+        body,
+        { "name": "Frame", "translation": [0.5, 0.25, 0], "rotation": eighth.to_array() },
+    ]);
+    let kinds = json!({ "physicsJoints": [{ "limits": [
+        { "linearAxes": [0, 1, 2], "max": 0 }, { "angularAxes": [0, 1], "max": 0 }] }] });
+    let kinds = json!({ "KHR_physics_rigid_bodies": kinds });
+    let (_folder, mut stage, _root) = play("uneven", nodes, kinds);
+    let mut joints = stage.app.world_mut().query::<&ImpulseJoint>();
+    let joint = joints.single(stage.app.world()).expect("one joint");
+    let at = joint.data.as_ref().raw.local_frame2;
+    let (turned, off) = (at.rotation, at.translation - Vec3::new(0.5, 0.75, 0.0));
+    assert!((turned.length() - 1.0).abs() < 1e-5, "{turned}");
+    assert!(turned.angle_between(eighth) < 2e-3, "{turned}");
+    assert!(off.length() < 1e-5, "{off}");
 }
 
 /// A body of 2 kg one metre below a hook. They may collide, so a joint is needed only if it can hold some limit.

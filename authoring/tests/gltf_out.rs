@@ -264,3 +264,51 @@ fn a_collider_with_a_scale_of_its_own_is_as_large_after_a_file() {
         assert!((mass / wanted - 1.0).abs() < 1e-3, "{name}: {mass} kg");
     }
 }
+
+#[test]
+fn a_joint_on_an_uneven_or_mirrored_body_has_the_same_frames_after_a_file() {
+    let turned = |x: f32, z: f32| Quat::from_rotation_z(z) * Quat::from_rotation_x(x);
+    let frames = [
+        (Vec3::new(0.1, -0.2, 0.3), turned(0.4, 1.1)),
+        (Vec3::new(0.3, 0.7, -0.4), turned(-0.7, 0.5)),
+    ];
+    for (name, scale) in [
+        ("uneven", Vec3::new(1.0, 3.0, 0.5)),
+        ("mirrored", Vec3::new(-2.0, 1.0, 1.0)),
+    ] {
+        let (_, _, mut stage) = round_trip(&format!("{name}_joint_out"), |world| {
+            let root = root(world);
+            let wall = (RigidBody::Fixed, Collider::ball(0.1), Transform::default());
+            let wall = world.spawn((wall, ChildOf(root))).id();
+            let own = AdditionalMassProperties::MassProperties(MassProperties {
+                mass: 1.0,
+                principal_inertia: Vec3::splat(0.1),
+                ..default()
+            });
+            let place = Transform::from_xyz(0.0, 2.0, 0.0)
+                .with_rotation(turned(0.9, -0.3))
+                .with_scale(scale);
+            let body = world.spawn((RigidBody::Dynamic, own, place, ChildOf(root)));
+            let body = body.id();
+            let hinge = GenericJointBuilder::new(JointAxesMask::LOCKED_REVOLUTE_AXES)
+                .local_anchor1(frames[0].0)
+                .local_basis1(frames[0].1)
+                .local_anchor2(frames[1].0)
+                .local_basis2(frames[1].1)
+                .build();
+            let hinge = ImpulseJoint::new(wall, TypedJoint::GenericJoint(hinge));
+            world.spawn((hinge, ChildOf(body)));
+            root
+        });
+        let mut joints = stage.app.world_mut().query::<&ImpulseJoint>();
+        let joint = joints.single(stage.app.world()).expect("one joint");
+        let raw = &joint.data.as_ref().raw;
+        for (found, (at, basis)) in [raw.local_frame1, raw.local_frame2].iter().zip(frames) {
+            assert!(found.translation.distance(at) < 1e-5, "{name}: {found:?}");
+            assert!(
+                found.rotation.angle_between(basis) < 2e-3,
+                "{name}: {found:?}"
+            );
+        }
+    }
+}

@@ -6,6 +6,7 @@ mod blender;
 mod data;
 mod gltf_elements;
 mod gltf_export;
+mod gltf_fixed;
 mod gltf_joints;
 mod gltf_left_out;
 mod gltf_out;

@@ -9,7 +9,18 @@ use std::sync::Arc;
 #[derive(Component, Reflect, Clone, Debug)]
 #[reflect(opaque, Component, Clone, Debug)]
 #[type_path = "bevy_coilover"]
-pub(crate) struct LoadedBody(pub(super) Arc<Motion>);
+pub(crate) struct LoadedBody {
+    pub(super) motion: Arc<Motion>,
+    /// File and node, for log messages.
+    pub(super) place: String,
+}
+
+/// Marks a node where an element ends that acts in the frame of a body. If the node belongs to no body, it gets a fixed
+/// one.
+#[derive(Component, Reflect, Clone, Debug)]
+#[reflect(opaque, Component, Clone, Debug)]
+#[type_path = "bevy_coilover"]
+pub(crate) struct LoadedEnd;
 
 /// Triangle mesh of a collider.
 #[derive(Clone, Debug, Default)]

@@ -1,8 +1,8 @@
 //! Turns the components that a loaded scene carries into Rapier's bodies, colliders and joints. Runs in `PostUpdate`,
 //! when the scene has its place in the world.
 
-use super::carry::{LoadedBody, LoadedCollider, LoadedJoint};
-use super::place::{above, place};
+use super::carry::{LoadedBody, LoadedCollider, LoadedEnd, LoadedJoint};
+use super::place::{NOWHERE, above, place};
 use super::{joints, mass};
 use bevy::ecs::entity::{EntityHashMap, EntityHashSet};
 use bevy::prelude::*;
@@ -11,7 +11,15 @@ use bevy_rapier3d::rapier::prelude::{MassProperties as RapierMass, Pose, SharedS
 
 /// Run condition: whether a scene has brought components that wait to be expanded.
 pub(super) fn any_loaded(
-    loaded: Query<(), Or<(With<LoadedBody>, With<LoadedCollider>, With<LoadedJoint>)>>,
+    loaded: Query<
+        (),
+        Or<(
+            With<LoadedBody>,
+            With<LoadedCollider>,
+            With<LoadedEnd>,
+            With<LoadedJoint>,
+        )>,
+    >,
 ) -> bool {
     !loaded.is_empty()
 }
@@ -25,8 +33,8 @@ pub(super) const SUBDIVISIONS: u32 = 10;
 const LARGEST: f32 = 1e6;
 const SMALLEST: f32 = 1e-5;
 
-/// Expands everything that scenes have brought: colliders first, then bodies, whose mass needs the colliders, then
-/// joints.
+/// Expands everything that scenes have brought: colliders first, then bodies, whose mass needs the colliders, then fixed
+/// bodies where elements need them, then joints.
 pub(super) fn expand(world: &mut World) {
     let mut weights = EntityHashMap::<RapierMass>::default();
     let colliders = take::<LoadedCollider>(world);
@@ -40,35 +48,53 @@ pub(super) fn expand(world: &mut World) {
     }
     let bodies = take::<LoadedBody>(world);
     let moving: EntityHashSet = bodies.iter().map(|(entity, _)| *entity).collect();
-    for (entity, LoadedBody(motion)) in bodies {
-        let Some(place) = place(world, entity) else {
-            continue;
-        };
-        stand_free(world, entity, place, &moving);
+    for (entity, loaded) in bodies {
         let weight = weights.get(&entity).copied().unwrap_or_default();
-        let (properties, locked) = mass::mass(&motion, weight, place.scale);
-        let mut body = world.entity_mut(entity);
-        body.insert((
-            if motion.kinematic {
-                RigidBody::KinematicVelocityBased
-            } else {
-                RigidBody::Dynamic
-            },
-            AdditionalMassProperties::MassProperties(properties),
-            Velocity {
-                linear: place.rotation * motion.linear_velocity,
-                angular: place.rotation * motion.angular_velocity,
-            },
-        ));
-        if motion.gravity_factor != 1.0 {
-            body.insert(GravityScale(motion.gravity_factor));
-        }
-        if !locked.is_empty() {
-            body.insert(locked);
+        add_body(world, entity, &loaded, weight, &moving);
+    }
+    for (entity, LoadedEnd) in take::<LoadedEnd>(world) {
+        if owner(world, entity).is_none() && place(world, entity).is_some() {
+            anchor(world, entity);
         }
     }
     for (entity, joint) in take::<LoadedJoint>(world) {
         joints::add(world, entity, &joint);
+    }
+}
+
+/// Makes a node a moving body. `weight` is that of its colliders, and `moving` has all bodies that move.
+fn add_body(
+    world: &mut World,
+    entity: Entity,
+    loaded: &LoadedBody,
+    weight: RapierMass,
+    moving: &EntityHashSet,
+) {
+    let motion = &*loaded.motion;
+    let Some(place) = place(world, entity) else {
+        log::warn!("{}: {NOWHERE}; it has no body", loaded.place);
+        return;
+    };
+    stand_free(world, entity, place, moving);
+    let (properties, locked) = mass::mass(motion, weight, place.scale);
+    let mut body = world.entity_mut(entity);
+    body.insert((
+        if motion.kinematic {
+            RigidBody::KinematicVelocityBased
+        } else {
+            RigidBody::Dynamic
+        },
+        AdditionalMassProperties::MassProperties(properties),
+        Velocity {
+            linear: place.rotation * motion.linear_velocity,
+            angular: place.rotation * motion.angular_velocity,
+        },
+    ));
+    if motion.gravity_factor != 1.0 {
+        body.insert(GravityScale(motion.gravity_factor));
+    }
+    if !locked.is_empty() {
+        body.insert(locked);
     }
 }
 
@@ -93,11 +119,29 @@ pub(super) fn owner(world: &World, entity: Entity) -> Option<Entity> {
     })
 }
 
+/// Returns the node that stands for the body of a node that belongs to none: the node itself or its nearest ancestor
+/// with a collider, else the node. A collider without a motion is a static body.
+pub(super) fn still_body(world: &World, node: Entity) -> Entity {
+    let mut up = std::iter::once(node).chain(above(world, node));
+    let found = up.find(|entity| world.get::<Collider>(*entity).is_some());
+    found.unwrap_or(node)
+}
+
+/// Makes a fixed body for a node that belongs to no body, and returns it.
+pub(super) fn anchor(world: &mut World, node: Entity) -> Entity {
+    let body = still_body(world, node);
+    if let Some(place) = place(world, body) {
+        stand_free(world, body, place, &EntityHashSet::default());
+    }
+    world.entity_mut(body).insert(RigidBody::Fixed);
+    body
+}
+
 /// Moves a body to a place in the hierarchy where no ancestor moves or rotates it, because bevy_rapier3d 0.36 writes
 /// wrong transforms into bodies below rotated entities.
 ///
 /// In the file, nested bodies move independently. So a body below other bodies of the file moves up to the parent of
-/// the topmost of them. A new entity in between undoes the transform of that parent.
+/// the topmost of them. New entities in between undo the transform of that parent.
 fn stand_free(world: &mut World, body: Entity, at: Transform, moving: &EntityHashSet) {
     let moving_above = above(world, body).filter(|entity| moving.contains(entity));
     let top = moving_above.last().unwrap_or(body);
@@ -108,13 +152,21 @@ fn stand_free(world: &mut World, body: Entity, at: Transform, moving: &EntityHas
         return;
     };
     let turned = place.rotation.angle_between(Quat::IDENTITY) >= 1e-6;
-    if place.scale.cmpeq(Vec3::ZERO).any() || !(turned || top != body) {
+    if !turned && top == body {
         return;
     }
-    let undone = Transform::from_matrix(place.to_matrix().inverse());
-    let level = world
-        .spawn((undone, Visibility::default(), ChildOf(parent)))
-        .id();
+    let mut level = parent;
+    let back = place.rotation.inverse();
+    // The scale goes first, on an entity of its own: one `Transform` cannot undo an uneven scale and a rotation.
+    for undone in [
+        Transform::from_scale(mass::steady(place.scale).recip()),
+        Transform::from_rotation(back).with_translation(back * -place.translation),
+    ] {
+        if undone != Transform::IDENTITY {
+            let between = (undone, Visibility::default(), ChildOf(level));
+            level = world.spawn(between).id();
+        }
+    }
     world.entity_mut(body).insert((at, ChildOf(level)));
 }
 
@@ -126,15 +178,11 @@ fn add_collider(
     body: Option<Entity>,
 ) -> Option<RapierMass> {
     let place_of = &loaded.place;
-    let here = place(world, entity)?;
-    if here.scale == Vec3::ZERO {
-        // In glTF, a scale of zero on all axes disables the collider.
+    let Some(here) = place(world, entity) else {
+        // Where the scale is zero on all axes, this is what the file means: it disables the collider.
+        log::warn!("{place_of}: {NOWHERE}; it has no collider");
         return None;
-    }
-    if here.scale.cmpeq(Vec3::ZERO).any() {
-        log::warn!("{place_of}: is scaled flat, so it has no collider");
-        return None;
-    }
+    };
     let shape: SharedShape = match loaded.shape.build() {
         Ok(shape) => shape,
         Err(reason) => {
@@ -204,4 +252,72 @@ fn add_collider(
         turned * here.rotation,
     );
     Some(scaled.raw.mass_properties(mass::DENSITY).transform_by(&at))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::carry::Shape;
+    use super::super::json::Told;
+    use super::super::physics::{Implicit, NodePhysics};
+    use super::*;
+    use serde_json::json;
+    use std::cell::RefCell;
+    use std::sync::Arc;
+
+    thread_local! {
+        /// Messages of this thread, while they are wanted.
+        static MESSAGES: RefCell<Option<Vec<String>>> = const { RefCell::new(None) };
+    }
+
+    struct Collector;
+
+    impl log::Log for Collector {
+        fn enabled(&self, _metadata: &log::Metadata) -> bool {
+            true
+        }
+
+        fn log(&self, record: &log::Record) {
+            MESSAGES.with_borrow_mut(|messages| {
+                if let Some(messages) = messages {
+                    messages.push(record.args().to_string());
+                }
+            });
+        }
+
+        fn flush(&self) {}
+    }
+
+    #[test]
+    fn a_body_and_a_collider_that_are_scaled_to_zero_are_told_of_by_name() {
+        let _ = log::set_logger(&Collector);
+        log::set_max_level(log::LevelFilter::Warn);
+        let place = "a.gltf: node 1 'Crate'";
+        for scale in [Vec3::ZERO, Vec3::new(1.0, 0.0, 1.0)] {
+            let physics = NodePhysics::read(&json!({ "motion": {} }), place, &Told::default());
+            let body = LoadedBody {
+                motion: Arc::new(physics.motion.expect("a motion")),
+                place: place.to_owned(),
+            };
+            let collider = LoadedCollider {
+                shape: Shape::Implicit(Implicit::Sphere { radius: 0.5 }),
+                material: None,
+                groups: None,
+                trigger: false,
+                place: place.to_owned(),
+            };
+            let mut world = World::new();
+            let parent = world.spawn(Transform::from_scale(scale)).id();
+            let node = (Transform::default(), body, collider, ChildOf(parent));
+            let node = world.spawn(node).id();
+            MESSAGES.set(Some(Vec::new()));
+            expand(&mut world);
+            let told = MESSAGES.take().unwrap_or_default();
+            assert_eq!(told.len(), 2, "{scale}: {told:?}");
+            for (line, lacks) in told.iter().zip(["no collider", "no body"]) {
+                assert!(line.starts_with(place) && line.ends_with(lacks), "{line}");
+            }
+            let node = world.entity(node);
+            assert!(!node.contains::<RigidBody>() && !node.contains::<Collider>());
+        }
+    }
 }

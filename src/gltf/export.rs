@@ -1,6 +1,7 @@
 //! Writes bodies, colliders, joints and elements of a world as a glTF file.
 
-use super::export_element::{element, ends};
+use super::ends::ends;
+use super::export_element::element;
 use super::export_filters::Filters;
 use super::export_physics::{Geometry, Parts, material, motion, own_scale};
 use super::left_out::LeftOut;
@@ -240,11 +241,25 @@ impl Writer<'_> {
         if let Some(element) = element(here, self.world, index, &mut self.left_out) {
             extensions.add(super::element::NAME, element);
         }
+        self.tell_part_of_another(here);
         self.left_out.tell_unwritten(here);
         if !extensions.is_empty() {
             node.add("extensions", extensions.value());
         }
         node.value()
+    }
+
+    /// Tells of a fixed body below a moving one: a file has no fixed bodies, only colliders that belong to no motion.
+    fn tell_part_of_another(&mut self, here: EntityRef) {
+        let moves = |entity: Entity| {
+            let kind = self.world.get::<RigidBody>(entity);
+            self.index.contains_key(&entity) && kind.is_some_and(|kind| *kind != RigidBody::Fixed)
+        };
+        let is_fixed = here.get() == Some(&RigidBody::Fixed);
+        if is_fixed && above(self.world, here.id()).any(moves) {
+            let what = "RigidBody::Fixed below a moving body comes back as a part of that body";
+            self.left_out.tell(here, what);
+        }
     }
 
     /// Returns motion and collider of an entity. If the collider has a scale of its own, it goes on a child node with

@@ -1,26 +1,15 @@
 //! Writes an element as `BEVY_coilover`; [`element`](super::element) reads it back.
 
+use super::ends::{ends, framed_ends};
+use super::expand::{owner, still_body};
 use super::left_out::LeftOut;
 use super::number::{Fields, number, numbers, vector};
-use super::place::matrix;
+use super::place::{matrix, place};
 use crate::element::*;
-use crate::input::lists::with_elements;
 use bevy::ecs::entity_disabling::Disabled;
 use bevy::prelude::*;
+use bevy_rapier3d::prelude::RigidBody;
 use serde_json::{Value, json};
-
-/// Returns the ends of an element; `None` if the entity is not an element.
-pub(super) fn ends(entity: EntityRef) -> Option<[Entity; 2]> {
-    macro_rules! ends {
-        ($($element:ident),*) => {
-            $(if let Some(element) = entity.get::<$element>() {
-                return Some([element.body_a, element.body_b]);
-            })*
-        };
-    }
-    with_elements!(ends);
-    None
-}
 
 /// Returns the extension object of an element; `None` if the entity is not an element. `node` returns the index of an
 /// end's node.
@@ -88,7 +77,27 @@ pub(super) fn element(
     if entity.contains::<CustomSpringLaw>() || entity.contains::<CustomDampingLaw>() {
         left_out.tell(entity, "its law is a function, which no file can hold");
     }
+    tell_frames(entity, world, left_out);
     Some(all.value())
+}
+
+/// Tells of an end on a fixed body whose frame is another one after a file. A file has no fixed bodies: an element that
+/// needs one gets the node that [`still_body`] finds.
+fn tell_frames(entity: EntityRef, world: &World, left_out: &mut LeftOut) {
+    for end in framed_ends(entity) {
+        let Some(body) = owner(world, end) else {
+            continue;
+        };
+        let frames = [body, still_body(world, end)].map(|body| place(world, body));
+        let [Some(now), Some(then)] = frames else {
+            continue;
+        };
+        let is_fixed = world.get::<RigidBody>(body) == Some(&RigidBody::Fixed);
+        if is_fixed && now.rotation.angle_between(then.rotation) > 1e-3 {
+            let what = "the fixed body of an end comes back on a node that is turned against it";
+            left_out.tell(entity, what);
+        }
+    }
 }
 
 /// Returns the anchors of an element. `WorldAnchors` that wait for the next step are converted to the frames of the

@@ -10,7 +10,9 @@ use bevy::ecs::entity::EntityHashSet;
 use bevy::ecs::entity_disabling::Disabled;
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
-use bevy_rapier3d::rapier::dynamics::{GenericJoint as RawJoint, MotorModel};
+use bevy_rapier3d::rapier::dynamics::{
+    GenericJoint as RawJoint, JointEnabled, JointMotor, MotorModel, SpringCoefficients,
+};
 use bevy_rapier3d::rapier::prelude::Pose;
 use serde_json::{Value, json};
 
@@ -44,6 +46,7 @@ impl Writer<'_> {
             self.left_out
                 .tell(here, "its joint is Disabled, and comes back enabled");
         }
+        tell_unwritten(raw, here, &mut self.left_out);
         let kind = kind(raw, here, &mut self.left_out);
         let kind = self.shared.joint(kind);
         let other = self.frame(b, raw.local_frame2, Value::Null);
@@ -56,9 +59,14 @@ impl Writer<'_> {
     /// Adds a node below a body's node, at the frame of a joint. Returns its index.
     fn frame(&mut self, (body, node): (Entity, usize), at: Pose, extensions: Value) -> usize {
         let scale = place(self.world, body).map_or(Vec3::ONE, |place| steady(place.scale));
+        let mut turned = at.rotation.to_array();
+        if scale.x < 0.0 {
+            // Below a mirrored node, a rotation reads back as its mirror image.
+            turned = [turned[0], -turned[1], -turned[2], turned[3]];
+        }
         let frame = Fields::default()
             .with("translation", vector(at.translation / scale))
-            .with("rotation", numbers(at.rotation.to_array()))
+            .with("rotation", numbers(turned))
             .with("extensions", extensions);
         let index = self.nodes.len();
         self.nodes.push(frame.value());
@@ -86,6 +94,30 @@ impl Writer<'_> {
             open.extend(self.world.get::<Children>(entity).into_iter().flatten());
         }
         found
+    }
+}
+
+/// Tells what of a joint is not in the file, or comes back as something else.
+fn tell_unwritten(joint: &RawJoint, entity: EntityRef, left_out: &mut LeftOut) {
+    if joint.enabled != JointEnabled::Enabled {
+        left_out.tell(entity, "its joint is not enabled, and comes back enabled");
+    }
+    if joint.softness != SpringCoefficients::joint_defaults() {
+        left_out.tell(entity, "the softness of its joint is not written");
+    }
+    let axes = joint.motor_axes.bits() & !joint.locked_axes.bits();
+    let motors = joint.motors.iter().enumerate();
+    let mut motors = motors.filter(|(axis, _)| axes & (1 << axis) != 0);
+    if motors.any(|(_, motor)| comes_back_as_element(motor)) {
+        left_out.tell(entity, "a motor of its joint comes back as an element");
+    }
+}
+
+/// Whether a motor is read as an element, as [`is_ours`](super::soft::is_ours) has it of drives.
+fn comes_back_as_element(motor: &JointMotor) -> bool {
+    match motor.model {
+        MotorModel::ForceBased => true,
+        MotorModel::AccelerationBased => motor.stiffness > 0.0 && motor.target_vel == 0.0,
     }
 }
 

@@ -4,7 +4,7 @@
 use super::carry::{LoadedBody, LoadedCollider, LoadedJoint, Mesh, Shape};
 use super::json::Told;
 use super::physics::{self, NodePhysics, Shared, Source};
-use super::{element, filters};
+use super::{element, ends, filters};
 use bevy::asset::LoadContext;
 use bevy::gltf::extensions::{ErasedGltfExtensionHandler, GltfExtensionHandler};
 use bevy::gltf::{GltfLoaderSettings, gltf as bevy_gltf};
@@ -233,7 +233,10 @@ impl Handler {
             };
             let mut entity = world.entity_mut(entity);
             if let Some(motion) = &node.physics.motion {
-                entity.insert(LoadedBody(Arc::new(motion.clone())));
+                entity.insert(LoadedBody {
+                    motion: Arc::new(motion.clone()),
+                    place: format!("{}: {}", file.path, node.place),
+                });
             }
             if let Some(collider) = &node.physics.collider
                 && let Some(shape) = self.shape(collider.source, shared, node, told, &mut hulls)
@@ -291,6 +294,7 @@ impl Handler {
             if let Some(value) = &node.element {
                 let find = |index: usize| entities.get(&index).copied();
                 element::insert(value, &node.place, told, find, &mut entity);
+                ends::mark(&mut entity);
             }
         }
     }

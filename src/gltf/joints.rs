@@ -2,7 +2,7 @@
 //! for drives in acceleration mode without stiffness or with a target velocity, which become Rapier motors.
 
 use super::carry::LoadedJoint;
-use super::expand::owner;
+use super::expand::{anchor, owner};
 use super::physics_joint::{Drive, Limit};
 use super::place::place;
 use super::soft::{self, Frames};
@@ -30,7 +30,8 @@ pub(super) fn add(world: &mut World, node: Entity, joint: &LoadedJoint) {
         return told("one of its nodes is nowhere; left out");
     };
     let bodies = [node, other].map(|end| owner(world, end));
-    if bodies == [None, None] {
+    let moves = |body: &Entity| world.get::<RigidBody>(*body) != Some(&RigidBody::Fixed);
+    if !bodies.iter().flatten().any(moves) {
         return told("neither of its nodes has a motion; left out");
     }
     if bodies[0] == bodies[1] {
@@ -90,22 +91,6 @@ pub(super) fn add(world: &mut World, node: Entity, joint: &LoadedJoint) {
             ChildOf(body_b),
         ));
     }
-}
-
-/// Returns the body to use where a node of the joint has none: the node itself or its nearest ancestor with a
-/// collider, else the node. That entity becomes a fixed body.
-fn anchor(world: &mut World, node: Entity) -> Entity {
-    let mut current = Some(node);
-    let mut found = node;
-    while let Some(here) = current {
-        if world.get::<Collider>(here).is_some() {
-            found = here;
-            break;
-        }
-        current = world.get::<ChildOf>(here).map(ChildOf::parent);
-    }
-    world.entity_mut(found).insert(RigidBody::Fixed);
-    found
 }
 
 /// Applies a rigid limit to a joint. Returns whether any of it takes effect, and a message if part of it does not.

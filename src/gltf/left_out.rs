@@ -1,6 +1,7 @@
 //! Collects what an exported file cannot hold, with the entity and the component.
 
-use super::export_element::ends;
+use super::ends::ends;
+use crate::SpringLoad;
 use bevy::ecs::entity_disabling::Disabled;
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
@@ -33,10 +34,19 @@ impl LeftOut {
             RigidBodyDisabled,
             Damping,
             Dominance,
+            Ccd,
+            SoftCcd,
+            Sleeping,
+            AdditionalSolverIterations,
+            TransformInterpolation,
             ColliderDisabled,
             SolverGroups,
-            ContactSkin
+            ContactSkin,
+            ActiveHooks,
+            ContactForceEventThreshold,
+            KinematicCharacterController
         );
+        self.tell_values(entity);
         #[cfg(feature = "visual")]
         {
             use crate::visual::TorsionCoil;
@@ -50,6 +60,30 @@ impl LeftOut {
                 entity,
                 "RigidBody::KinematicPositionBased comes back as KinematicVelocityBased",
             );
+        }
+    }
+
+    /// Adds a sentence for each component that is lost with some values only.
+    fn tell_values(&mut self, entity: EntityRef) {
+        // A trigger comes back with these two.
+        let of_trigger = entity.contains::<Sensor>();
+        let events = entity.get::<ActiveEvents>();
+        if events.is_some_and(|e| !of_trigger || *e != ActiveEvents::COLLISION_EVENTS) {
+            self.tell(entity, "ActiveEvents is not written");
+        }
+        let types = entity.get::<ActiveCollisionTypes>();
+        if types.is_some_and(|t| !of_trigger || *t != ActiveCollisionTypes::all()) {
+            self.tell(entity, "ActiveCollisionTypes is not written");
+        }
+        // The share of the elements is not lost: they come back.
+        let load = entity.get::<SpringLoad>();
+        let force = load.map(|load| load.user).or(entity.get().copied());
+        if force.is_some_and(|force| force != ExternalForce::default()) {
+            self.tell(entity, "ExternalForce is not written");
+        }
+        let impulse = entity.get::<ExternalImpulse>();
+        if impulse.is_some_and(|impulse| *impulse != ExternalImpulse::default()) {
+            self.tell(entity, "ExternalImpulse is not written");
         }
     }
 

@@ -1,14 +1,15 @@
 //! Reads springs, bodies and joints from glTF files, and writes them.
 //!
 //! [`handler`] is called by Bevy's loader. [`physics`] and [`element`] (with [`companions`] and [`looks`]) read the
-//! JSON through [`json`], which reports errors. Elements go into the scene as components. The components of [`carry`]
-//! hold what is meant for Rapier, and [`expand`] passes it on once the scene is in the world, with [`shapes`],
-//! [`mass`], [`filters`], [`joints`], and [`soft`] for soft limits and drives of joints. [`export`] writes files;
-//! [`left_out`] collects what a file cannot hold.
+//! JSON through [`json`], which reports errors. Elements go into the scene as components; [`ends`] lists their ends. The
+//! components of [`carry`] hold what is meant for Rapier, and [`expand`] passes it on once the scene is in the world,
+//! with [`place`], [`shapes`], [`mass`], [`filters`], [`joints`], and [`soft`] for soft limits and drives of joints.
+//! [`export`] writes files; [`left_out`] collects what a file cannot hold.
 
 mod carry;
 mod companions;
 mod element;
+mod ends;
 mod expand;
 mod export;
 mod export_element;
@@ -64,6 +65,7 @@ impl Plugin for CoiloverGltfPlugin {
             .register_type::<Disabled>()
             .register_type::<carry::LoadedBody>()
             .register_type::<carry::LoadedCollider>()
+            .register_type::<carry::LoadedEnd>()
             .register_type::<carry::LoadedJoint>();
         #[cfg(feature = "visual")]
         app.register_type::<crate::Coil>()
