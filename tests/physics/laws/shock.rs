@@ -305,3 +305,35 @@ fn a_strong_damper_with_a_law_stops_a_body_as_one_without_does() {
         }
     }
 }
+
+#[test]
+fn two_clutches_side_by_side_slip_and_hold_like_one() {
+    for (damping, most) in [(1e3, 6.0), (1e6, 6.0), (1e4, 600.0), (1e6, 6e4)] {
+        let (mut lab, wall, cart) = leaving();
+        let clutches = [0, 1].map(|_| {
+            let damper = Damper::new(wall, cart).with_damping(0.5 * damping);
+            lab.spawn((damper, MaxForce(0.5 * most)))
+        });
+        for tick in 1..=30 {
+            lab.tick();
+            let speed = f64::from(lab.velocity(cart).x);
+            let slipping = 1.0 - f64::from(most) / 60.0 * f64::from(tick);
+            println!("{damping} N s/m, {most} N: {speed:.6} m/s after {tick} ticks");
+            // At a strong clutch the cart may swing back a little, but it is not thrown.
+            assert!(speed <= 1.0 && speed > -0.2, "{damping} {most}: {speed}");
+            if slipping > f64::from(most / damping) + 0.1 {
+                assert!(
+                    (speed - slipping).abs() < 0.01,
+                    "{damping} {most}: {speed} {slipping}"
+                );
+            }
+        }
+        let heat: f32 = clutches
+            .map(|e| lab.readout(e).dissipated_energy)
+            .iter()
+            .sum();
+        assert!((heat - 0.5).abs() < 0.01, "{damping} {most}: {heat} J");
+        let speed = lab.velocity(cart).x;
+        assert!(speed.abs() < 0.02, "{damping} {most}: {speed} m/s");
+    }
+}
