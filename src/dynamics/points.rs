@@ -366,7 +366,12 @@ impl Motion for Points {
     }
 
     fn extrapolate(&mut self, slot: usize) {
-        for (fine, coarse) in self.points.iter_mut().zip(&self.saved[slot].points) {
+        let saved = &self.saved[slot];
+        for (fine, coarse) in self.exchanged.iter_mut().zip(&saved.exchanged) {
+            fine.heat += (fine.heat - coarse.heat) / 3.0;
+            fine.work += (fine.work - coarse.work) / 3.0;
+        }
+        for (fine, coarse) in self.points.iter_mut().zip(&saved.points) {
             fine.position += (fine.position - coarse.position) / 3.0;
             fine.velocity += (fine.velocity - coarse.velocity) / 3.0;
             fine.given += (fine.given - coarse.given) / 3.0;
