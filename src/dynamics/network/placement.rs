@@ -40,9 +40,13 @@ pub(in crate::dynamics) fn braking(element: &Element, length: f64, rate: f64) ->
 /// although each damper alone would not.
 pub(in crate::dynamics) const REVERSES: f64 = 2.0;
 
+/// Ratio of the other dampers at a body to one of them, above which that one is too weak to throw the body back. Placed by them,
+/// it would only become less exact.
+const MANY: f64 = 32.0;
+
 /// c h/m that places a damper in the step, where its own is `own` and that of the other dampers at its ends is `others`.
 pub(in crate::dynamics) fn together(own: f64, others: f64) -> f64 {
-    if own + others > REVERSES {
+    if own + others > REVERSES && others < MANY * own {
         own + others
     } else {
         own
