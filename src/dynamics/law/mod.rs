@@ -94,6 +94,17 @@ pub(crate) struct Elastic {
     pub energy: f64,
 }
 
+impl Elastic {
+    /// That of a linear spring at a stretch (m).
+    pub(crate) fn linear(stiffness: f64, stretch: f64) -> Self {
+        Self {
+            force: stiffness * stretch,
+            stiffness,
+            energy: 0.5 * stiffness * stretch * stretch,
+        }
+    }
+}
+
 impl SpringForce {
     fn at(&self, x: f64) -> Elastic {
         let (force, stiffness, energy) = match self {

@@ -80,7 +80,7 @@ fn a_buffer_pushes_and_lets_go() {
 /// A strut that only pushes, far beyond its limit at first. As it lets its cart go, its damper takes the excess before it brakes.
 #[test]
 fn a_strut_with_a_limit_and_a_damper_gives_a_cart_all_of_its_push() {
-    let (stiffness, damping, most) = (1e4, 300.0, 50.0);
+    let (stiffness, damping, most) = (1e4_f64, 300.0_f64, 50.0_f64);
     // Reference: ẍ = −clamp(k x + c ẋ, −50 N, 0) in steps of 10 µs.
     let (mut x, mut v) = (-0.2_f64, 0.0_f64);
     for _ in 0..50_000 {
