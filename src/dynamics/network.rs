@@ -22,8 +22,8 @@ use bevy::math::DVec3;
 mod bounds;
 mod kinked;
 mod placement;
+mod slipping;
 
-use placement::braking;
 pub(super) use placement::{REVERSES, damper_placement, placement, settling, steep, together};
 
 /// (ω h)² of the stiffest mode up to which θ makes its frequency exact.
@@ -31,7 +31,7 @@ const PLACED: f64 = 9.0;
 
 /// (ω h)² up to which a law's slope at the present length is used, instead of the greatest slope ahead.
 const SMOOTH: f64 = 1.0;
-/// c h/m up to which the slope of a damping law is used, instead of [`steep`] or [`braking`].
+/// c h/m up to which the slope of a damping law is used, instead of [`steep`].
 const STEEP: f64 = 0.5;
 
 /// The coupled kick of a component, and its memory, which is kept from step to step.
@@ -115,6 +115,10 @@ impl Network {
             row.centripetal = row.before.turning + row.before.arms;
         }
         self.solve(bodies, budget);
+        if self.hold_slipping(elements, step) {
+            self.system.prepare();
+            self.solve(bodies, budget);
+        }
         let mut trial = std::mem::take(&mut self.trial);
         trial.clear();
         trial.extend_from_slice(bodies);
@@ -245,11 +249,6 @@ impl Network {
             let mut c = drag.slope;
             if c * step * line.inverse_mass > STEEP {
                 c = steep(drag, rate);
-            } else if element.law.is_some() {
-                let braking = braking(element, line.length, rate);
-                if braking * step * line.inverse_mass + others > STEEP {
-                    c = braking;
-                }
             }
             c += settle * k;
             let tension = elastic.force + drag.force + settle * k * rate;

@@ -25,8 +25,8 @@ pub(in crate::dynamics) fn steep(drag: Drag, rate: f64) -> f64 {
 }
 
 /// Damping with which an element stops its ends, N s/m: the slope of its damper, or the slope of the secant from zero if that is
-/// steeper. A force limit makes the slope zero, but must not throw the ends back. Only what is left of the damper's force against
-/// the spring counts: where the two cancel, as in a rope that goes slack, nothing is stopped.
+/// steeper, as where a limit makes the slope zero. Only what is left of the damper's force against the spring counts: where the
+/// two cancel, as in a rope that goes slack, nothing is stopped.
 pub(in crate::dynamics) fn braking(element: &Element, length: f64, rate: f64) -> f64 {
     let drag = element.drag(length, rate);
     if element.law.is_none() || rate == 0.0 {
