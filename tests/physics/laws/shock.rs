@@ -361,6 +361,9 @@ fn two_clutches_side_by_side_slip_under_a_load_beyond_their_limit_and_hold_one_b
         println!(
             "clutches of 10 N, load {load} N, {speed} m/s: {now:.4} m/s, by theory {wanted:.4}"
         );
-        assert!((now - wanted).abs() < 0.15, "{load} {speed}: {now} {wanted}");
+        assert!(
+            (now - wanted).abs() < 0.15,
+            "{load} {speed}: {now} {wanted}"
+        );
     }
 }
