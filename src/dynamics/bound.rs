@@ -175,6 +175,9 @@ impl Bound {
             .min(1.0)
             .sqrt();
         for body in bodies {
+            // A body has no share in the motion along an axis that it cannot move along.
+            let free = body.inverse_mass.cmpgt(DVec3::ZERO);
+            let common = DVec3::select(free, common, DVec3::ZERO);
             let mut slowed = *body;
             slowed.velocity -= common;
             body.slow_to(&slowed, share);
@@ -246,4 +249,36 @@ fn power(elements: &[Element], bodies: &[Body]) -> f64 {
         }
     }
     sum
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::{element, point};
+    use super::*;
+
+    #[test]
+    fn what_is_slowed_stays_on_its_rail_and_keeps_its_momentum() {
+        let mut cart = point(1.0, DVec3::ZERO, DVec3::ZERO);
+        cart.inverse_mass.x = 0.0;
+        cart.velocity = DVec3::Y * 2.0;
+        let mut load = point(1.0, DVec3::X, DVec3::ZERO);
+        load.velocity = DVec3::new(3.0, -2.0, 0.0);
+        let mut bodies = [cart, load];
+        let [a, b] = [0, 1].map(|index| End::Body {
+            index,
+            arm: DVec3::ZERO,
+        });
+        let elements = [element(a, b, 10.0, 0.0, 1.0)];
+        let mut bound = Bound::default();
+        bound.begin(&elements, &bodies, false);
+        // The motion against each other is more than what the step began with.
+        bodies[0].velocity.y = 4.0;
+        bodies[1].velocity.y = -4.0;
+        bound.slow(&elements, &mut bodies, 0.01);
+        let [cart, load] = bodies.map(|body| body.velocity);
+        assert_eq!(cart.x, 0.0, "{cart}");
+        assert!((load.x - 3.0).abs() < 1e-12, "{load}");
+        assert!((cart.y + load.y).abs() < 1e-12, "{cart} {load}");
+        assert!(cart.y > 0.0 && cart.y < 3.0, "{cart}");
+    }
 }

@@ -324,14 +324,7 @@ impl Element {
     pub(crate) fn elastic(&self, length: f64) -> Elastic {
         match &self.law {
             Some(law) => law.elastic(length, self.rest_length),
-            None => {
-                let stretch = length - self.rest_length;
-                Elastic {
-                    force: self.stiffness * stretch,
-                    stiffness: self.stiffness,
-                    energy: 0.5 * self.stiffness * stretch * stretch,
-                }
-            }
+            None => Elastic::linear(self.stiffness, length - self.rest_length),
         }
     }
 

@@ -60,14 +60,11 @@ impl Guard {
 
     /// Kinetic and stored energy, and potential energy in the external forces, `time` seconds after the start, J.
     fn energy_of(&self, element: &Element, bodies: &[Body], time: f64) -> Option<f64> {
-        let mass = |inverse: DVec3| {
-            DVec3::select(inverse.cmpgt(DVec3::ZERO), inverse.recip(), DVec3::ZERO)
-        };
         let line = element.line(bodies)?;
         let stretch = line.length - element.rest_length;
         let mut sum = 0.5 * element.stiffness * stretch * stretch;
         for body in bodies {
-            let (mass, velocity) = (mass(body.inverse_mass), body.velocity - self.frame);
+            let (mass, velocity) = (body.mass(), body.velocity - self.frame);
             let place = body.position - time * self.frame;
             sum += 0.5 * (mass * velocity).dot(velocity) - (mass * body.acceleration).dot(place);
             sum += body.turning();

@@ -15,15 +15,16 @@ use super::body::{Body, Spin};
 use super::element::{Element, End};
 use super::kick;
 use super::line::{Line, Motion};
-use super::resolution::predicted_travel;
 use super::strut::{NOBODY, Strut, Twists};
 use super::system::{Effort, System};
 use bevy::math::DVec3;
 
+mod bounds;
 mod kinked;
 mod placement;
+mod slipping;
 
-pub(super) use placement::{damper_placement, placement, settling, steep};
+pub(super) use placement::{REVERSES, damper_placement, placement, settling, steep, together};
 
 /// (ω h)² of the stiffest mode up to which θ makes its frequency exact.
 const PLACED: f64 = 9.0;
@@ -44,7 +45,7 @@ pub(crate) struct Network {
     trial: Vec<Body>,
     /// For each body, the stiffness of its elements over its mass, 1/s²: the Gershgorin bound on ω².
     stiffness: Vec<f64>,
-    /// For each body, the damping of its elements over its mass, 1/s.
+    /// For each body, the damping of its elements over its mass, 1/s: the bound on 2γ.
     damping: Vec<f64>,
     /// Results of the solves since the last [`Network::take_effort`].
     effort: Option<Effort>,
@@ -68,33 +69,11 @@ struct Row {
     drag: f64,
     /// Damping force per relative acceleration along the line, N per m/s².
     damping: f64,
+    /// Its damping as it counts in [`Network::damping`], N s/m.
+    braking: f64,
 }
 
 impl Network {
-    /// Returns bounds on (ω h)² of the stiffest mode and on 2γh of the most damped one.
-    pub(crate) fn bounds(
-        &mut self,
-        elements: &[Element],
-        bodies: &[Body],
-        step: f64,
-    ) -> (f64, f64) {
-        self.begin_bounds(bodies.len());
-        for element in elements {
-            if let Some(line) = element.line(bodies) {
-                // The bounds of a linear element do not depend on its speed.
-                let (rate, predicted_travel) = match element.law {
-                    Some(_) => {
-                        let motion = line.motion(element, bodies, step);
-                        (motion.axial, predicted_travel(&motion, step))
-                    }
-                    None => (0.0, [0.0; 2]),
-                };
-                self.add_bounds(element, &line, rate, &predicted_travel);
-            }
-        }
-        self.end_bounds(step)
-    }
-
     /// Fills the rows with the elements' lines and their motion.
     fn measure(&mut self, elements: &[Element], bodies: &[Body], step: f64) {
         self.rows.clear();
@@ -111,51 +90,9 @@ impl Network {
                     elastic: 0.0,
                     drag: 0.0,
                     damping: 0.0,
+                    braking: 0.0,
                 })
             }));
-    }
-
-    fn bounds_of_rows(&mut self, elements: &[Element], bodies: usize, step: f64) -> (f64, f64) {
-        self.begin_bounds(bodies);
-        let rows = std::mem::take(&mut self.rows);
-        for row in &rows {
-            let rate = row.before.axial;
-            self.add_bounds(&elements[row.element], &row.line, rate, &[step * rate]);
-        }
-        self.rows = rows;
-        self.end_bounds(step)
-    }
-
-    fn begin_bounds(&mut self, bodies: usize) {
-        for sums in [&mut self.stiffness, &mut self.damping] {
-            sums.clear();
-            sums.resize(bodies, 0.0);
-        }
-    }
-
-    fn add_bounds(&mut self, element: &Element, line: &Line, rate: f64, predicted_travel: &[f64]) {
-        let ahead = |way: &f64| element.stiffness_ahead(line.length, *way);
-        let stiffness = predicted_travel.iter().map(ahead).fold(0.0, f64::max);
-        let damping = element.drag(line.length, rate).slope;
-        let w = line
-            .holds
-            .each_ref()
-            .map(|h| h.inverse_mass_along(line.direction).sqrt());
-        for (end, hold) in line.holds.iter().enumerate() {
-            if let Some(body) = hold.body {
-                let share = w[end] * (w[0] + w[1]);
-                self.stiffness[body] += stiffness * share;
-                self.damping[body] += damping * share;
-            }
-        }
-    }
-
-    fn end_bounds(&self, step: f64) -> (f64, f64) {
-        let largest = |sums: &[f64]| sums.iter().copied().fold(0.0, f64::max);
-        (
-            step * step * largest(&self.stiffness),
-            step * largest(&self.damping),
-        )
     }
 
     /// Applies the kick after the first half drift: all elements and external forces together. `kinks` says whether the kick
@@ -178,6 +115,10 @@ impl Network {
             row.centripetal = row.before.turning + row.before.arms;
         }
         self.solve(bodies, budget);
+        if self.hold_slipping(elements, step) {
+            self.system.prepare();
+            self.solve(bodies, budget);
+        }
         let mut trial = std::mem::take(&mut self.trial);
         trial.clear();
         trial.extend_from_slice(bodies);
@@ -304,13 +245,15 @@ impl Network {
                 .filter_map(|hold| Some(self.stiffness[hold.body?]))
                 .fold(0.0, f64::max);
             let settle = settling(h2 * stiffest) * step;
+            let others = step * bounds::of_others(&self.damping, line, row.braking);
             let mut c = drag.slope;
             if c * step * line.inverse_mass > STEEP {
                 c = steep(drag, rate);
             }
             c += settle * k;
             let tension = elastic.force + drag.force + settle * k * rate;
-            let damping = damper_placement(c * step * line.inverse_mass) * step * c;
+            let own = c * step * line.inverse_mass;
+            let damping = damper_placement(together(own, others)) * step * c;
             let across = across(element, line, tension);
             let freest: f64 = line
                 .holds

@@ -76,12 +76,19 @@ impl<'a> NonlinearPair<'a> {
     }
 
     /// Linear damping that the law has at a length and rate, if damping is light there. It is zero where a limit or a slack rope
-    /// cuts the damper.
+    /// cuts the damper or a part of it.
     fn light_damping(&self, length: f64, rate: f64, step: f64) -> Option<f64> {
         let drag = self.law.drag(length, self.rest_length(), rate);
         let is_light = steep(drag, rate) * self.pair.inverse_mass * step < LIGHT;
         let linear = self.law.drag.linear().unwrap_or(0.0);
-        is_light.then(|| drag.slope.min(linear))
+        let is_whole = drag.force.abs() >= 0.999 * (linear * rate).abs();
+        is_light.then(|| {
+            if is_whole {
+                drag.slope.min(linear)
+            } else {
+                0.0
+            }
+        })
     }
 
     /// Whether the law has no kink between two lengths.

@@ -131,6 +131,12 @@ impl Wire {
         self.ends.map(|end| &points[end as usize])
     }
 
+    /// Shares of its stiffness and damping that count at its two ends, 1/kg.
+    fn shares(&self, ends: [&Point; 2]) -> [f64; 2] {
+        let w = ends.map(|end| end.inverse_mass.sqrt());
+        w.map(|own| own * (w[0] + w[1]))
+    }
+
     /// Vector from end A to end B, or the last known one if the ends coincide.
     fn aimed(&self, [a, b]: [&Point; 2]) -> DVec3 {
         let d = b.position - a.position;
@@ -264,10 +270,8 @@ impl Points {
             sums.resize(self.points.len(), 0.0);
         }
         for wire in &self.wires {
-            let ends = wire.of(&self.points);
-            let w = ends.map(|end| end.inverse_mass.sqrt());
-            for (end, w_end) in wire.ends.iter().zip(w) {
-                let share = w_end * (w[0] + w[1]);
+            let shares = wire.shares(wire.of(&self.points));
+            for (end, share) in wire.ends.iter().zip(shares) {
                 self.stiffness[*end as usize] += wire.stiffness * share;
                 self.damping[*end as usize] += wire.damping * share;
             }
@@ -362,7 +366,12 @@ impl Motion for Points {
     }
 
     fn extrapolate(&mut self, slot: usize) {
-        for (fine, coarse) in self.points.iter_mut().zip(&self.saved[slot].points) {
+        let saved = &self.saved[slot];
+        for (fine, coarse) in self.exchanged.iter_mut().zip(&saved.exchanged) {
+            fine.heat += (fine.heat - coarse.heat) / 3.0;
+            fine.work += (fine.work - coarse.work) / 3.0;
+        }
+        for (fine, coarse) in self.points.iter_mut().zip(&saved.points) {
             fine.position += (fine.position - coarse.position) / 3.0;
             fine.velocity += (fine.velocity - coarse.velocity) / 3.0;
             fine.given += (fine.given - coarse.given) / 3.0;

@@ -338,7 +338,12 @@ impl Motion for Component {
     }
 
     fn extrapolate(&mut self, slot: usize) {
-        for (fine, coarse) in self.bodies.iter_mut().zip(&self.memory.saved[slot].bodies) {
+        let saved = &self.memory.saved[slot];
+        for (fine, coarse) in self.elements.iter_mut().zip(&saved.elements) {
+            fine.heat += (fine.heat - coarse.heat) / 3.0;
+            fine.work += (fine.work - coarse.work) / 3.0;
+        }
+        for (fine, coarse) in self.bodies.iter_mut().zip(&saved.bodies) {
             fine.position += (fine.position - coarse.position) / 3.0;
             fine.velocity += (fine.velocity - coarse.velocity) / 3.0;
             fine.given.0 += (fine.given.0 - coarse.given.0) / 3.0;

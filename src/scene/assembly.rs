@@ -182,7 +182,12 @@ impl Assembly {
             self.component.perturbed |= take!(row.flags, ElementFlags::REFITTED);
             disturbed |= row.has(ElementFlags::CHANGED) || has_moved;
             let ends = [0, 1].map(|end| step.end(row, end, bodies, sight));
-            if let Some(element) = element(row, ends, &self.start) {
+            let element = element(row, ends, &self.start);
+            let inert = element.is_none();
+            // An element that begins to act brings its energy with it.
+            self.component.perturbed |= row.has(ElementFlags::INERT) != inert;
+            row.flags.set(ElementFlags::INERT, inert);
+            if let Some(element) = element {
                 if has_moved {
                     row.account_for_leap(element.distance(&self.start).0);
                 }

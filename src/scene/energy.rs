@@ -12,15 +12,7 @@ impl ElementRow {
         let rest_length = f64::from(self.numbers.rest_length.unwrap_or(0.0));
         match &self.law {
             Some(law) => law.elastic(length, rest_length),
-            None => {
-                let stiffness = f64::from(self.numbers.stiffness);
-                let stretch = length - rest_length;
-                Elastic {
-                    force: stiffness * stretch,
-                    stiffness,
-                    energy: 0.5 * stiffness * stretch * stretch,
-                }
-            }
+            None => Elastic::linear(f64::from(self.numbers.stiffness), length - rest_length),
         }
     }
 

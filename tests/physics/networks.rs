@@ -240,3 +240,49 @@ fn an_inert_neighbour_stops_nothing() {
     assert!(lab.app.world().get::<SpringFault>(inert).is_some());
     assert!(lab.velocity(c).x < -0.1 && lab.velocity(a).length() < 1e-6);
 }
+
+#[test]
+fn ten_dampers_side_by_side_stop_a_body_as_one_does() {
+    // c h/m is 10, and 1 for each of ten dampers. Where anchors are off the centre of mass, dampers could turn the body.
+    for (anchor, count) in [(0.0, 1), (0.0, 10), (0.2, 1), (0.2, 10)] {
+        let mut lab = Lab::weightless();
+        let hook = lab.point(Vec3::ZERO);
+        let cart = lab.moving(body(1.0, Vec3::X * 2.0), Velocity::linear(Vec3::X));
+        for _ in 0..count {
+            let damper = Damper::new(hook, cart).with_damping(10.0 / DT / count as f32);
+            lab.spawn((damper, Anchors::new(Vec3::ZERO, Vec3::X * anchor)));
+        }
+        for tick in 0..20 {
+            lab.tick();
+            let speed = lab.velocity(cart).x;
+            assert!(
+                speed > -1e-3 && speed < 1e-3,
+                "{count} dampers at {anchor} m: {speed} m/s in tick {tick}"
+            );
+        }
+        let way = lab.position(cart).x - 2.0;
+        println!("{count} dampers at {anchor} m: stopped after {way:.5} m");
+        assert!(way > 0.0 && way < 0.51 * DT, "{count} {anchor}: {way} m");
+    }
+}
+
+#[test]
+fn a_spring_that_begins_to_act_in_flight_pushes_with_all_its_force() {
+    // Two of three bodies are at the same place, so the spring between them begins to act only after the other has parted them.
+    let mut lab = Lab::weightless();
+    let [a, b, c] = [0.0, 0.0, 2.0].map(|x| {
+        let flight = Velocity::linear(Vec3::Y * 3.0);
+        lab.moving(body(1.0, Vec3::X * x), flight)
+    });
+    for (a, b) in [(a, b), (b, c)] {
+        lab.spawn(Spring::new(a, b).with_stiffness(10.0).with_rest_length(1.0));
+    }
+    let momentum = |lab: &Lab| -> Vec3 { [a, b, c].iter().map(|e| lab.velocity(*e)).sum() };
+    let first = momentum(&lab);
+    lab.run(0.25);
+    // 10 N push body A at first, and 3 N at the end of this time.
+    let speed = lab.velocity(a).x;
+    println!("a spring that begins to act in flight: {speed:.2} m/s after 0.25 s");
+    assert!(speed < -1.0 && speed > -2.5, "{speed} m/s");
+    assert!(momentum(&lab).distance(first) < 1e-3);
+}

@@ -34,6 +34,31 @@ pub(crate) struct Drag {
     pub slope: f64,
 }
 
+impl Drag {
+    /// What is left of it at a rate if the sum of spring and damper has a least and a greatest value. The limits apply to the
+    /// sum, as in a slipping clutch. `spring` is the tension of the spring within them, and `uncut` that without them: the
+    /// damper first takes what is beyond the limit, and has no effect if that is more than its own force. Clamping is
+    /// monotone, so the force never adds energy.
+    pub(super) fn within(
+        self,
+        [least, greatest]: [f64; 2],
+        rate: f64,
+        [spring, uncut]: [f64; 2],
+    ) -> Self {
+        let total = uncut + self.force;
+        let is_free = total >= least && total <= greatest;
+        if is_free && uncut == spring {
+            return self;
+        }
+        let force = total.clamp(least, greatest) - spring;
+        if force * rate < 0.0 {
+            return Self::default();
+        }
+        let slope = if is_free { self.slope } else { 0.0 };
+        Self { force, slope }
+    }
+}
+
 impl DragLaw {
     pub(crate) fn at(&self, rate: f64) -> Drag {
         let (force, slope) = match self {

@@ -94,6 +94,17 @@ pub(crate) struct Elastic {
     pub energy: f64,
 }
 
+impl Elastic {
+    /// That of a linear spring at a stretch (m).
+    pub(crate) fn linear(stiffness: f64, stretch: f64) -> Self {
+        Self {
+            force: stiffness * stretch,
+            stiffness,
+            energy: 0.5 * stiffness * stretch * stretch,
+        }
+    }
+}
+
 impl SpringForce {
     fn at(&self, x: f64) -> Elastic {
         let (force, stiffness, energy) = match self {
@@ -313,14 +324,8 @@ impl Law {
             } else {
                 self.most
             };
-            // The limit applies to the sum, as in a slipping clutch. If the spring alone exceeds it by more than the damper's
-            // force, the damper has no effect. Clamping is monotone, so the damping force never adds energy.
-            let total = self.uncut(length - rest_length, spring) + sum.force;
-            if total < least || total > greatest {
-                let clamped = total.clamp(least, greatest) - spring;
-                let force = if clamped * rate < 0.0 { 0.0 } else { clamped };
-                sum = Drag { force, slope: 0.0 };
-            }
+            let uncut = self.uncut(length - rest_length, spring);
+            sum = sum.within([least, greatest], rate, [spring, uncut]);
         }
         for (stop, sign) in self.stops(length) {
             if stop.force <= 0.0 {

@@ -143,6 +143,44 @@ fn ropes_never_push_and_buffers_never_pull() {
 }
 
 #[test]
+fn spring_and_damper_together_are_the_sum_that_the_limits_leave() {
+    for (limits, most) in [
+        ([-12.0, 12.0], 12.0),
+        ([-12.0, 0.0], 12.0),
+        ([-5.0, 5.0], 5.0),
+    ] {
+        let law = Law::new(Recipe {
+            limits,
+            most,
+            ..recipe([40.0, 0.0, 0.0], [40.0, 0.0, 0.0])
+        });
+        for i in 1..60 {
+            for j in -40..=40 {
+                let (length, rate) = (0.05 * f64::from(i), 0.5 * f64::from(j));
+                let stretch = length - 1.0;
+                if limits[1] == 0.0 && stretch >= 0.0 {
+                    // Slack.
+                    continue;
+                }
+                let wanted = (40.0 * stretch + 3.0 * rate).clamp(limits[0], limits[1]);
+                let spring = law.elastic(length, 1.0).force;
+                let total = spring + law.drag(length, 1.0, rate).force;
+                // A damper only takes energy, so it does not bring back what the limit took from the spring.
+                let wanted = if (wanted - spring) * rate < 0.0 {
+                    spring
+                } else {
+                    wanted
+                };
+                assert!(
+                    (total - wanted).abs() < 1e-9,
+                    "{limits:?}: {total} N, not {wanted} N, at {length} m and {rate} m/s"
+                );
+            }
+        }
+    }
+}
+
+#[test]
 fn a_spring_that_is_beyond_its_limit_everywhere_has_the_limit() {
     let endless = f64::INFINITY;
     for (preload, limits, held) in [

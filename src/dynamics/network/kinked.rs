@@ -12,7 +12,6 @@
 use super::{Network, Row};
 use crate::dynamics::body::Body;
 use crate::dynamics::element::Element;
-use crate::dynamics::line::Line;
 use bevy::math::DVec3;
 
 /// Greatest number of corrections.
@@ -60,27 +59,31 @@ impl Row {
     /// or if corrections may not converge.
     fn mean_force(&self, element: &Element, gained: DVec3, step: f64) -> Option<f64> {
         let law = element.law.as_ref().filter(|law| law.is_bent())?;
-        let before = self.before.axial * self.line.direction + self.before.lateral;
-        let arms = step * step / 8.0 * self.before.arms;
-        let from = self.line.length_at(-0.5 * step * before) + arms;
-        let to = self.line.length_at(0.5 * step * (before + step * gained)) + arms;
+        let [from, to] = self.lengths(gained, step);
         let stiffest = law.stiffest([from, to], element.rest_length);
         if stiffest * self.line.inverse_mass * step * step > CONVERGES {
             return None;
         }
         Some(law.mean_force([from, to], element.rest_length))
     }
-}
 
-impl Line {
-    /// Length if end B is displaced relative to end A, m.
-    fn length_at(&self, by: DVec3) -> f64 {
-        if self.guided {
-            self.length + by.dot(self.direction)
-        } else {
-            (self.length * self.direction + by)
-                .length()
-                .copysign(self.length)
+    /// Lengths at the start and the end of the step for a relative acceleration of the ends, m.
+    fn lengths(&self, gained: DVec3, step: f64) -> [f64; 2] {
+        let Self { line, before, .. } = self;
+        let arms = step * step / 8.0 * before.arms;
+        if line.guided {
+            // The direction of a twist between tilted ends is no unit vector, so no rate along it is the rate of the twist.
+            let after = before.axial + step * gained.dot(line.direction);
+            return [-before.axial, after].map(|rate| line.length + 0.5 * step * rate + arms);
         }
+        let before = before.axial * line.direction + before.lateral;
+        let displaced = |by: DVec3| {
+            let apart = line.length * line.direction + by;
+            apart.length().copysign(line.length) + arms
+        };
+        [
+            displaced(-0.5 * step * before),
+            displaced(0.5 * step * (before + step * gained)),
+        ]
     }
 }

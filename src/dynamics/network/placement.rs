@@ -1,6 +1,7 @@
 //! The times within a step at which stiffness and damping act.
 
 use super::PLACED;
+use crate::dynamics::element::Element;
 use crate::dynamics::law::Drag;
 use crate::dynamics::poles::{RESOLVED_PHASE, UNRESOLVED_DECAY};
 use crate::functions::{cos, exp_m1};
@@ -21,6 +22,35 @@ pub(in crate::dynamics) fn steep(drag: Drag, rate: f64) -> f64 {
         return drag.slope;
     }
     drag.slope.max(drag.force / rate)
+}
+
+/// Damping with which an element stops its ends, N s/m: the slope of its damper, or the slope of the secant from zero if that is
+/// steeper, as where a limit makes the slope zero. Only what is left of the damper's force against the spring counts: where the
+/// two cancel, as in a rope that goes slack, nothing is stopped.
+pub(in crate::dynamics) fn braking(element: &Element, length: f64, rate: f64) -> f64 {
+    let drag = element.drag(length, rate);
+    if element.law.is_none() || rate == 0.0 {
+        return drag.slope;
+    }
+    let whole = element.elastic(length).force + drag.force;
+    drag.slope.max((drag.force / rate).min(whole / rate))
+}
+
+/// c h/m of all dampers at a body together, above which damping at the speed in the middle of the step would throw the body back,
+/// although each damper alone would not.
+pub(in crate::dynamics) const REVERSES: f64 = 2.0;
+
+/// Ratio of the other dampers at a body to one of them, above which that one is too weak to throw the body back. Placed by them,
+/// it would only become less exact.
+const MANY: f64 = 32.0;
+
+/// c h/m that places a damper in the step, where its own is `own` and that of the other dampers at its ends is `others`.
+pub(in crate::dynamics) fn together(own: f64, others: f64) -> f64 {
+    if own + others > REVERSES && others < MANY * own {
+        own + others
+    } else {
+        own
+    }
 }
 
 /// Time whose velocity determines the force of a damper with x = c h/m, as a share of the step. While the damper is

@@ -3,7 +3,7 @@
 use super::parts::Window;
 use super::{Exchanged, Line, Point, Points, Wire};
 use crate::dynamics::line;
-use crate::dynamics::network::{damper_placement, placement, settling};
+use crate::dynamics::network::{REVERSES, damper_placement, placement, settling, together};
 use crate::threads::each;
 use bevy::math::DVec3;
 
@@ -72,11 +72,32 @@ impl Bar {
     }
 }
 
-impl Bar {
-    /// The bar of an element between two points. `stiffest` is the greater stiffness over mass of the two, 1/s². An
-    /// element without a direction adds nothing.
+impl Wire {
+    /// c h/m that places its damper in the step, where its own is `own`. `damping` is that of all elements at each end over its
+    /// mass, 1/s.
     #[inline(always)]
-    fn measure(wire: &Wire, ends: [&Point; 2], stiffest: f64, step: f64, theta: f64) -> Self {
+    fn braked(&self, own: f64, ends: [&Point; 2], damping: [f64; 2], step: f64) -> f64 {
+        // The sums count the element too. Most are so small that its share in them does not matter.
+        if own + step * damping[0].max(damping[1]) <= REVERSES {
+            return own;
+        }
+        let shares = self.shares(ends);
+        let others = [0, 1].map(|end| damping[end] - self.damping * shares[end]);
+        together(own, step * others[0].max(others[1]).max(0.0))
+    }
+}
+
+impl Bar {
+    /// The bar of an element between two points. `stiffness` (1/s²) and `damping` (1/s) are those of all elements at each of the
+    /// two, over its mass. An element without a direction adds nothing.
+    #[inline(always)]
+    fn measure(
+        wire: &Wire,
+        ends: [&Point; 2],
+        [stiffness, damping]: [[f64; 2]; 2],
+        step: f64,
+        theta: f64,
+    ) -> Self {
         let h2 = step * step;
         let Some(Line { direction, length }) = wire.line(ends) else {
             return Self {
@@ -98,7 +119,7 @@ impl Bar {
             ..Self::default()
         };
         bar.turns = bar.turning_at(lateral_square, step);
-        let settle = settling(h2 * stiffest) * step;
+        let settle = settling(h2 * stiffness[0].max(stiffness[1])) * step;
         let c = wire.damping + settle * k;
         let rate = if c == 0.0 {
             0.0
@@ -110,7 +131,9 @@ impl Bar {
         let elastic = k * (length - wire.rest_length);
         let tension = elastic + c * rate;
         let inverse_mass = a.inverse_mass + b.inverse_mass;
-        bar.damping = damper_placement(c * step * inverse_mass) * step * c;
+        let own = c * step * inverse_mass;
+        let braked = wire.braked(own, ends, damping, step);
+        bar.damping = damper_placement(braked) * step * c;
         let across = if bar.isotropic {
             k
         } else if tension > 0.0 && length > 0.0 {
@@ -164,13 +187,12 @@ impl Points {
     /// Computes the line of each element, its motion, and its part of the linear system.
     pub(super) fn measure(&mut self, step: f64, theta: f64) {
         self.bars.resize(self.wires.len(), Bar::default());
-        let (points, stiffness) = (&self.points, &self.stiffness);
-        let wires = &self.wires;
+        let (points, wires) = (&self.points, &self.wires);
+        let sums = [&self.stiffness, &self.damping];
         each(&mut self.bars, |at, bar| {
             let wire = &wires[at];
-            let stiffest = wire.ends.map(|end| stiffness[end as usize]);
-            let stiffest = stiffest[0].max(stiffest[1]);
-            *bar = Bar::measure(wire, wire.of(points), stiffest, step, theta);
+            let sums = sums.map(|of| wire.ends.map(|end| of[end as usize]));
+            *bar = Bar::measure(wire, wire.of(points), sums, step, theta);
         });
     }
 

@@ -36,9 +36,12 @@ bitflags! {
         const JUMPED = 1 << 13;
         /// The game did so before the last step, so the readout must tell the force of an even change.
         const LEADS = 1 << 14;
+        /// It did not act in its last step, as of a fault that solving found. So its energy was no part of its component's.
+        const INERT = 1 << 15;
         /// The flags that a snapshot keeps. The other flags are found anew.
         const KEPT = Self::CHANGED.bits() | Self::REFITTED.bits() | Self::CAPTURED.bits()
-            | Self::TUNED.bits() | Self::TUNED_AGAIN.bits() | Self::ACTIVE.bits() | Self::JUMPED.bits();
+            | Self::TUNED.bits() | Self::TUNED_AGAIN.bits() | Self::ACTIVE.bits() | Self::JUMPED.bits()
+            | Self::INERT.bits();
     }
 }
 

@@ -77,6 +77,37 @@ fn a_buffer_pushes_and_lets_go() {
     assert!((speed - 2.0).abs() < 2e-3, "{speed}");
 }
 
+/// A strut that only pushes, far beyond its limit at first. As it lets its cart go, its damper takes the excess before it brakes.
+#[test]
+fn a_strut_with_a_limit_and_a_damper_gives_a_cart_all_of_its_push() {
+    let (stiffness, damping, most) = (1e4_f64, 300.0_f64, 50.0_f64);
+    // Reference: ẍ = −clamp(k x + c ẋ, −50 N, 0) in steps of 10 µs.
+    let (mut x, mut v) = (-0.2_f64, 0.0_f64);
+    for _ in 0..50_000 {
+        if x < 0.0 {
+            v -= 1e-5 * (stiffness * x + damping * v).clamp(-most, 0.0);
+        }
+        x += 1e-5 * v;
+    }
+    for count in [1, 2] {
+        let mut lab = Lab::weightless();
+        let wall = lab.point(Vec3::ZERO);
+        let cart = lab.body(1.0, Vec3::X * 0.8);
+        let share = |whole: f64| (whole / f64::from(count)) as f32;
+        for _ in 0..count {
+            let strut = SpringDamper::new(wall, cart)
+                .with_stiffness(share(stiffness))
+                .with_damping(share(damping))
+                .with_rest_length(1.0);
+            lab.spawn((strut, SpringAction::Push, MaxForce(share(most))));
+        }
+        lab.run(0.5);
+        let speed = f64::from(lab.velocity(cart).x);
+        println!("{count} struts with a limit: a cart leaves at {speed:.3} m/s, by theory {v:.3}");
+        assert!((speed / v - 1.0).abs() < 0.04, "{count}: {speed} of {v}");
+    }
+}
+
 #[test]
 fn a_slack_rope_with_a_damper_neither_brakes_nor_pushes() {
     let mut lab = Lab::weightless();

@@ -305,3 +305,65 @@ fn a_strong_damper_with_a_law_stops_a_body_as_one_without_does() {
         }
     }
 }
+
+#[test]
+fn two_clutches_side_by_side_slip_and_hold_like_one() {
+    for (damping, most) in [(1e3, 6.0), (1e6, 6.0), (1e4, 600.0), (1e6, 6e4)] {
+        let (mut lab, wall, cart) = leaving();
+        let clutches = [0, 1].map(|_| {
+            let damper = Damper::new(wall, cart).with_damping(0.5 * damping);
+            lab.spawn((damper, MaxForce(0.5 * most)))
+        });
+        for tick in 1..=30 {
+            lab.tick();
+            let speed = f64::from(lab.velocity(cart).x);
+            let slipping = 1.0 - f64::from(most) / 60.0 * f64::from(tick);
+            println!("{damping} N s/m, {most} N: {speed:.6} m/s after {tick} ticks");
+            assert!(speed <= 1.0 && speed > -0.01, "{damping} {most}: {speed}");
+            if slipping > f64::from(most / damping) + 0.1 {
+                assert!(
+                    (speed - slipping).abs() < 0.01,
+                    "{damping} {most}: {speed} {slipping}"
+                );
+            }
+        }
+        let heat: f32 = clutches
+            .map(|e| lab.readout(e).dissipated_energy)
+            .iter()
+            .sum();
+        assert!((heat - 0.5).abs() < 0.01, "{damping} {most}: {heat} J");
+        let speed = lab.velocity(cart).x;
+        assert!(speed.abs() < 0.02, "{damping} {most}: {speed} m/s");
+    }
+}
+
+#[test]
+fn two_clutches_side_by_side_slip_under_a_load_beyond_their_limit_and_hold_one_below() {
+    for (load, speed, wanted) in [
+        // m/s after half a second, of a cart of 1 kg.
+        (5.0, 0.0, 0.0),
+        (15.0, 0.0, 2.5),
+        (15.0, 1.0, 3.5),
+        (5.0, 1.0, 0.0),
+        (-5.0, 1.0, 0.0),
+        // At rest after 1/25 s, then pulled back by what is left.
+        (-15.0, 1.0, -5.0 * (0.5 - 0.04)),
+    ] {
+        let (mut lab, wall, cart) = leaving();
+        lab.get_mut::<Velocity>(cart).linear = Vec3::X * speed;
+        lab.spawn_force(cart, Vec3::X * load);
+        for _ in 0..2 {
+            let damper = Damper::new(wall, cart).with_damping(5e3);
+            lab.spawn((damper, MaxForce(5.0)));
+        }
+        lab.run(0.5);
+        let now = lab.velocity(cart).x;
+        println!(
+            "clutches of 10 N, load {load} N, {speed} m/s: {now:.4} m/s, by theory {wanted:.4}"
+        );
+        assert!(
+            (now - wanted).abs() < 0.15,
+            "{load} {speed}: {now} {wanted}"
+        );
+    }
+}

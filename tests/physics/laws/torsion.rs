@@ -233,3 +233,67 @@ fn a_rest_angle_is_taken_where_the_angle_has_a_meaning() {
         "{rest:?}"
     );
 }
+
+#[test]
+fn a_friction_brake_stops_a_wheel_and_does_not_throw_it_back() {
+    // 60 N m would change the spin by 5 rad/s in a tick.
+    for (most, spin) in [(0.6, 3.0_f32), (60.0, 3.0), (60.0, 4.9), (6e3, 3.0)] {
+        let mut lab = Lab::weightless();
+        let (wall, wheel) = wheel(&mut lab, spin);
+        let brake = TorsionDamper::new(wall, wheel, Vec3::Z).with_damping(1e4);
+        let brake = lab.spawn((brake, MaxForce(most)));
+        for tick in 1..=90 {
+            lab.tick();
+            let now = lab.get::<Velocity>(wheel).angular.z;
+            let slipping = spin - most / INERTIA * DT * tick as f32;
+            assert!(now > -0.05 * spin, "{most} N m: {now} rad/s in tick {tick}");
+            if slipping > 0.3 {
+                assert!((now - slipping).abs() < 0.02, "{most}: {now} {slipping}");
+            }
+        }
+        let now = lab.get::<Velocity>(wheel).angular.z;
+        let heat = lab.readout(brake).dissipated_energy;
+        let motion = 0.5 * INERTIA * spin * spin;
+        println!("a brake of {most} N m: {now:.1e} rad/s, {heat:.3} J of heat of {motion:.3} J");
+        assert!(now.abs() < 0.01, "{most}: {now} rad/s");
+        assert!((heat / motion - 1.0).abs() < 0.02, "{most}: {heat} J");
+    }
+}
+
+#[test]
+fn a_wheel_that_is_tilted_against_the_axis_bounces_off_its_stops_with_all_its_energy() {
+    for tilt in [0.0_f32, 60.0, 90.0, 120.0] {
+        let mut lab = Lab::weightless();
+        let wall = lab.spawn((RigidBody::Fixed, Transform::default()));
+        let tilt = tilt.to_radians();
+        let turned = Transform::from_xyz(1.0, 0.0, 0.0).with_rotation(Quat::from_rotation_x(tilt));
+        // The twist of a tilted wheel follows a spin about this direction, here at 2 rad/s.
+        let gradient = Vec3::new(0.0, -(0.5 * tilt).tan(), 1.0);
+        let spin = 2.0 * gradient / gradient.length_squared();
+        let wheel = lab.moving(
+            brick(1.0, Vec3::splat(INERTIA), Vec3::X),
+            Velocity::angular(spin),
+        );
+        lab.app.world_mut().entity_mut(wheel).insert(turned);
+        let spring = TorsionSpring::new(wall, wheel, Vec3::Z)
+            .with_stiffness(0.5)
+            .with_rest_angle(0.0);
+        let spring = lab.spawn((spring, SpringTravel::new(-0.5, 0.5, 2000.0)));
+        let first = 0.5 * INERTIA * spin.length_squared();
+        let (mut range, mut touched) = ([f32::MAX, 0.0_f32], 0);
+        for _ in 0..lab.ticks(10.0) {
+            lab.tick();
+            let seen = lab.readout(spring);
+            let motion = lab.get::<Velocity>(wheel).angular.length_squared();
+            let energy = (0.5 * INERTIA * motion + seen.stored_energy) / first;
+            range = [range[0].min(energy), range[1].max(energy)];
+            touched += u32::from(seen.length.abs() > 0.5);
+        }
+        println!(
+            "stops of a wheel tilted by {tilt:.2} rad: {:.4} to {:.4} of its energy in 10 s, {touched} ticks at a stop",
+            range[0], range[1]
+        );
+        assert!(touched > 5, "{touched}");
+        assert!(range[0] > 0.98 && range[1] < 1.02, "{tilt}: {range:?}");
+    }
+}
