@@ -8,6 +8,7 @@ use crate::scene::state::Scene;
 use crate::scene::still::Stepped;
 use crate::threads;
 use bevy::math::{DQuat, DVec3};
+use bevy::platform::collections::HashMap;
 use bevy::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -19,6 +20,8 @@ struct Eyes<'a, W: Worlds> {
     worlds: &'a W,
     /// The bodies of the only context in which elements move bodies; none if there may be several such contexts.
     only: Option<&'a W::Sight>,
+    /// See [`Stepped::led`].
+    led: &'a HashMap<(Entity, BodyId), [Vec3; 2]>,
     /// Duration of the step, s.
     time: f64,
     /// Whether a body can no longer be moved, so that all rows must be made anew.
@@ -38,6 +41,7 @@ impl Scene {
         let eyes = Eyes {
             worlds,
             only,
+            led: &self.stepped.led,
             time: self.time,
             stale: AtomicBool::new(false),
         };
@@ -71,7 +75,11 @@ pub(crate) fn share_of(rows: usize) -> usize {
 
 impl<'a, W: Worlds> Eyes<'a, W> {
     fn body(&self, context: Entity, body: BodyId) -> Option<Seen> {
-        self.worlds.of(context)?.see(body)
+        let mut seen = self.worlds.of(context)?.see(body)?;
+        if let Some([velocity, spin]) = self.led.get(&(context, body)) {
+            (seen.velocity, seen.spin) = (*velocity, *spin);
+        }
+        Some(seen)
     }
 
     /// State of a body that elements move.
@@ -121,15 +129,15 @@ impl ElementRow {
         let points = [self.point(0, bodies, eyes), self.point(1, bodies, eyes)];
         if self.numbers.rest_length.is_none() && self.trouble.passing().is_none() {
             // An element without a movable body is not solved, so its rest length is captured only here.
-            let length = self.extent(points, eyes.worlds).0;
+            let length = self.extent(points, eyes).0;
             self.numbers.rest_length = Some(length as f32);
             self.flags.insert(ElementFlags::CAPTURED);
         }
         if !self.has(ElementFlags::PLACED) {
-            self.note_places(points, eyes.worlds);
+            self.note_places(points, eyes);
         }
         let wound = self.rare_angle();
-        let (length, rate) = self.extent(points, eyes.worlds);
+        let (length, rate) = self.extent(points, eyes);
         // If Rapier's solver fails in a step, kinematic bodies get a velocity that is not finite.
         let seen = (length, if rate.is_finite() { rate } else { 0.0 });
         let seen = match &self.inside {
@@ -145,7 +153,7 @@ impl ElementRow {
     }
 
     /// Stores where the ends of the element are after the step.
-    fn note_places(&mut self, points: [Moving; 2], worlds: &impl Worlds) {
+    fn note_places(&mut self, points: [Moving; 2], eyes: &Eyes<impl Worlds>) {
         let placed = !self.is_any_watched() && self.moves() == 2;
         self.flags.set(ElementFlags::PLACED, placed);
         for (end, point) in points.iter().enumerate() {
@@ -157,7 +165,7 @@ impl ElementRow {
                 Held::Body { .. } => point.0,
             });
             if !moves && rare.guide != Guide::Centres {
-                rare.facings[end] = frame(&rare.held[end], worlds).0;
+                rare.facings[end] = frame(&rare.held[end], eyes).0;
             }
         }
     }
@@ -191,11 +199,11 @@ impl ElementRow {
 
     /// Length and rate. For an element with an axis these are the distance along the axis, or the twist with full turns counted.
     #[inline(always)]
-    fn extent(&mut self, [a, b]: [Moving; 2], worlds: &impl Worlds) -> (f64, f64) {
+    fn extent(&mut self, [a, b]: [Moving; 2], eyes: &Eyes<impl Worlds>) -> (f64, f64) {
         if !self.has(ElementFlags::IS_PLAIN) && self.rare.guide != Guide::Centres {
             let ends = [(0, a), (1, b)].map(|(end, (position, velocity))| {
                 let mut path = Path::straight(position, velocity);
-                (path.rotation, path.turning) = frame(&self.rare.held[end], worlds);
+                (path.rotation, path.turning) = frame(&self.rare.held[end], eyes);
                 End::Path(path)
             });
             return self.guided_extent(ends);
@@ -261,11 +269,11 @@ impl ElementRow {
 }
 
 /// Rotation and angular velocity (rad/s), after the step, of the body that holds an end.
-fn frame(held: &Held, worlds: &impl Worlds) -> (DQuat, DVec3) {
+fn frame(held: &Held, eyes: &Eyes<impl Worlds>) -> (DQuat, DVec3) {
     let Held::Body { body, context, .. } = *held else {
         return (DQuat::IDENTITY, DVec3::ZERO);
     };
-    let body = worlds.of(context).and_then(|world| world.see(body));
+    let body = eyes.body(context, body);
     body.map_or((DQuat::IDENTITY, DVec3::ZERO), |body| {
         // The present angular velocity counts, not that of a coming step.
         (body.facing(), body.spin.as_dvec3())

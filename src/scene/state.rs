@@ -105,6 +105,7 @@ impl Scene {
         self.tick = self.tick.wrapping_add(1).max(1);
         self.stepped.worlds.clear();
         self.stepped.some_rest = false;
+        self.stepped.led.clear();
         self.delivered = false;
         self.noting = false;
         self.engine_went_back = false;
