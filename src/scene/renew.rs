@@ -7,7 +7,7 @@ use crate::input::check::{Fault, Parameters, Ties};
 use crate::input::companions::Companions;
 use crate::input::parts::{Acts, Parts, PartsItem};
 use crate::scene::lone;
-use crate::scene::report::report;
+use crate::scene::report::{forget, report};
 use crate::scene::rows::{BodyFlags, BodyRow, ElementFlags, ElementRow, Held, mix};
 use crate::scene::state::Scene;
 use crate::scene::wanted::Wanted;
@@ -34,6 +34,9 @@ impl Scene {
         for (index, parts) in elements.iter().enumerate() {
             let is_new = self.place_row(parts.entity, index);
             let row = &mut self.elements[index];
+            if parts.told {
+                row.trouble.recall();
+            }
             // A change while the context is not stepped still has to act.
             let waits =
                 row.has(ElementFlags::CHANGED) && !row.has_acted(&self.bodies, &self.stepped);
@@ -60,6 +63,9 @@ impl Scene {
         }
         for mut gone in self.elements.drain(found_all.len()..) {
             self.row_of.remove(&gone.entity);
+            if gone.trouble.is_told() {
+                forget(gone.entity, commands);
+            }
             self.left.extend(gone.take_inside());
         }
         let signatures = self.enter_bodies(&found_all, modified);
