@@ -75,6 +75,14 @@ impl Companions<'_, '_> {
         self.all.get(entity).ok()?.tuning.copied()
     }
 
+    /// Returns the constant tension of an element's spring, N; 0 if a [`HoldPose`] will replace it.
+    pub(crate) fn preload(&self, entity: Entity) -> f64 {
+        let beside = self.all.get(entity).ok();
+        let beside = beside.filter(|beside| beside.pose.is_none());
+        let preload = beside.and_then(|beside| beside.preload);
+        preload.map_or(0.0, |preload| f64::from(preload.0))
+    }
+
     /// Returns the [`HoldPose`] of an element that still has to find its preload.
     pub(crate) fn pose(&self, entity: Entity) -> Option<HoldPose> {
         self.all.get(entity).ok()?.pose.copied()

@@ -69,6 +69,9 @@ pub struct Scene {
     pub(crate) immovable: bool,
     /// Whether the readouts are in another order than the rows even if the rows are new.
     pub(crate) unordered: bool,
+    /// Whether numbers were computed for the next step of some element. Until that step they are computed anew in every tick,
+    /// because its ends may still be put elsewhere.
+    pub(crate) awaited: bool,
     /// Whether the rows were made anew in this tick, or in earlier ticks without a step in between.
     pub(crate) renewed: bool,
     /// Context and data of joints and hidden bodies that must still be removed from the engine, as their element no longer acts.

@@ -257,6 +257,12 @@ impl ElementRow {
         self.rare.ties = parameters.ties;
     }
 
+    /// Whether numbers were computed for its next step, which are written back after it.
+    pub(crate) fn awaits_step(&self) -> bool {
+        self.flags
+            .intersects(ElementFlags::TUNED | ElementFlags::POSED)
+    }
+
     /// Sets the law and the guide that result from its companion components.
     pub(crate) fn set_companion(&mut self, companion: Companion) {
         self.law = companion.law;
@@ -281,6 +287,7 @@ impl ElementRow {
         let found_anew = ElementFlags::PLACED
             | ElementFlags::CAPTURED
             | ElementFlags::TUNED
+            | ElementFlags::POSED
             | ElementFlags::ACTIVE
             | ElementFlags::IS_PLAIN
             | ElementFlags::HELD

@@ -36,6 +36,8 @@ bitflags! {
         const JUMPED = 1 << 13;
         /// The game did so before the last step, so the readout must tell the force of an even change.
         const LEADS = 1 << 14;
+        /// The preload was computed in this tick, and `HoldPose` must be removed after the step.
+        const POSED = 1 << 15;
         /// The flags that a snapshot keeps. The other flags are found anew.
         const KEPT = Self::CHANGED.bits() | Self::REFITTED.bits() | Self::CAPTURED.bits()
             | Self::TUNED.bits() | Self::TUNED_AGAIN.bits() | Self::ACTIVE.bits() | Self::JUMPED.bits();
