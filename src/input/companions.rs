@@ -172,12 +172,11 @@ impl BesideItem<'_, '_> {
             push: coefficients,
         };
         if p.ties.names.stiffness.is_empty() {
+            const REASON: &str = "stands on a damper without a spring";
             return match (self.spring, self.own_spring) {
                 (None, None) => Ok(both([0.0; 3])),
-                _ => Err(Fault::new(
-                    "SpringLaw",
-                    "stands on a damper without a spring",
-                )),
+                (None, Some(_)) => Err(Fault::new("CustomSpringLaw", REASON)),
+                (Some(_), _) => Err(Fault::new("SpringLaw", REASON)),
             };
         }
         let stiffness = f64::from(p.numbers.stiffness);
@@ -199,12 +198,11 @@ impl BesideItem<'_, '_> {
 
     fn drag(&self, p: &Parameters) -> Result<DragLaw, Fault> {
         if p.ties.names.damping.is_empty() {
+            const REASON: &str = "stands on a spring without a damper";
             return match (self.damping, self.own_damping) {
                 (None, None) => Ok(DragLaw::Linear(0.0)),
-                _ => Err(Fault::new(
-                    "DampingLaw",
-                    "stands on a spring without a damper",
-                )),
+                (None, Some(_)) => Err(Fault::new("CustomDampingLaw", REASON)),
+                (Some(_), _) => Err(Fault::new("DampingLaw", REASON)),
             };
         }
         match (self.damping, self.own_damping) {

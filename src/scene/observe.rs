@@ -144,6 +144,9 @@ impl ElementRow {
             None => seen,
             Some(_) => self.arrive(seen, wound, points, eyes),
         };
+        if self.moves() == 0 {
+            self.judge_law(seen);
+        }
         if led {
             self.account_for_moved(seen, eyes.time);
         }

@@ -92,15 +92,13 @@ fn companions_of_an_element_that_has_nothing_for_them() {
     out_of_place(|a, b| (damper(a, b), tuning), "SpringTuning", NO_SPRING);
     let twist = |a, b| TorsionDamper::new(a, b, Vec3::X).with_damping(5.0);
     let own = || CustomSpringLaw::new(|x| 10.0 * x);
-    out_of_place(|a, b| (twist(a, b), own()), "SpringLaw", NO_SPRING);
-    out_of_place(
-        |a, b| {
-            let spring = Spring::new(a, b).with_stiffness(50.0);
-            (spring, DampingLaw::sided(5.0, 5.0))
-        },
-        "DampingLaw",
-        "stands on a spring without a damper",
-    );
+    out_of_place(|a, b| (twist(a, b), own()), "CustomSpringLaw", NO_SPRING);
+    const NO_DAMPER: &str = "stands on a spring without a damper";
+    let spring = |a, b| Spring::new(a, b).with_stiffness(50.0);
+    let sided = DampingLaw::sided(5.0, 5.0);
+    out_of_place(|a, b| (spring(a, b), sided), "DampingLaw", NO_DAMPER);
+    let own = CustomDampingLaw::new(|v| 5.0 * v);
+    out_of_place(|a, b| (spring(a, b), own), "CustomDampingLaw", NO_DAMPER);
 }
 
 #[test]
