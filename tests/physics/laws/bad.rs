@@ -172,6 +172,23 @@ fn a_function_of_ones_own_that_gives_nan() {
 }
 
 #[test]
+fn a_function_that_gives_nan_between_two_points_is_told_until_it_gives_numbers() {
+    let mut lab = Lab::weightless();
+    let (a, b) = (lab.point(Vec3::ZERO), lab.point(Vec3::X));
+    let law = CustomSpringLaw::new(|x: f64| if x > 0.2 { f64::NAN } else { 10.0 * x });
+    let element = lab.spawn((Spring::new(a, b).with_rest_length(1.0), law));
+    for (x, is_told) in [(1.0, false), (2.0, true), (1.1, false)] {
+        lab.get_mut::<Transform>(b).translation.x = x;
+        lab.run(0.1);
+        let fault = lab.app.world().get::<SpringFault>(element);
+        assert_eq!(fault.is_some(), is_told, "at {x} m: {fault:?}");
+        assert!(fault.is_none_or(|fault| fault.field == "ForceLaw"));
+    }
+    let force = lab.readout(element).spring_force;
+    assert!((force - 1.0).abs() < 1e-4, "{force} N");
+}
+
+#[test]
 fn two_laws_at_once() {
     check(
         (SpringLaw::Cubic, CustomSpringLaw::new(|x: f64| x)),
