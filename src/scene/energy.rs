@@ -112,8 +112,10 @@ impl ElementRow {
         }
     }
 
-    /// Adds the work of the game if it moved an end since the last step, so that the element now has the given length.
+    /// Adds the work of the game if it moved an end since the last step, or gave the element other anchors or another axis, so that
+    /// the element now has the given length.
     pub(crate) fn account_for_leap(&mut self, length: f64) {
+        self.rare.leapt = false;
         if self.rare.places[0].is_some() && self.numbers.rest_length.is_some() {
             let leap = self.elastic(length).energy - self.elastic(self.length).energy;
             if leap.is_finite() {

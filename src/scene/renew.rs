@@ -246,8 +246,10 @@ impl ElementRow {
             rare.places = [None; 2];
             rare.scales = [None; 2];
             rare.angle = 0.0;
+            rare.leapt = false;
             return;
         }
+        rare.leapt = ties.twist.is_none();
         for end in 0..2 {
             let mut scale = rare.scales[end];
             let mut at = |anchor| {
@@ -292,6 +294,7 @@ impl ElementRow {
         if guide != self.rare.guide {
             // It is not kept up to date along an axis.
             self.set_direction(None);
+            self.rare.leapt = true;
         }
         let found = finder.find(&parameters, guide, &mut self.rare.scales, modified)?;
         for (end, was_on_body) in was_on_body.into_iter().enumerate() {

@@ -138,6 +138,9 @@ pub(crate) struct RareElement {
     /// Rotations, after the last step, of the bodies at its ends. Valid only for an element with an axis,
     /// at an end that elements cannot move.
     pub facings: [DQuat; 2],
+    /// Whether its length is another one at once, because it was given other anchors or another axis since the last step. Valid
+    /// only with [`ElementFlags::REFITTED`].
+    pub leapt: bool,
     /// Last twist with full turns counted, rad.
     pub angle: f64,
     /// Valid only with [`ElementFlags::JUMPED`] or [`ElementFlags::LEADS`].
@@ -171,6 +174,7 @@ impl ElementRow {
                 held: [Held::NOWHERE; 2],
                 places: [None; 2],
                 facings: [DQuat::IDENTITY; 2],
+                leapt: false,
                 angle: 0.0,
                 jump: Jump::default(),
                 scales: [None; 2],
