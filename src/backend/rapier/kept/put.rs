@@ -267,7 +267,9 @@ impl Kept {
             if let Some(mut readout) = world.get_mut::<SpringReadout>(kept.entity) {
                 readout.set_if_neq(kept.readout);
             }
-            if let Some(rest) = kept.rest_length {
+            if let Some(rest) = kept.rest_length
+                && !kept.is_provisional(world)
+            {
                 write_rest(kept.entity, rest, world);
             }
         }
@@ -299,6 +301,15 @@ impl Kept {
 }
 
 impl KeptElement {
+    /// Whether its rest length is computed once more in the next tick, because a sag needs the contacts.
+    fn is_provisional(&self, world: &World) -> bool {
+        self.flags.contains(ElementFlags::TUNED_AGAIN)
+            && matches!(
+                world.get(self.entity),
+                Some(crate::element::SpringTuning::Sag { .. })
+            )
+    }
+
     /// Fills a row with the remembered state. Returns whether the parameters in its component differ from those that acted last.
     fn fill(&self, row: &mut ElementRow, context: Option<Entity>) -> bool {
         let p = &mut row.numbers;
