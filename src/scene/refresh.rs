@@ -27,12 +27,8 @@ pub(crate) fn refresh(
         assemblies,
         stepped,
         shifted,
-        awaited,
         ..
     } = scene;
-    if std::mem::take(awaited) && rows.iter().any(ElementRow::awaits_step) {
-        return false;
-    }
     // A change while the context is not stepped is kept until its next step.
     marked.retain(|index| {
         let row = &mut rows[*index];

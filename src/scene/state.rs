@@ -102,6 +102,11 @@ impl Scene {
         self.undisturbed = false;
     }
 
+    /// Whether numbers were computed for a step that is still to come.
+    pub(crate) fn awaits_step(&mut self) -> bool {
+        std::mem::take(&mut self.awaited) && self.elements.iter().any(ElementRow::awaits_step)
+    }
+
     /// Resets what belongs to the last step only, and counts the tick.
     pub(crate) fn begin(&mut self) {
         self.time = 0.0;

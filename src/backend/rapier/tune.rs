@@ -155,11 +155,7 @@ impl RapierFinder<'_, '_> {
 
     /// An element's present line and bodies. `None` if it has no line or neither end can move.
     pub(crate) fn lever(&self, stance: &Stance) -> Option<Lever> {
-        let Stance {
-            guide,
-            places,
-            angle,
-        } = *stance;
+        let places = stance.places;
         let (mut bodies, mut handles) = (Vec::new(), Vec::new());
         let mut context = None;
         let mut can_touch = false;
@@ -199,9 +195,9 @@ impl RapierFinder<'_, '_> {
             stiffness: 0.0,
             damping: 0.0,
             rest_length: 1.0,
-            guide,
+            guide: stance.guide,
             law: None,
-            angle,
+            angle: stance.angle,
             heat: 0.0,
             work: 0.0,
             direction: None,
