@@ -19,8 +19,8 @@ use bevy_rapier3d::rapier::dynamics::RigidBody as RapierBody;
 /// despawn the entity or remove this component.
 ///
 /// At the next step three children are spawned: one [`SpringDamper`] along each axis of the world, without those along
-/// which [`LockedAxes`](bevy_rapier3d::prelude::LockedAxes) let nothing move. They are tuned to the mass that the body has at that point when nothing else holds it. So heavy and light bodies follow equally fast,
-/// and a body that stands on the ground is lifted. Under gravity the point hangs g/ω² below the target, with ω = 2π ·
+/// which [`LockedAxes`](bevy_rapier3d::prelude::LockedAxes) let nothing move. They are tuned to the mass that the body
+/// has at that point when nothing else holds it. So heavy and light bodies follow equally fast, and a body that stands on the ground is lifted. Under gravity the point hangs g/ω² below the target, with ω = 2π ·
 /// frequency: 6 cm at 2 Hz. The point follows a steadily moving target without lag. If the target jumps, the point
 /// overshoots by an eighth of the jump (e⁻²). A body that is gone or cannot be moved is not pulled.
 ///

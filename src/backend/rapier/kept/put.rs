@@ -6,6 +6,7 @@ use crate::backend::rapier::find::RapierFinder;
 use crate::backend::rapier::forces::SpringLoad;
 use crate::backend::rapier::held::add_up;
 use crate::backend::{BodyId, Wrench};
+use crate::element::SpringTuning;
 use crate::input::companions::Companions;
 use crate::input::parts::{Acts, Parts};
 use crate::readout::SpringReadout;
@@ -305,8 +306,8 @@ impl KeptElement {
     fn is_provisional(&self, world: &World) -> bool {
         self.flags.contains(ElementFlags::TUNED_AGAIN)
             && matches!(
-                world.get(self.entity),
-                Some(crate::element::SpringTuning::Sag { .. })
+                world.get::<SpringTuning>(self.entity),
+                Some(SpringTuning::Sag { .. })
             )
     }
 
