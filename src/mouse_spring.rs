@@ -20,9 +20,10 @@ use bevy_rapier3d::rapier::dynamics::RigidBody as RapierBody;
 ///
 /// At the next step three children are spawned: one [`SpringDamper`] along each axis of the world, without those along
 /// which [`LockedAxes`](bevy_rapier3d::prelude::LockedAxes) let nothing move. They are tuned to the mass that the body
-/// has at that point when nothing else holds it. So heavy and light bodies follow equally fast, and a body that stands on the ground is lifted. Under gravity the point hangs g/ω² below the target, with ω = 2π ·
-/// frequency: 6 cm at 2 Hz. The point follows a steadily moving target without lag. If the target jumps, the point
-/// overshoots by an eighth of the jump (e⁻²). A body that is gone or cannot be moved is not pulled.
+/// has at that point when nothing else holds it. So heavy and light bodies follow equally fast, and a body that stands
+/// on the ground is lifted. Under gravity the point hangs g/ω² below the target, with ω = 2π · frequency: 6 cm at 2 Hz.
+/// The point follows a steadily moving target without lag. If the target jumps, the point overshoots by an eighth of
+/// the jump (e⁻²). A body that is gone or cannot be moved is not pulled.
 ///
 /// If the target, point, frequency or greatest force is not a valid number, this entity gets a [`SpringFault`], and
 /// nothing is pulled until that is corrected.

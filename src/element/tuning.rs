@@ -22,8 +22,9 @@ use std::f32::consts::TAU;
 /// A sag also sets the rest length if the element has none, so that the load stays where it was spawned, also beside a
 /// [`Preload`](crate::Preload). A rest length that you give is kept, and the load sags from there. If both ends move,
 /// and neither stands on the ground after the first step, it is not known which end is the load. The rest length is
-/// then the length in the first step; put a [`HoldPose`](crate::HoldPose) beside it. For several springs under one load, use [`SpringTuning::coefficients`] with
-/// each spring's share of the mass, and [`HoldPose::share`](crate::HoldPose::share).
+/// then the length in the first step; put a [`HoldPose`](crate::HoldPose) beside it. For several springs under one load,
+/// use [`SpringTuning::coefficients`] with each spring's share of the mass, and
+/// [`HoldPose::share`](crate::HoldPose::share).
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
 #[type_path = "bevy_coilover"]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
