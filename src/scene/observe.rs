@@ -8,7 +8,6 @@ use crate::scene::state::Scene;
 use crate::scene::still::Stepped;
 use crate::threads;
 use bevy::math::{DQuat, DVec3};
-use bevy::platform::collections::HashMap;
 use bevy::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -20,9 +19,8 @@ struct Eyes<'a, W: Worlds> {
     worlds: &'a W,
     /// The bodies of the only context in which elements move bodies; none if there may be several such contexts.
     only: Option<&'a W::Sight>,
-    /// See [`Stepped::led`].
-    led: &'a HashMap<(Entity, BodyId), [Vec3; 2]>,
-    /// Duration of the step, s.
+    stepped: &'a Stepped,
+    /// Duration of the step of the first context, s.
     time: f64,
     /// Whether a body can no longer be moved, so that all rows must be made anew.
     stale: AtomicBool,
@@ -41,7 +39,7 @@ impl Scene {
         let eyes = Eyes {
             worlds,
             only,
-            led: &self.stepped.led,
+            stepped: &self.stepped,
             time: self.time,
             stale: AtomicBool::new(false),
         };
@@ -76,7 +74,7 @@ pub(crate) fn share_of(rows: usize) -> usize {
 impl<'a, W: Worlds> Eyes<'a, W> {
     fn body(&self, context: Entity, body: BodyId) -> Option<Seen> {
         let mut seen = self.worlds.of(context)?.see(body)?;
-        if let Some([velocity, spin]) = self.led.get(&(context, body)) {
+        if let Some([velocity, spin]) = self.stepped.led.get(&(context, body)) {
             (seen.velocity, seen.spin) = (*velocity, *spin);
         }
         Some(seen)
@@ -125,8 +123,12 @@ impl ElementRow {
     /// Updates the length and rate of the element, and stores where its ends are.
     fn observe(&mut self, bodies: &[BodyRow], eyes: &Eyes<impl Worlds>) {
         let led = self.moves() == 0 && self.rare.places[0].is_some();
+        let time = self.time_of(bodies, eyes.stepped, eyes.time);
         // Two calls are faster than a loop that fills an array, and this runs for every element.
-        let points = [self.point(0, bodies, eyes), self.point(1, bodies, eyes)];
+        let points = [
+            self.point(0, bodies, eyes, time),
+            self.point(1, bodies, eyes, time),
+        ];
         if self.numbers.rest_length.is_none() && self.trouble.passing().is_none() {
             // An element without a movable body is not solved, so its rest length is captured only here.
             let length = self.extent(points, eyes).0;
@@ -142,13 +144,13 @@ impl ElementRow {
         let seen = (length, if rate.is_finite() { rate } else { 0.0 });
         let seen = match &self.inside {
             None => seen,
-            Some(_) => self.arrive(seen, wound, points, eyes),
+            Some(_) => self.arrive(seen, wound, points, eyes, time),
         };
         if self.moves() == 0 {
             self.judge_law(seen);
         }
         if led {
-            self.account_for_moved(seen, eyes.time);
+            self.account_for_moved(seen, time);
         }
         let jumped = take!(self.flags, ElementFlags::JUMPED);
         self.flags.set(ElementFlags::LEADS, jumped);
@@ -175,7 +177,7 @@ impl ElementRow {
 
     /// Position and velocity of an end after the step.
     #[inline(always)]
-    fn point(&self, end: usize, bodies: &[BodyRow], eyes: &Eyes<impl Worlds>) -> Moving {
+    fn point(&self, end: usize, bodies: &[BodyRow], eyes: &Eyes<impl Worlds>, time: f64) -> Moving {
         if let Some(index) = self.movable(end) {
             let row = &bodies[index];
             if row.has(BodyFlags::IS_ALONE) {
@@ -189,7 +191,7 @@ impl ElementRow {
             }
         }
         match self.rare.held[end] {
-            Held::Path { from, to } => (to, (to - from) / eyes.time),
+            Held::Path { from, to } => (to, (to - from) / time),
             Held::Body {
                 body,
                 context,
@@ -238,6 +240,7 @@ impl ElementRow {
         wound: f64,
         points: [Moving; 2],
         eyes: &Eyes<impl Worlds>,
+        time: f64,
     ) -> (f64, f64) {
         let Some(mut inside) = self.inside.take_if(|inside| inside.active) else {
             if self
@@ -256,9 +259,7 @@ impl ElementRow {
                 .map_or(DQuat::IDENTITY, |body| body.facing()),
             Held::Path { .. } => DQuat::IDENTITY,
         });
-        let length = inside.wound(facings, length, eyes.time, |twist| {
-            self.elastic(twist).energy
-        });
+        let length = inside.wound(facings, length, time, |twist| self.elastic(twist).energy);
         let moved = [0, 1].map(|end| {
             let by = inside.moved(end, points[end].0, facings[end]);
             by.filter(|_| self.movable(end).is_none())
@@ -267,7 +268,7 @@ impl ElementRow {
         if self.rare.guide.is_twist() {
             self.rare.angle = length;
         }
-        self.arrive_inside(length, moved, eyes.time)
+        self.arrive_inside(length, moved, time)
     }
 }
 

@@ -52,7 +52,9 @@ impl Scene {
             for row in &mut self.elements {
                 if row.is_seen(bodies, stepped) {
                     row.tell(springs, commands);
-                    if row.solved.unresolved && row.is_unresolved_news(&row.read_out(time)) {
+                    if row.solved.unresolved
+                        && row.is_unresolved_news(&row.read_out(row.time_of(bodies, stepped, time)))
+                    {
                         row.flags.insert(ElementFlags::TOLD_UNRESOLVED);
                         unresolved.push(row.entity);
                     }
@@ -64,7 +66,7 @@ impl Scene {
             let seen = |row: &&ElementRow| row.is_seen(bodies, stepped);
             for row in self.elements.iter().filter(seen) {
                 if let Ok((_, mut readout)) = readouts.get_mut(row.entity) {
-                    readout.set_if_neq(row.read_out(time));
+                    readout.set_if_neq(row.read_out(row.time_of(bodies, stepped, time)));
                 }
             }
         }
@@ -98,7 +100,7 @@ impl Scene {
                         return;
                     }
                     if row.is_seen(bodies, stepped) {
-                        let new = row.read_out(time);
+                        let new = row.read_out(row.time_of(bodies, stepped, time));
                         if *readout != new {
                             (*readout, *tick) = (new, now);
                         }

@@ -47,7 +47,8 @@ pub struct Scene {
     /// Number of the tick.
     pub(crate) tick: u32,
     pub(crate) stepped: Stepped,
-    /// Simulated time of this tick, s; 0 if the engine does not step.
+    /// Simulated time of this tick in the first context that is stepped, s; 0 if the engine does not step. See
+    /// [`Stepped::times`] for the others.
     pub(crate) time: f64,
     /// Whether an element or body of the scene gained or lost a component that matters. Then all rows are made anew.
     pub(crate) disturbed: bool,
@@ -114,10 +115,22 @@ impl Scene {
         self.stepped.worlds.clear();
         self.stepped.some_rest = false;
         self.stepped.led.clear();
+        self.stepped.times.clear();
         self.delivered = false;
         self.noting = false;
         self.engine_went_back = false;
         self.undisturbed = false;
+    }
+
+    /// Notes that a context is stepped for `time` seconds in this tick.
+    pub(crate) fn note_step(&mut self, context: Entity, time: f64) {
+        if self.stepped.worlds.is_empty() {
+            self.time = time;
+        } else if time != self.time {
+            // In an interpolated game, each context has a lag of its own.
+            self.stepped.times.insert(context, time);
+        }
+        self.stepped.worlds.push(context);
     }
 
     /// Forgets contexts that no longer exist.

@@ -18,6 +18,8 @@ pub(crate) struct Stepped {
     /// Bodies that the game puts to places and whose velocity the engine does not tell after this tick, by context and
     /// handle, with their mean velocity (m/s) and angular velocity (rad/s) over the tick.
     pub led: HashMap<(Entity, BodyId), [Vec3; 2]>,
+    /// Simulated time of this tick, s, of each context that is not stepped for as long as the first one.
+    pub times: EntityHashMap<f64>,
 }
 
 /// Contexts in which all components were asleep in the last step. For each, the tick of the last change of its

@@ -111,3 +111,57 @@ fn a_crank_has_its_mean_speed_whatever_the_number_of_steps_in_a_tick() {
         assert!((told.rate - wanted).abs() < 2e-3, "{substeps}: {told:?}");
     }
 }
+
+/// Two worlds of an interpolated game take turns: where one makes two steps in a frame, the other makes one.
+#[test]
+fn worlds_that_step_at_different_times_tell_of_their_own_time() {
+    let frame = 1.5 * DT;
+    let mut lab = Lab::without_plugin(Engine {
+        dt: frame,
+        ..Engine::weightless()
+    });
+    let mode = TimestepMode::Interpolated {
+        dt: DT,
+        time_scale: 1.0,
+        substeps: 1,
+    };
+    lab.app.add_plugins(CoiloverPlugin::default());
+    lab.app.insert_resource(mode);
+    lab.prime();
+    lab.tick();
+    let first = lab.app.world_mut();
+    let mut contexts = first.query_filtered::<Entity, With<RapierContextSimulation>>();
+    let first = contexts.single(first).expect("one world");
+    let engine = RapierConfiguration {
+        gravity: Vec3::ZERO,
+        ..RapierConfiguration::new(1.0)
+    };
+    let second = lab.spawn((RapierContextSimulation::default(), engine));
+    lab.tick();
+    let springs = [first, second].map(|world| {
+        let (hook, ball) = (lab.point(Vec3::ZERO), lab.body(1.0, Vec3::X));
+        let link = RapierContextEntityLink(world);
+        lab.app.world_mut().entity_mut(ball).insert(link);
+        let spring = lab.spawn(Spring::new(hook, ball).with_stiffness(40.0));
+        (world, spring)
+    });
+    let mut differ = 0;
+    for _ in 0..20 {
+        let lag = |lab: &Lab, world| lab.get::<SimulationToRenderTime>(world).diff;
+        let before = springs.map(|(world, _)| lag(&lab, world));
+        lab.tick();
+        let mut times = [0.0_f32; 2];
+        for (at, (world, spring)) in springs.into_iter().enumerate() {
+            let steps = ((before[at] + frame - lag(&lab, world)) / DT).round();
+            times[at] = steps * DT;
+            let wanted = 40.0_f32.sqrt() * times[at];
+            let told = lab.readout(spring).omega_dt;
+            assert!(
+                steps == 0.0 || (told - wanted).abs() < 1e-4,
+                "world {at}, {steps} steps: {told}, not {wanted}"
+            );
+        }
+        differ += usize::from(times[0] != times[1]);
+    }
+    assert!(differ > 10, "they differ in {differ} frames only");
+}

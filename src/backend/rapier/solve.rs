@@ -63,8 +63,7 @@ pub(crate) fn solve(
             scene.stepped.some_rest = true;
             continue;
         }
-        scene.time = plan.time;
-        scene.stepped.worlds.push(context);
+        scene.note_step(context, plan.time);
         let Ok(mut set) = sets.get_mut(context) else {
             continue;
         };

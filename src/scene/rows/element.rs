@@ -216,14 +216,30 @@ impl ElementRow {
     /// Whether its context was stepped. An element without a context acts if any context was stepped.
     pub(crate) fn has_acted(&self, bodies: &[BodyRow], stepped: &Stepped) -> bool {
         let stepped = &stepped.worlds;
+        let context = self.context(bodies);
+        context.map_or(!stepped.is_empty(), |context| stepped.contains(&context))
+    }
+
+    /// The context in which it acts; none if it is between two points.
+    fn context(&self, bodies: &[BodyRow]) -> Option<Entity> {
         if let Some(body) = self.movable(0).or(self.movable(1)) {
-            return stepped.contains(&bodies[body].rare.context);
+            return Some(bodies[body].rare.context);
         }
-        let context = self.rare.held.iter().find_map(|held| match held {
-            Held::Body { context, .. } => Some(context),
+        self.rare.held.iter().find_map(|held| match held {
+            Held::Body { context, .. } => Some(*context),
             Held::Path { .. } => None,
-        });
-        context.map_or(!stepped.is_empty(), |context| stepped.contains(context))
+        })
+    }
+
+    /// Simulated time of this tick in its context, s. `time` is that of the first context.
+    #[inline(always)]
+    pub(crate) fn time_of(&self, bodies: &[BodyRow], stepped: &Stepped, time: f64) -> f64 {
+        if stepped.times.is_empty() {
+            return time;
+        }
+        let own = self.context(bodies);
+        let own = own.and_then(|context| stepped.times.get(&context));
+        own.copied().unwrap_or(time)
     }
 
     /// Whether an end must be looked for in every tick.
