@@ -18,11 +18,12 @@ use bevy_rapier3d::rapier::dynamics::RigidBody as RapierBody;
 /// Spawn it on an entity of its own without a parent. Write [`target`](Self::target) as the pointer moves. To let go,
 /// despawn the entity or remove this component.
 ///
-/// At the next step three children are spawned: one [`SpringDamper`] along each axis of the world. They are tuned to
-/// the mass that the body has at that point when nothing else holds it. So heavy and light bodies follow equally fast,
-/// and a body that stands on the ground is lifted. Under gravity the point hangs g/ω² below the target, with ω = 2π ·
-/// frequency: 6 cm at 2 Hz. The point follows a steadily moving target without lag. If the target jumps, the point
-/// overshoots by an eighth of the jump (e⁻²). A body that is gone or cannot be moved is not pulled.
+/// At the next step three children are spawned: one [`SpringDamper`] along each axis of the world, without those along
+/// which [`LockedAxes`](bevy_rapier3d::prelude::LockedAxes) let nothing move. They are tuned to the mass that the body
+/// has at that point when nothing else holds it. So heavy and light bodies follow equally fast, and a body that stands
+/// on the ground is lifted. Under gravity the point hangs g/ω² below the target, with ω = 2π · frequency: 6 cm at 2 Hz.
+/// The point follows a steadily moving target without lag. If the target jumps, the point overshoots by an eighth of
+/// the jump (e⁻²). A body that is gone or cannot be moved is not pulled.
 ///
 /// If the target, point, frequency or greatest force is not a valid number, this entity gets a [`SpringFault`], and
 /// nothing is pulled until that is corrected.
@@ -110,7 +111,8 @@ impl MouseSpring {
 /// The springs of a [`MouseSpring`], and the component for which they were made.
 #[derive(Component, Clone, Copy, Debug)]
 pub(crate) struct Grip {
-    springs: [Entity; 3],
+    /// None along an axis along which the point cannot move.
+    springs: [Option<Entity>; 3],
     of: MouseSpring,
 }
 
@@ -162,9 +164,10 @@ pub(crate) fn hold(
         }
         if let Some((body, scale)) = body {
             at.translation = spring.target;
-            let mass = |axis| mass_at(body, scale * spring.point, axis);
-            let springs =
-                [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| along(axis, entity, spring, mass(axis)));
+            let springs = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| {
+                let mass = mass_at(body, scale * spring.point, axis)?;
+                Some(along(axis, entity, spring, mass))
+            });
             let of = *spring;
             // Silenced, because the game may have let go (despawned the entity) in the same tick.
             commands
@@ -172,11 +175,11 @@ pub(crate) fn hold(
                 .queue_silenced(move |mut held: EntityWorldMut| {
                     let springs = held.world_scope(|world| {
                         springs.map(|spring| {
-                            let mut spring = world.spawn(spring);
+                            let mut spring = world.spawn(spring?);
                             if let Some(newtons) = of.max_force {
                                 spring.insert(MaxForce(newtons));
                             }
-                            spring.id()
+                            Some(spring.id())
                         })
                     });
                     held.insert(Grip { springs, of });
@@ -207,18 +210,19 @@ fn along(axis: Vec3, entity: Entity, spring: &MouseSpring, mass: f32) -> impl Bu
 
 /// Effective mass of a body at one of its points (body's frame, scale applied, m) along an axis of the world, kg: the
 /// inverse of 1/m + (r × n) · I⁻¹ (r × n), without the components of n and r × n that the body's locked axes take. What else holds
-/// the body does not count.
-fn mass_at(body: &RapierBody, point: Vec3, axis: Vec3) -> f32 {
+/// the body does not count. None if it cannot move the point that way.
+fn mass_at(body: &RapierBody, point: Vec3, axis: Vec3) -> Option<f32> {
     let com = body.mass_properties().local_mprops.local_com;
     let body = read(body, Vec3::ZERO, &Wrench::default(), true);
     let axis = axis.as_dvec3();
     let torque = (body.rotation * (point - com).as_dvec3()).cross(axis);
     let turned = torque.dot(body.inverse_inertia() * torque);
-    single((axis.dot(body.inverse_mass * axis) + turned).recip())
+    let inverse = axis.dot(body.inverse_mass * axis) + turned;
+    (inverse > 0.0).then(|| single(inverse.recip()))
 }
 
 fn release(entity: Entity, grip: &Grip, commands: &mut Commands) {
-    for spring in grip.springs {
+    for spring in grip.springs.into_iter().flatten() {
         commands.entity(spring).try_despawn();
     }
     commands.entity(entity).try_remove::<Grip>();

@@ -44,7 +44,7 @@ pub fn recommend(stiffness: f32, damping: f32, mass: f32, dt: f32, tolerance: f3
     if !(sound(m) && sound(dt) && sound(tolerance)) {
         return 1;
     }
-    let k = if sound(k) { k } else { 0.0 };
+    let [k, c] = [k, c].map(|x| if sound(x) { x } else { 0.0 });
     let accurate = dt * (swing(k, c, m) / tolerance).sqrt();
     let resolved = dt * (k / m).sqrt() / RESOLVED;
     accurate.max(resolved).ceil().clamp(1.0, MOST) as u32
@@ -52,12 +52,9 @@ pub fn recommend(stiffness: f32, damping: f32, mass: f32, dt: f32, tolerance: f3
 
 /// Position error per second of a mass that swings on a spring, divided by the square of the micro-step, m/s³.
 fn swing(k: f64, c: f64, m: f64) -> f64 {
+    // Of a damper without a spring it is infinite; without both it is NaN.
     let ratio = c / (2.0 * (k * m).sqrt());
-    let ratio = if ratio.is_finite() && ratio > 0.0 {
-        ratio.min(1.0)
-    } else {
-        0.0
-    };
+    let ratio = if ratio > 0.0 { ratio.min(1.0) } else { 0.0 };
     (GRAVITY * GRAVITY.sqrt()) / (24.0 * LENGTH.sqrt()) * (1.0 + 5.0 * ratio * ratio)
 }
 
@@ -100,6 +97,14 @@ mod tests {
         // ω·dt = 3.7 and 37
         assert_eq!(recommend(5e4, 0.0, 1.0, DT, 1.0), 2);
         assert_eq!(recommend(5e6, 0.0, 1.0, DT, 1.0), 19);
+    }
+
+    #[test]
+    fn a_damper_without_a_spring_counts_as_critical() {
+        // ζ = c/(2 √(k m)): 100 N s/m are critical at 2500 N/m and 1 kg.
+        let critical = recommend(2500.0, 100.0, 1.0, DT, 1e-6);
+        assert_eq!(recommend(0.0, 100.0, 1.0, DT, 1e-6), critical);
+        assert!(critical > 2 * recommend(2500.0, 0.0, 1.0, DT, 1e-6));
     }
 
     #[test]

@@ -30,6 +30,15 @@ pub(crate) struct Found {
     pub movable: [Option<Movable>; 2],
 }
 
+/// How an element stands before a step.
+#[derive(Clone, Copy)]
+pub(crate) struct Stance<'a> {
+    pub guide: Guide,
+    pub places: &'a [Place; 2],
+    /// Last twist of a torsion element with full turns counted, rad.
+    pub angle: f64,
+}
+
 /// Data about a body that elements can move.
 #[derive(Clone, Copy)]
 pub(crate) struct Movable {
@@ -62,16 +71,17 @@ pub(crate) trait Finder {
         modified: &EntityHashSet,
     ) -> Result<Found, Fault>;
 
-    /// Writes the coefficients that `tuning` asks for into `parameters`. Returns whether contacts may hold the ends.
+    /// Writes the coefficients that `tuning` asks for into `parameters`. `preload` is a tension that the spring has anyway, N.
+    /// Returns whether contacts may hold the ends.
     fn tune(
         &self,
         tuning: SpringTuning,
-        guide: Guide,
-        places: &[Place; 2],
+        stance: &Stance,
+        preload: f64,
         parameters: &mut Parameters,
     ) -> Result<bool, Fault>;
 
     /// Returns the tension with which the element holds its load in its present pose, and its present length, N and m
     /// (for a torsion element N m and rad).
-    fn pose(&self, pose: HoldPose, guide: Guide, places: &[Place; 2]) -> Result<[f64; 2], Fault>;
+    fn pose(&self, pose: HoldPose, stance: &Stance) -> Result<[f64; 2], Fault>;
 }

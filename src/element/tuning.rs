@@ -16,11 +16,15 @@ use std::f32::consts::TAU;
 /// pose, not under the weight of the effective mass: a stiffness of tension/sag. If no weight loads the element there, it
 /// gets a [`SpringFault`](crate::SpringFault).
 ///
-/// A sag also sets the rest length if the element has none, so that the load stays where it was spawned. A rest length
-/// that you give is kept, and the load sags from there. If both ends move, and neither stands on the ground after the
-/// first step, it is not known which end is the load. The rest length is then the length in the first step; put a
-/// [`HoldPose`](crate::HoldPose) beside it. For several springs under one load, use [`SpringTuning::coefficients`] with
-/// each spring's share of the mass, and [`HoldPose::share`](crate::HoldPose::share).
+/// The numbers are those of the linear laws. A [`SpringLaw`](crate::SpringLaw) or [`DampingLaw`](crate::DampingLaw) beside
+/// them may ignore them or give them another meaning.
+///
+/// A sag also sets the rest length if the element has none, so that the load stays where it was spawned, also beside a
+/// [`Preload`](crate::Preload). A rest length that you give is kept, and the load sags from there. If both ends move,
+/// and neither stands on the ground after the first step, it is not known which end is the load. The rest length is
+/// then the length in the first step; put a [`HoldPose`](crate::HoldPose) beside it. For several springs under one load,
+/// use [`SpringTuning::coefficients`] with each spring's share of the mass, and
+/// [`HoldPose::share`](crate::HoldPose::share).
 ///
 /// On a damper without a spring, with a number that is not valid, or where both ends cannot move or coincide, the element
 /// gets a [`SpringFault`](crate::SpringFault) and does not act.

@@ -4,7 +4,8 @@ use bevy::prelude::*;
 /// Points at which an element is attached, in the world: an easier way to set [`Anchors`].
 ///
 /// At the next step both points are converted to [`Anchors`], in the frames that the ends have then, and this component
-/// is removed. From then on each point moves with its end. Insert it again to attach the element elsewhere.
+/// is removed. Points on ends that are still looked up by their [names](crate::EndNames) wait for them. From then on each
+/// point moves with its end. Insert it again to attach the element elsewhere.
 ///
 /// ```
 /// # use bevy::prelude::*;

@@ -2,14 +2,14 @@
 
 use crate::element::{Anchors, WorldAnchors};
 use crate::input::named_ends::MOST_LEVELS;
-use crate::input::parts::{IsElement, Parts, PartsItem};
+use crate::input::parts::{Acts, Parts, PartsItem};
 use bevy::prelude::*;
 
 /// Converts [`WorldAnchors`] into [`Anchors`]. If an end does not exist yet, the component waits, and the element
-/// itself reports the missing end.
+/// itself reports the missing end. It also waits for named ends, because the present ends may be those of earlier names.
 pub(crate) fn anchor(
     mut elements: ParamSet<(
-        Query<(Parts, &WorldAnchors), (IsElement, With<Anchors>)>,
+        Query<(Parts, &WorldAnchors), (Acts, With<Anchors>)>,
         Query<&mut Anchors>,
     )>,
     transforms: TransformHelper,

@@ -51,6 +51,18 @@ impl Trouble {
         self.set(fault, |faults| &mut faults.passing);
     }
 
+    /// Takes note that the entity shows a fault. One that was reported before the element was here, such as before it was
+    /// disabled, is then replaced or removed like any other.
+    pub(crate) fn recall(&mut self) {
+        let faults = self.0.get_or_insert_default();
+        faults.said.get_or_insert(Fault::new("", ""));
+    }
+
+    /// Whether a fault was reported and is still there.
+    pub(crate) fn is_told(&self) -> bool {
+        self.0.as_ref().is_some_and(|faults| faults.said.is_some())
+    }
+
     fn set(&mut self, fault: Option<Fault>, which: fn(&mut Faults) -> &mut Option<Fault>) {
         if fault.is_some() || self.0.is_some() {
             *which(self.0.get_or_insert_default()) = fault;

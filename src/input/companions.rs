@@ -75,6 +75,14 @@ impl Companions<'_, '_> {
         self.all.get(entity).ok()?.tuning.copied()
     }
 
+    /// Returns the constant tension of an element's spring, N; 0 if a [`HoldPose`] will replace it.
+    pub(crate) fn preload(&self, entity: Entity) -> f64 {
+        let beside = self.all.get(entity).ok();
+        let beside = beside.filter(|beside| beside.pose.is_none());
+        let preload = beside.and_then(|beside| beside.preload);
+        preload.map_or(0.0, |preload| f64::from(preload.0))
+    }
+
     /// Returns the [`HoldPose`] of an element that still has to find its preload.
     pub(crate) fn pose(&self, entity: Entity) -> Option<HoldPose> {
         self.all.get(entity).ok()?.pose.copied()
@@ -164,12 +172,11 @@ impl BesideItem<'_, '_> {
             push: coefficients,
         };
         if p.ties.names.stiffness.is_empty() {
+            const REASON: &str = "stands on a damper without a spring";
             return match (self.spring, self.own_spring) {
                 (None, None) => Ok(both([0.0; 3])),
-                _ => Err(Fault::new(
-                    "SpringLaw",
-                    "stands on a damper without a spring",
-                )),
+                (None, Some(_)) => Err(Fault::new("CustomSpringLaw", REASON)),
+                (Some(_), _) => Err(Fault::new("SpringLaw", REASON)),
             };
         }
         let stiffness = f64::from(p.numbers.stiffness);
@@ -191,12 +198,11 @@ impl BesideItem<'_, '_> {
 
     fn drag(&self, p: &Parameters) -> Result<DragLaw, Fault> {
         if p.ties.names.damping.is_empty() {
+            const REASON: &str = "stands on a spring without a damper";
             return match (self.damping, self.own_damping) {
                 (None, None) => Ok(DragLaw::Linear(0.0)),
-                _ => Err(Fault::new(
-                    "DampingLaw",
-                    "stands on a spring without a damper",
-                )),
+                (None, Some(_)) => Err(Fault::new("CustomDampingLaw", REASON)),
+                (Some(_), _) => Err(Fault::new("DampingLaw", REASON)),
             };
         }
         match (self.damping, self.own_damping) {

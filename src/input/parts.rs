@@ -1,7 +1,7 @@
 //! The components of an element, whichever they are, as one set of numbers.
 
 use crate::element::{
-    Anchors, AwaitsEnds, Damper, Spring, SpringDamper, TorsionDamper, TorsionSpring,
+    Anchors, AwaitsEnds, Damper, Spring, SpringDamper, SpringFault, TorsionDamper, TorsionSpring,
     TorsionSpringDamper,
 };
 use crate::input::check::{Fault, Names, Numbers, Parameters, Ties};
@@ -14,6 +14,8 @@ use bevy::prelude::*;
 #[derive(QueryData)]
 pub(crate) struct Parts {
     pub entity: Entity,
+    /// Whether the entity shows a fault.
+    pub told: Has<SpringFault>,
     spring: Option<Ref<'static, Spring>>,
     damper: Option<Ref<'static, Damper>>,
     pair: Option<Ref<'static, SpringDamper>>,

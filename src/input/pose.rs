@@ -1,6 +1,6 @@
 //! Computes the preload with which the load of an element stays where it is.
 
-use crate::backend::{Finder, Place};
+use crate::backend::{Finder, Stance};
 use crate::dynamics::guide::Guide;
 use crate::dynamics::law::Law;
 use crate::element::HoldPose;
@@ -35,11 +35,16 @@ impl Companions<'_, '_> {
         let mut bare = recipe.clone();
         bare.limits = [f64::NEG_INFINITY, f64::INFINITY];
         let preload = (tension - Law::new(bare).elastic(length, rest).force) as f32;
+        if !preload.is_finite() {
+            // A custom law may give anything.
+            return Err(Fault::new("ForceLaw", "gives NaN or infinity"));
+        }
         recipe.preload = f64::from(preload);
         let law = Law::new(recipe);
         let gives = law.elastic(length, rest).force;
-        // A custom law may give anything, such as NaN, which passes here; the step finds it.
-        if (gives - tension).abs() > NEAR * tension.abs() + 1e-6 {
+        // Beside the force of a stiff spring that is stretched far, f32 may round the preload by more than a small tension.
+        let rounding = f64::from(f32::EPSILON * preload.abs());
+        if (gives - tension).abs() > NEAR * tension.abs() + 1e-6 + rounding {
             return fault("needs a tension that SpringAction, MaxForce or a stop does not allow");
         }
         let law = (!(beside.is_linear() && preload == 0.0)).then(|| Arc::new(law));
@@ -52,11 +57,10 @@ impl Companions<'_, '_> {
         entity: Entity,
         pose: HoldPose,
         parameters: &Parameters,
-        guide: Guide,
-        places: &[Place; 2],
+        stance: &Stance,
         finder: &impl Finder,
     ) -> Result<(Companion, f32), Fault> {
-        let held = finder.pose(pose, guide, places)?;
-        self.holding(entity, parameters, guide, held)
+        let held = finder.pose(pose, stance)?;
+        self.holding(entity, parameters, stance.guide, held)
     }
 }

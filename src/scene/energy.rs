@@ -3,6 +3,7 @@
 use crate::dynamics::element::{Element, End};
 use crate::dynamics::law::Elastic;
 use crate::dynamics::pair::{Pair, Separation};
+use crate::input::check::Fault;
 use crate::scene::rows::{ElementFlags, ElementRow, Jump};
 use bevy::math::DVec3;
 
@@ -57,12 +58,23 @@ impl ElementRow {
 
     /// Whether a custom law gives finite numbers for the separation `d` of the ends (m) and its rate `v` (m/s).
     pub(crate) fn is_sound(&self, v: DVec3, d: DVec3) -> bool {
-        if self.law.is_none() {
-            return true;
-        }
-        let elastic = self.elastic(d.length());
-        let drag = self.drag(d.length(), v.dot(d.normalize_or_zero()));
+        self.law.is_none() || self.is_sound_at(d.length(), v.dot(d.normalize_or_zero()))
+    }
+
+    /// Whether its law gives finite numbers at a length and a rate.
+    fn is_sound_at(&self, length: f64, rate: f64) -> bool {
+        let (elastic, drag) = (self.elastic(length), self.drag(length, rate));
         (elastic.force + elastic.stiffness + elastic.energy + drag).is_finite()
+    }
+
+    /// Stores whether its law gives finite numbers at a length and a rate, for an element that moves no body. The solver does it
+    /// for all others.
+    pub(crate) fn judge_law(&mut self, (length, rate): (f64, f64)) {
+        if self.law.is_some() {
+            let sound = self.is_sound_at(length, rate);
+            let fault = (!sound).then_some(Fault::new("ForceLaw", "gives NaN or infinity"));
+            self.trouble.set_passing(fault);
+        }
     }
 
     /// Whether the element can dissipate energy.
@@ -92,8 +104,10 @@ impl ElementRow {
         }
     }
 
-    /// Adds the work of the game if it moved an end since the last step, so that the element now has the given length.
+    /// Adds the work of the game if it moved an end since the last step, or gave the element other anchors or another axis, so that
+    /// the element now has the given length.
     pub(crate) fn account_for_leap(&mut self, length: f64) {
+        self.rare.leapt = false;
         if self.rare.places[0].is_some() && self.numbers.rest_length.is_some() {
             let leap = self.elastic(length).energy - self.elastic(self.length).energy;
             if leap.is_finite() {

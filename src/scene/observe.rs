@@ -19,7 +19,8 @@ struct Eyes<'a, W: Worlds> {
     worlds: &'a W,
     /// The bodies of the only context in which elements move bodies; none if there may be several such contexts.
     only: Option<&'a W::Sight>,
-    /// Duration of the step, s.
+    stepped: &'a Stepped,
+    /// Duration of the step of the first context, s.
     time: f64,
     /// Whether a body can no longer be moved, so that all rows must be made anew.
     stale: AtomicBool,
@@ -38,6 +39,7 @@ impl Scene {
         let eyes = Eyes {
             worlds,
             only,
+            stepped: &self.stepped,
             time: self.time,
             stale: AtomicBool::new(false),
         };
@@ -71,7 +73,11 @@ pub(crate) fn share_of(rows: usize) -> usize {
 
 impl<'a, W: Worlds> Eyes<'a, W> {
     fn body(&self, context: Entity, body: BodyId) -> Option<Seen> {
-        self.worlds.of(context)?.see(body)
+        let mut seen = self.worlds.of(context)?.see(body)?;
+        if let Some([velocity, spin]) = self.stepped.led.get(&(context, body)) {
+            (seen.velocity, seen.spin) = (*velocity, *spin);
+        }
+        Some(seen)
     }
 
     /// State of a body that elements move.
@@ -117,27 +123,34 @@ impl ElementRow {
     /// Updates the length and rate of the element, and stores where its ends are.
     fn observe(&mut self, bodies: &[BodyRow], eyes: &Eyes<impl Worlds>) {
         let led = self.moves() == 0 && self.rare.places[0].is_some();
+        let time = self.time_of(bodies, eyes.stepped, eyes.time);
         // Two calls are faster than a loop that fills an array, and this runs for every element.
-        let points = [self.point(0, bodies, eyes), self.point(1, bodies, eyes)];
+        let points = [
+            self.point(0, bodies, eyes, time),
+            self.point(1, bodies, eyes, time),
+        ];
         if self.numbers.rest_length.is_none() && self.trouble.passing().is_none() {
             // An element without a movable body is not solved, so its rest length is captured only here.
-            let length = self.extent(points, eyes.worlds).0;
+            let length = self.extent(points, eyes).0;
             self.numbers.rest_length = Some(length as f32);
             self.flags.insert(ElementFlags::CAPTURED);
         }
         if !self.has(ElementFlags::PLACED) {
-            self.note_places(points, eyes.worlds);
+            self.note_places(points, eyes);
         }
         let wound = self.rare_angle();
-        let (length, rate) = self.extent(points, eyes.worlds);
+        let (length, rate) = self.extent(points, eyes);
         // If Rapier's solver fails in a step, kinematic bodies get a velocity that is not finite.
         let seen = (length, if rate.is_finite() { rate } else { 0.0 });
         let seen = match &self.inside {
             None => seen,
-            Some(_) => self.arrive(seen, wound, points, eyes),
+            Some(_) => self.arrive(seen, wound, points, eyes, time),
         };
+        if self.moves() == 0 {
+            self.judge_law(seen);
+        }
         if led {
-            self.account_for_moved(seen, eyes.time);
+            self.account_for_moved(seen, time);
         }
         let jumped = take!(self.flags, ElementFlags::JUMPED);
         self.flags.set(ElementFlags::LEADS, jumped);
@@ -145,7 +158,7 @@ impl ElementRow {
     }
 
     /// Stores where the ends of the element are after the step.
-    fn note_places(&mut self, points: [Moving; 2], worlds: &impl Worlds) {
+    fn note_places(&mut self, points: [Moving; 2], eyes: &Eyes<impl Worlds>) {
         let placed = !self.is_any_watched() && self.moves() == 2;
         self.flags.set(ElementFlags::PLACED, placed);
         for (end, point) in points.iter().enumerate() {
@@ -157,14 +170,14 @@ impl ElementRow {
                 Held::Body { .. } => point.0,
             });
             if !moves && rare.guide != Guide::Centres {
-                rare.facings[end] = frame(&rare.held[end], worlds).0;
+                rare.facings[end] = frame(&rare.held[end], eyes).0;
             }
         }
     }
 
     /// Position and velocity of an end after the step.
     #[inline(always)]
-    fn point(&self, end: usize, bodies: &[BodyRow], eyes: &Eyes<impl Worlds>) -> Moving {
+    fn point(&self, end: usize, bodies: &[BodyRow], eyes: &Eyes<impl Worlds>, time: f64) -> Moving {
         if let Some(index) = self.movable(end) {
             let row = &bodies[index];
             if row.has(BodyFlags::IS_ALONE) {
@@ -178,7 +191,7 @@ impl ElementRow {
             }
         }
         match self.rare.held[end] {
-            Held::Path { from, to } => (to, (to - from) / eyes.time),
+            Held::Path { from, to } => (to, (to - from) / time),
             Held::Body {
                 body,
                 context,
@@ -191,11 +204,11 @@ impl ElementRow {
 
     /// Length and rate. For an element with an axis these are the distance along the axis, or the twist with full turns counted.
     #[inline(always)]
-    fn extent(&mut self, [a, b]: [Moving; 2], worlds: &impl Worlds) -> (f64, f64) {
+    fn extent(&mut self, [a, b]: [Moving; 2], eyes: &Eyes<impl Worlds>) -> (f64, f64) {
         if !self.has(ElementFlags::IS_PLAIN) && self.rare.guide != Guide::Centres {
             let ends = [(0, a), (1, b)].map(|(end, (position, velocity))| {
                 let mut path = Path::straight(position, velocity);
-                (path.rotation, path.turning) = frame(&self.rare.held[end], worlds);
+                (path.rotation, path.turning) = frame(&self.rare.held[end], eyes);
                 End::Path(path)
             });
             return self.guided_extent(ends);
@@ -227,6 +240,7 @@ impl ElementRow {
         wound: f64,
         points: [Moving; 2],
         eyes: &Eyes<impl Worlds>,
+        time: f64,
     ) -> (f64, f64) {
         let Some(mut inside) = self.inside.take_if(|inside| inside.active) else {
             if self
@@ -245,9 +259,7 @@ impl ElementRow {
                 .map_or(DQuat::IDENTITY, |body| body.facing()),
             Held::Path { .. } => DQuat::IDENTITY,
         });
-        let length = inside.wound(facings, length, eyes.time, |twist| {
-            self.elastic(twist).energy
-        });
+        let length = inside.wound(facings, length, time, |twist| self.elastic(twist).energy);
         let moved = [0, 1].map(|end| {
             let by = inside.moved(end, points[end].0, facings[end]);
             by.filter(|_| self.movable(end).is_none())
@@ -256,16 +268,16 @@ impl ElementRow {
         if self.rare.guide.is_twist() {
             self.rare.angle = length;
         }
-        self.arrive_inside(length, moved, eyes.time)
+        self.arrive_inside(length, moved, time)
     }
 }
 
 /// Rotation and angular velocity (rad/s), after the step, of the body that holds an end.
-fn frame(held: &Held, worlds: &impl Worlds) -> (DQuat, DVec3) {
+fn frame(held: &Held, eyes: &Eyes<impl Worlds>) -> (DQuat, DVec3) {
     let Held::Body { body, context, .. } = *held else {
         return (DQuat::IDENTITY, DVec3::ZERO);
     };
-    let body = worlds.of(context).and_then(|world| world.see(body));
+    let body = eyes.body(context, body);
     body.map_or((DQuat::IDENTITY, DVec3::ZERO), |body| {
         // The present angular velocity counts, not that of a coming step.
         (body.facing(), body.spin.as_dvec3())

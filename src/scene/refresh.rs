@@ -1,6 +1,6 @@
 //! Updates existing rows at the start of a step if only parameters have changed or ends have moved.
 
-use crate::backend::{Finder, Place};
+use crate::backend::{Finder, Place, Stance};
 use crate::input::check::{Fault, Parameters, Ties};
 use crate::input::companions::{Companion, Companions};
 use crate::input::parts::{Acts, Parts};
@@ -178,12 +178,18 @@ fn judge(
     let (entity, mut parameters) = (row.entity, row.parameters());
     let guide = companions.of(entity, &parameters)?.guide;
     let found = finder.find(&parameters, guide, &mut row.rare.scales, modified)?;
+    let stance = Stance {
+        guide,
+        places: &found.places,
+        angle: row.rare.angle,
+    };
     if let Some(tuning) = companions.tuning(entity) {
-        finder.tune(tuning, guide, &found.places, &mut parameters)?;
+        let preload = companions.preload(entity);
+        finder.tune(tuning, &stance, preload, &mut parameters)?;
         parameters.check()?;
     }
     if let Some(pose) = companions.pose(entity) {
-        companions.hold(entity, pose, &parameters, guide, &found.places, finder)?;
+        companions.hold(entity, pose, &parameters, &stance, finder)?;
     }
     Ok(())
 }

@@ -1,13 +1,13 @@
 //! Makes the rows of all elements and bodies anew, and keeps what is remembered of both.
 
-use crate::backend::{Finder, Found, Place};
+use crate::backend::{Finder, Found, Place, Stance};
 use crate::dynamics::guide::Guide;
-use crate::element::{HoldPose, Preload};
+use crate::element::{Preload, SpringTuning};
 use crate::input::check::{Fault, Parameters, Ties};
-use crate::input::companions::Companions;
+use crate::input::companions::{Companion, Companions};
 use crate::input::parts::{Acts, Parts, PartsItem};
 use crate::scene::lone;
-use crate::scene::report::report;
+use crate::scene::report::{forget, report};
 use crate::scene::rows::{BodyFlags, BodyRow, ElementFlags, ElementRow, Held, mix};
 use crate::scene::state::Scene;
 use crate::scene::wanted::Wanted;
@@ -34,6 +34,9 @@ impl Scene {
         for (index, parts) in elements.iter().enumerate() {
             let is_new = self.place_row(parts.entity, index);
             let row = &mut self.elements[index];
+            if parts.told {
+                row.trouble.recall();
+            }
             // A change while the context is not stepped still has to act.
             let waits =
                 row.has(ElementFlags::CHANGED) && !row.has_acted(&self.bodies, &self.stepped);
@@ -60,6 +63,9 @@ impl Scene {
         }
         for mut gone in self.elements.drain(found_all.len()..) {
             self.row_of.remove(&gone.entity);
+            if gone.trouble.is_told() {
+                forget(gone.entity, commands);
+            }
             self.left.extend(gone.take_inside());
         }
         let signatures = self.enter_bodies(&found_all, modified);
@@ -68,6 +74,7 @@ impl Scene {
         self.leave_what_moves_nothing();
         self.groups.find(&self.elements, &self.bodies);
         self.number_groups();
+        self.awaited = self.elements.iter().any(ElementRow::awaits_step);
     }
 
     /// Connects rows of elements with the rows of their bodies.
@@ -239,8 +246,10 @@ impl ElementRow {
             rare.places = [None; 2];
             rare.scales = [None; 2];
             rare.angle = 0.0;
+            rare.leapt = false;
             return;
         }
+        rare.leapt = ties.twist.is_none();
         for end in 0..2 {
             let mut scale = rare.scales[end];
             let mut at = |anchor| {
@@ -285,6 +294,7 @@ impl ElementRow {
         if guide != self.rare.guide {
             // It is not kept up to date along an axis.
             self.set_direction(None);
+            self.rare.leapt = true;
         }
         let found = finder.find(&parameters, guide, &mut self.rare.scales, modified)?;
         for (end, was_on_body) in was_on_body.into_iter().enumerate() {
@@ -293,27 +303,46 @@ impl ElementRow {
                 self.rare.places[end] = None;
             }
         }
+        let stance = Stance {
+            guide,
+            places: &found.places,
+            angle: self.rare.angle,
+        };
         if let Some(tuning) = companions.tuning(entity) {
-            let mut tuned = parameters;
-            let can_touch = finder.tune(tuning, guide, &found.places, &mut tuned)?;
-            tuned.check()?;
-            companion = companions.of(entity, &tuned)?;
-            self.change(|row| row.set_parameters(tuned));
-            let again = can_touch && self.has(ElementFlags::TUNED_AGAIN) == waits;
-            self.flags.insert(ElementFlags::TUNED);
-            self.flags.set(ElementFlags::TUNED_AGAIN, again);
+            companion = self.tune(tuning, &stance, waits, companions, finder)?;
+        } else {
+            self.flags.remove(ElementFlags::TUNED_AGAIN);
         }
         if let Some(pose) = companions.pose(entity) {
-            let places = &found.places;
-            let held = companions.hold(entity, pose, &self.parameters(), guide, places, finder)?;
-            companion = held.0;
-            let mut element = commands.entity(entity);
-            element.try_insert(Preload(held.1));
-            if !self.has(ElementFlags::TUNED_AGAIN) {
-                element.try_remove::<HoldPose>();
-            }
+            let (held, preload) =
+                companions.hold(entity, pose, &self.parameters(), &stance, finder)?;
+            companion = held;
+            commands.entity(entity).try_insert(Preload(preload));
+            self.flags.insert(ElementFlags::POSED);
         }
         self.change(|row| row.set_companion(companion));
         Ok(found)
+    }
+
+    /// Computes its coefficients. `waits` tells whether they were computed in an earlier tick and there was no step since. Returns
+    /// what its companions make of it then.
+    fn tune(
+        &mut self,
+        tuning: SpringTuning,
+        stance: &Stance,
+        waits: bool,
+        companions: &Companions,
+        finder: &impl Finder,
+    ) -> Result<Companion, Fault> {
+        let mut tuned = self.parameters();
+        let preload = companions.preload(self.entity);
+        let can_touch = finder.tune(tuning, stance, preload, &mut tuned)?;
+        tuned.check()?;
+        let companion = companions.of(self.entity, &tuned)?;
+        self.change(|row| row.set_parameters(tuned));
+        let again = can_touch && self.has(ElementFlags::TUNED_AGAIN) == waits;
+        self.flags.insert(ElementFlags::TUNED);
+        self.flags.set(ElementFlags::TUNED_AGAIN, again);
+        Ok(companion)
     }
 }

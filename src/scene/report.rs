@@ -1,6 +1,7 @@
 //! Reports faults of elements, and elements that are too stiff. Each is reported once.
 
-use crate::element::{AwaitsEnds, EndNames, SpringFault};
+use crate::element::*;
+use crate::input::lists::with_elements;
 use crate::input::say::{Stays, say};
 use crate::scene::rows::ElementRow;
 use bevy::prelude::*;
@@ -34,6 +35,20 @@ pub(crate) fn report(row: &mut ElementRow, commands: &mut Commands) {
             && ends.into_iter().any(is_gone)
         {
             element.insert(AwaitsEnds);
+        }
+    });
+}
+
+/// Removes the [`SpringFault`] of an entity that is no element any more. One that is disabled or waits for its ends keeps it.
+pub(crate) fn forget(entity: Entity, commands: &mut Commands) {
+    let mut entity = commands.entity(entity);
+    entity.queue_silenced(|mut entity: EntityWorldMut| {
+        macro_rules! is_any {
+            ($($element:ident),*) => { [$(entity.contains::<$element>()),*].contains(&true) };
+        }
+        let is_element = with_elements!(is_any);
+        if !is_element {
+            entity.remove::<SpringFault>();
         }
     });
 }

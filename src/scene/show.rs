@@ -1,7 +1,9 @@
 //! Writes the results of a step into the components of elements: readouts, captured rest lengths and computed coefficients.
 
 use crate::dynamics::single;
-use crate::element::{Spring, SpringDamper, SpringTuning, TorsionSpring, TorsionSpringDamper};
+use crate::element::{
+    HoldPose, Spring, SpringDamper, SpringTuning, TorsionSpring, TorsionSpringDamper,
+};
 use crate::input::parts::{Acts, IsElement};
 use crate::readout::SpringReadout;
 use crate::scene::observe::share_of;
@@ -14,7 +16,9 @@ use bevy::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Flags of an element that has results to write into its components.
-const FOUND: ElementFlags = ElementFlags::TUNED.union(ElementFlags::CAPTURED);
+const FOUND: ElementFlags = ElementFlags::TUNED
+    .union(ElementFlags::CAPTURED)
+    .union(ElementFlags::POSED);
 
 /// ω·dt of a micro-step above which an element's own vibration is not followed, rad. There a step of the closed form is half a
 /// period. Pinned by `what_cannot_be_followed_is_told_once`.
@@ -48,7 +52,9 @@ impl Scene {
             for row in &mut self.elements {
                 if row.is_seen(bodies, stepped) {
                     row.tell(springs, commands);
-                    if row.solved.unresolved && row.is_unresolved_news(&row.read_out(time)) {
+                    if row.solved.unresolved
+                        && row.is_unresolved_news(&row.read_out(row.time_of(bodies, stepped, time)))
+                    {
                         row.flags.insert(ElementFlags::TOLD_UNRESOLVED);
                         unresolved.push(row.entity);
                     }
@@ -60,7 +66,7 @@ impl Scene {
             let seen = |row: &&ElementRow| row.is_seen(bodies, stepped);
             for row in self.elements.iter().filter(seen) {
                 if let Ok((_, mut readout)) = readouts.get_mut(row.entity) {
-                    readout.set_if_neq(row.read_out(time));
+                    readout.set_if_neq(row.read_out(row.time_of(bodies, stepped, time)));
                 }
             }
         }
@@ -94,7 +100,7 @@ impl Scene {
                         return;
                     }
                     if row.is_seen(bodies, stepped) {
-                        let new = row.read_out(time);
+                        let new = row.read_out(row.time_of(bodies, stepped, time));
                         if *readout != new {
                             (*readout, *tick) = (new, now);
                         }
@@ -156,8 +162,16 @@ impl ElementRow {
         if captured || tuned {
             self.write_back(tuned, springs);
         }
-        if tuned && !self.has(ElementFlags::TUNED_AGAIN) {
-            commands.entity(self.entity).try_remove::<SpringTuning>();
+        let posed = take!(self.flags, ElementFlags::POSED);
+        if self.has(ElementFlags::TUNED_AGAIN) {
+            return;
+        }
+        let mut element = commands.entity(self.entity);
+        if tuned {
+            element.try_remove::<SpringTuning>();
+        }
+        if posed {
+            element.try_remove::<HoldPose>();
         }
     }
 

@@ -47,7 +47,8 @@ pub struct Scene {
     /// Number of the tick.
     pub(crate) tick: u32,
     pub(crate) stepped: Stepped,
-    /// Simulated time of this tick, s; 0 if the engine does not step.
+    /// Simulated time of this tick in the first context that is stepped, s; 0 if the engine does not step. See
+    /// [`Stepped::times`] for the others.
     pub(crate) time: f64,
     /// Whether an element or body of the scene gained or lost a component that matters. Then all rows are made anew.
     pub(crate) disturbed: bool,
@@ -69,6 +70,9 @@ pub struct Scene {
     pub(crate) immovable: bool,
     /// Whether the readouts are in another order than the rows even if the rows are new.
     pub(crate) unordered: bool,
+    /// Whether numbers were computed for the next step of some element. Until that step they are computed anew in every tick,
+    /// because its ends may still be put elsewhere.
+    pub(crate) awaited: bool,
     /// Whether the rows were made anew in this tick, or in earlier ticks without a step in between.
     pub(crate) renewed: bool,
     /// Context and data of joints and hidden bodies that must still be removed from the engine, as their element no longer acts.
@@ -99,16 +103,34 @@ impl Scene {
         self.undisturbed = false;
     }
 
+    /// Whether numbers were computed for a step that is still to come.
+    pub(crate) fn awaits_step(&mut self) -> bool {
+        std::mem::take(&mut self.awaited) && self.elements.iter().any(ElementRow::awaits_step)
+    }
+
     /// Resets what belongs to the last step only, and counts the tick.
     pub(crate) fn begin(&mut self) {
         self.time = 0.0;
         self.tick = self.tick.wrapping_add(1).max(1);
         self.stepped.worlds.clear();
         self.stepped.some_rest = false;
+        self.stepped.led.clear();
+        self.stepped.times.clear();
         self.delivered = false;
         self.noting = false;
         self.engine_went_back = false;
         self.undisturbed = false;
+    }
+
+    /// Notes that a context is stepped for `time` seconds in this tick.
+    pub(crate) fn note_step(&mut self, context: Entity, time: f64) {
+        if self.stepped.worlds.is_empty() {
+            self.time = time;
+        } else if time != self.time {
+            // In an interpolated game, each context has a lag of its own.
+            self.stepped.times.insert(context, time);
+        }
+        self.stepped.worlds.push(context);
     }
 
     /// Forgets contexts that no longer exist.

@@ -1,7 +1,7 @@
 //! Data that all components of a context share in a step, and questions about ends and bodies that depend on it.
 
 use super::push::Terms;
-use super::rows::{ElementRow, Held};
+use super::rows::{ElementFlags, ElementRow, Held};
 use crate::backend::{BodyId, Seen, Sight, StepPlan};
 use crate::dynamics::delivery::Schedule;
 use crate::dynamics::guide::Guide;
@@ -79,9 +79,12 @@ impl Step {
         }
     }
 
-    /// Whether an end moves or turns in this step, or was moved or turned since the last step. Motion of
-    /// bodies that elements move does not count.
+    /// Whether an end moves or turns in this step, or was moved or turned since the last step, or the element has other anchors or
+    /// another axis. Motion of bodies that elements move does not count.
     pub(crate) fn has_moved(&self, row: &ElementRow, sight: &impl Sight) -> bool {
+        if row.has(ElementFlags::REFITTED) && row.rare.leapt {
+            return true;
+        }
         if !row.is_any_watched() && row.moves() == 2 {
             // Elements move both ends, and its anchors are fixed points of the bodies.
             return false;

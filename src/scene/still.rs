@@ -3,8 +3,10 @@
 //! Only two things can wake a sleeping body: the engine's step, after which the engine has active bodies, or other code that
 //! changes the engine's bodies, which the ECS detects.
 
+use crate::backend::BodyId;
 use bevy::ecs::change_detection::Tick;
 use bevy::ecs::entity::EntityHashMap;
+use bevy::platform::collections::HashMap;
 use bevy::prelude::*;
 
 /// Contexts that are stepped in this tick.
@@ -13,6 +15,11 @@ pub(crate) struct Stepped {
     pub worlds: Vec<Entity>,
     /// Whether some context is not stepped.
     pub some_rest: bool,
+    /// Bodies that the game puts to places and whose velocity the engine does not tell after this tick, by context and
+    /// handle, with their mean velocity (m/s) and angular velocity (rad/s) over the tick.
+    pub led: HashMap<(Entity, BodyId), [Vec3; 2]>,
+    /// Simulated time of this tick, s, of each context that is not stepped for as long as the first one.
+    pub times: EntityHashMap<f64>,
 }
 
 /// Contexts in which all components were asleep in the last step. For each, the tick of the last change of its

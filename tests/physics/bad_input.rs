@@ -2,6 +2,7 @@
 
 use crate::harness::*;
 use crate::messages::Log;
+use bevy::ecs::entity_disabling::Disabled;
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
@@ -289,4 +290,46 @@ fn two_torsion_elements_or_both_kinds_on_one_entity() {
     assert!(fault.field.contains("TorsionSpring,") && fault.reason.contains("TorsionSpringDamper"));
     let fault = lab.get::<SpringFault>(mixed);
     assert!(fault.reason.contains("an entity of its own"), "{fault}");
+}
+
+/// A spring of unknown stiffness, which has a fault.
+fn faulty() -> (Lab, Entity) {
+    let mut lab = Lab::weightless();
+    let (hook, body) = (lab.point(Vec3::ZERO), lab.body(1.0, Vec3::X * 1.5));
+    let spring = Spring::new(hook, body)
+        .with_stiffness(f32::NAN)
+        .with_rest_length(1.0);
+    let element = lab.spawn(spring);
+    lab.run(0.1);
+    assert_eq!(lab.get::<SpringFault>(element).field, "Spring::stiffness");
+    (lab, element)
+}
+
+#[test]
+fn a_fault_that_is_mended_while_its_element_is_disabled_is_gone_when_that_acts_again() {
+    let log = Log::capture();
+    let (mut lab, element) = faulty();
+    let told = log.take();
+    assert_eq!(told.len(), 1, "{told:?}");
+    for mended in [false, true] {
+        lab.app.world_mut().entity_mut(element).insert(Disabled);
+        lab.run(0.1);
+        if mended {
+            lab.get_mut::<Spring>(element).stiffness = 40.0;
+        }
+        lab.app.world_mut().entity_mut(element).remove::<Disabled>();
+        lab.run(0.1);
+        let fault = lab.app.world().get::<SpringFault>(element);
+        assert_eq!(fault.is_none(), mended, "{fault:?}");
+    }
+    assert!(lab.readout(element).spring_force > 10.0);
+    assert_eq!(log.take(), Vec::<String>::new(), "it was told before");
+}
+
+#[test]
+fn a_fault_goes_with_the_element_that_had_it() {
+    let (mut lab, element) = faulty();
+    lab.app.world_mut().entity_mut(element).remove::<Spring>();
+    lab.run(0.1);
+    assert!(lab.app.world().get::<SpringFault>(element).is_none());
 }

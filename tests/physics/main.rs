@@ -21,6 +21,7 @@ mod cloth;
 mod decay;
 mod dice;
 mod elastic_pendulum;
+mod end_speeds;
 mod ends;
 mod engine_settings;
 mod free_fall;

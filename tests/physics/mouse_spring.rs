@@ -256,3 +256,21 @@ fn a_scaled_body_is_held_for_the_mass_that_it_has_at_the_point_where_that_is() {
     is_held_for_its_mass(LockedAxes::ROTATION_LOCKED_Y, Vec3::new(1.0, 0.0, 1.0));
     is_held_for_its_mass(LockedAxes::ROTATION_LOCKED, Vec3::ZERO);
 }
+
+#[test]
+fn what_moves_in_a_plane_is_pulled_in_it_without_a_word() {
+    let log = Log::capture();
+    let mut lab = Lab::weightless();
+    let body = lab.body(2.0, Vec3::ZERO);
+    let plane = LockedAxes::TRANSLATION_LOCKED_Z
+        | LockedAxes::ROTATION_LOCKED_X
+        | LockedAxes::ROTATION_LOCKED_Y;
+    lab.app.world_mut().entity_mut(body).insert(plane);
+    lab.tick();
+    grab(&mut lab, body, Vec3::new(1.0, 0.5, 0.3));
+    lab.run(3.0);
+    let at = lab.position(body);
+    assert!(at.distance(Vec3::new(1.0, 0.5, 0.0)) < 1e-3, "{at}");
+    assert_eq!(elements(&mut lab), 2, "across the plane there is none");
+    assert_eq!(log.take(), Vec::<String>::new());
+}

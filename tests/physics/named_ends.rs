@@ -263,6 +263,26 @@ fn world_anchors_wait_for_named_ends() {
 }
 
 #[test]
+fn world_anchors_beside_new_names_wait_for_the_ends_of_these() {
+    let mut lab = Lab::weightless();
+    lab.spawn(hook("Hook"));
+    lab.spawn(weight("Weight"));
+    let element = lab.spawn(spring("Hook", "Weight"));
+    lab.run(0.1);
+    let points = WorldAnchors::new(Vec3::Y * 2.5, Vec3::new(3.0, 0.25, 0.0));
+    let mut entity = lab.app.world_mut().entity_mut(element);
+    entity.insert((EndNames::new("Hook", "Late"), points));
+    lab.run(0.1);
+    assert!(fault(&lab, element).is_some());
+    lab.spawn((Name::new("Late"), body(1.0, Vec3::X * 3.0)));
+    lab.run(0.1);
+    assert!(lab.app.world().get::<WorldAnchors>(element).is_none());
+    let anchors = *lab.get::<Anchors>(element);
+    assert!(anchors.a.distance(Vec3::Y * 0.5) < 1e-3, "{anchors:?}");
+    assert!(anchors.b.distance(Vec3::Y * 0.25) < 1e-3, "{anchors:?}");
+}
+
+#[test]
 fn what_makes_the_search_run_goes_with_the_last_missing_name() {
     let mut lab = Lab::new();
     let a = lab.spawn(hook("Hook"));

@@ -44,12 +44,19 @@ pub(crate) fn joint_id(handle: ImpulseJointHandle) -> JointId {
 pub(crate) fn see(body: &RigidBody, gravity: Vec3) -> Seen {
     let properties = &body.mass_properties().local_mprops;
     let pose = body.position();
+    // The engine keeps the velocity of a body that it does not move.
+    let stands = body.is_fixed() || !body.is_enabled();
+    let (velocity, spin) = if stands {
+        (Vec3::ZERO, Vec3::ZERO)
+    } else {
+        (body.linvel(), body.angvel())
+    };
     Seen {
         origin: pose.translation,
         rotation: pose.rotation,
         local_center: properties.local_com,
-        velocity: body.linvel(),
-        spin: body.angvel(),
+        velocity,
+        spin,
         inverse_mass: properties.inv_mass,
         gravity: gravity.as_dvec3() * f64::from(body.gravity_scale()),
         more_substeps: body.additional_solver_iterations(),
@@ -119,6 +126,18 @@ pub(crate) fn turning_of(body: &RigidBody, time: f64) -> (DQuat, DVec3) {
         RigidBodyType::KinematicVelocityBased => (now, body.angvel().as_dvec3()),
         _ => (now, DVec3::ZERO),
     }
+}
+
+/// Mean velocity of the centre of mass (m/s) and mean angular velocity (rad/s), over the coming `time` seconds, of a body that
+/// the game puts to places. None for other bodies.
+pub(crate) fn led(body: &RigidBody, time: f64) -> Option<[Vec3; 2]> {
+    if body.body_type() != RigidBodyType::KinematicPositionBased || !body.is_enabled() {
+        return None;
+    }
+    let center = body.local_center_of_mass().as_dvec3();
+    let moved = point_after(body, center, time) - point_of(body, center).0;
+    let (_, turning) = turning_of(body, time);
+    Some([(moved / time).as_vec3(), turning.as_vec3()])
 }
 
 /// The body as the integrator sees it. `turns` is false if every element holds the body at its centre of mass.

@@ -2,7 +2,7 @@
 
 use super::body::{handle, is_movable};
 use super::ends::Ends;
-use crate::backend::{Finder, Found, Movable, Place, SAME_PLACE};
+use crate::backend::{Finder, Found, Movable, Place, SAME_PLACE, Stance};
 use crate::dynamics::guide::Guide;
 use crate::element::{HoldPose, SpringTuning};
 use crate::input::check::{Fault, Parameters};
@@ -95,15 +95,15 @@ impl Finder for RapierFinder<'_, '_> {
     fn tune(
         &self,
         tuning: SpringTuning,
-        guide: Guide,
-        places: &[Place; 2],
+        stance: &Stance,
+        preload: f64,
         parameters: &mut Parameters,
     ) -> Result<bool, Fault> {
-        self.tuned(tuning, guide, places, parameters)
+        self.tuned(tuning, stance, preload, parameters)
     }
 
-    fn pose(&self, pose: HoldPose, guide: Guide, places: &[Place; 2]) -> Result<[f64; 2], Fault> {
-        let Some(lever) = self.lever(guide, places) else {
+    fn pose(&self, pose: HoldPose, stance: &Stance) -> Result<[f64; 2], Fault> {
+        let Some(lever) = self.lever(stance) else {
             return Err(Fault::new(
                 "HoldPose",
                 "stands on an element whose ends cannot move or coincide",

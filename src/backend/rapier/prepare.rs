@@ -33,6 +33,7 @@ pub(crate) fn prepare(
     let scene = &mut *scene;
     let mut same = !watch.saw_change(scene);
     same &= !std::mem::take(&mut scene.stale);
+    same &= !scene.awaits_step();
     companions.look(scene.since.take(), scene.touched.drain(..));
     // `Watch` sees entities that appear and disappear. The count covers other ways in which elements may disappear.
     same &= elements.iter().len() == scene.elements.len();

@@ -1,7 +1,8 @@
 //! The system that computes all elements before the engine's step: held components first, then free ones.
 
-use super::body::{Bodies, handle};
+use super::body::{Bodies, handle, id, led};
 use super::timestep;
+use crate::backend::StepPlan;
 use crate::backend::rapier::forces::{self, ChangedLoads, Handles, Loads};
 use crate::backend::rapier::held::{EngineParts, Solver, View, give_back, remove};
 use crate::scene::free;
@@ -62,11 +63,11 @@ pub(crate) fn solve(
             scene.stepped.some_rest = true;
             continue;
         }
-        scene.time = plan.time;
-        scene.stepped.worlds.push(context);
+        scene.note_step(context, plan.time);
         let Ok(mut set) = sets.get_mut(context) else {
             continue;
         };
+        scene.note_led(context, &plan, &set);
         let Some(quiet) = scene.is_to_step(context, &simulation, &set) else {
             continue;
         };
@@ -112,6 +113,21 @@ impl Scene {
     ) {
         let told = self.sweeps.entry(context).or_default();
         told.raise(&mut parameters.num_internal_pgs_iterations, sweeps);
+    }
+
+    /// Notes how fast bodies move that the game puts to places. Rapier takes them there in the first of several steps of a
+    /// tick, and they stand in the others.
+    fn note_led(&mut self, context: Entity, plan: &StepPlan, set: &RapierRigidBodySet) {
+        if plan.calls < 2 {
+            return;
+        }
+        for wall in &self.walls {
+            if let Some(handle) = set.entity2body().get(wall)
+                && let Some(motion) = set.bodies.get(*handle).and_then(|b| led(b, plan.time))
+            {
+                self.stepped.led.insert((context, id(*handle)), motion);
+            }
+        }
     }
 
     /// Returns `None` if there is nothing to do in a context, otherwise whether nothing has been changed since the last step.

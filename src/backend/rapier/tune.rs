@@ -3,7 +3,7 @@
 use super::body::{handle, is_movable, point_of, read, turning_of};
 use super::find::RapierFinder;
 use crate::backend::rapier::held::{Holding, inverse_mass};
-use crate::backend::{Place, Wrench};
+use crate::backend::{Place, Stance, Wrench};
 use crate::dynamics::body::Body;
 use crate::dynamics::element::{Element, End, Path};
 use crate::dynamics::guide::Guide;
@@ -45,15 +45,16 @@ impl Lever {
 }
 
 impl RapierFinder<'_, '_> {
-    /// Writes the coefficients that `tuning` asks for into `parameters`. A sag also sets the rest length if there is none.
-    /// Returns whether contacts may hold the ends.
+    /// Writes the coefficients that `tuning` asks for into `parameters`. A sag also sets the rest length if there is none, so that
+    /// the stretch gives what the `preload` (N) does not give of the tension. Returns whether contacts may hold the ends.
     pub(crate) fn tuned(
         &self,
         tuning: SpringTuning,
-        guide: Guide,
-        places: &[Place; 2],
+        stance: &Stance,
+        preload: f64,
         parameters: &mut Parameters,
     ) -> Result<bool, Fault> {
+        let guide = stance.guide;
         let fault = |reason| Err(Fault::new("SpringTuning", reason));
         let (value, ratio) = match tuning {
             SpringTuning::Frequency {
@@ -68,7 +69,7 @@ impl RapierFinder<'_, '_> {
         if parameters.ties.names.stiffness.is_empty() {
             return fault("stands on a damper without a spring");
         }
-        let lever = self.lever(guide, places).map(|lever| {
+        let lever = self.lever(stance).map(|lever| {
             let left = self.left(&lever, lever.line);
             (lever, left)
         });
@@ -84,7 +85,7 @@ impl RapierFinder<'_, '_> {
         if !parameters.ties.names.damping.is_empty() {
             parameters.numbers.damping = damping;
         }
-        let stretch = carried.map(|tension| tension / f64::from(stiffness));
+        let stretch = carried.map(|tension| (tension - preload) / f64::from(stiffness));
         if let Some(stretch) = stretch.filter(|stretch| stretch.is_finite())
             && parameters.numbers.rest_length.is_none()
         {
@@ -154,7 +155,8 @@ impl RapierFinder<'_, '_> {
     }
 
     /// An element's present line and bodies. `None` if it has no line or neither end can move.
-    pub(crate) fn lever(&self, guide: Guide, places: &[Place; 2]) -> Option<Lever> {
+    pub(crate) fn lever(&self, stance: &Stance) -> Option<Lever> {
+        let places = stance.places;
         let (mut bodies, mut handles) = (Vec::new(), Vec::new());
         let mut context = None;
         let mut can_touch = false;
@@ -194,9 +196,9 @@ impl RapierFinder<'_, '_> {
             stiffness: 0.0,
             damping: 0.0,
             rest_length: 1.0,
-            guide,
+            guide: stance.guide,
             law: None,
-            angle: 0.0,
+            angle: stance.angle,
             heat: 0.0,
             work: 0.0,
             direction: None,

@@ -10,6 +10,7 @@ impl Memory {
         let rare = &mut *row.rare;
         rare.controller = self.controller;
         rare.places = self.places;
+        rare.leapt = false;
         rare.angle = self.angle;
         rare.facings = self.facings;
         rare.scales = self.scales;

@@ -138,6 +138,9 @@ pub(crate) struct RareElement {
     /// Rotations, after the last step, of the bodies at its ends. Valid only for an element with an axis,
     /// at an end that elements cannot move.
     pub facings: [DQuat; 2],
+    /// Whether its length is another one at once, because it was given other anchors or another axis since the last step. Valid
+    /// only with [`ElementFlags::REFITTED`].
+    pub leapt: bool,
     /// Last twist with full turns counted, rad.
     pub angle: f64,
     /// Valid only with [`ElementFlags::JUMPED`] or [`ElementFlags::LEADS`].
@@ -171,6 +174,7 @@ impl ElementRow {
                 held: [Held::NOWHERE; 2],
                 places: [None; 2],
                 facings: [DQuat::IDENTITY; 2],
+                leapt: false,
                 angle: 0.0,
                 jump: Jump::default(),
                 scales: [None; 2],
@@ -212,14 +216,30 @@ impl ElementRow {
     /// Whether its context was stepped. An element without a context acts if any context was stepped.
     pub(crate) fn has_acted(&self, bodies: &[BodyRow], stepped: &Stepped) -> bool {
         let stepped = &stepped.worlds;
+        let context = self.context(bodies);
+        context.map_or(!stepped.is_empty(), |context| stepped.contains(&context))
+    }
+
+    /// The context in which it acts; none if it is between two points.
+    fn context(&self, bodies: &[BodyRow]) -> Option<Entity> {
         if let Some(body) = self.movable(0).or(self.movable(1)) {
-            return stepped.contains(&bodies[body].rare.context);
+            return Some(bodies[body].rare.context);
         }
-        let context = self.rare.held.iter().find_map(|held| match held {
-            Held::Body { context, .. } => Some(context),
+        self.rare.held.iter().find_map(|held| match held {
+            Held::Body { context, .. } => Some(*context),
             Held::Path { .. } => None,
-        });
-        context.map_or(!stepped.is_empty(), |context| stepped.contains(context))
+        })
+    }
+
+    /// Simulated time of this tick in its context, s. `time` is that of the first context.
+    #[inline(always)]
+    pub(crate) fn time_of(&self, bodies: &[BodyRow], stepped: &Stepped, time: f64) -> f64 {
+        if stepped.times.is_empty() {
+            return time;
+        }
+        let own = self.context(bodies);
+        let own = own.and_then(|context| stepped.times.get(&context));
+        own.copied().unwrap_or(time)
     }
 
     /// Whether an end must be looked for in every tick.
@@ -257,6 +277,12 @@ impl ElementRow {
         self.rare.ties = parameters.ties;
     }
 
+    /// Whether numbers were computed for its next step, which are written back after it.
+    pub(crate) fn awaits_step(&self) -> bool {
+        self.flags
+            .intersects(ElementFlags::TUNED | ElementFlags::POSED)
+    }
+
     /// Sets the law and the guide that result from its companion components.
     pub(crate) fn set_companion(&mut self, companion: Companion) {
         self.law = companion.law;
@@ -281,6 +307,7 @@ impl ElementRow {
         let found_anew = ElementFlags::PLACED
             | ElementFlags::CAPTURED
             | ElementFlags::TUNED
+            | ElementFlags::POSED
             | ElementFlags::ACTIVE
             | ElementFlags::IS_PLAIN
             | ElementFlags::HELD

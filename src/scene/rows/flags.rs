@@ -5,7 +5,7 @@ use bitflags::bitflags;
 bitflags! {
     /// Flags of an element.
     #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-    pub(crate) struct ElementFlags: u16 {
+    pub(crate) struct ElementFlags: u32 {
         /// A parameter or an end changed since the last step.
         const CHANGED = 1;
         /// Its parameters or laws differ from those of its last step.
@@ -38,6 +38,8 @@ bitflags! {
         const LEADS = 1 << 14;
         /// It did not act in its last step, as of a fault that solving found. So its energy was no part of its component's.
         const INERT = 1 << 15;
+        /// The preload was computed in this tick, and `HoldPose` must be removed after the step.
+        const POSED = 1 << 16;
         /// The flags that a snapshot keeps. The other flags are found anew.
         const KEPT = Self::CHANGED.bits() | Self::REFITTED.bits() | Self::CAPTURED.bits()
             | Self::TUNED.bits() | Self::TUNED_AGAIN.bits() | Self::ACTIVE.bits() | Self::JUMPED.bits()
@@ -125,5 +127,5 @@ mod serial {
         )*};
     }
 
-    as_bits!(ElementFlags: u16, BodyFlags: u32);
+    as_bits!(ElementFlags: u32, BodyFlags: u32);
 }

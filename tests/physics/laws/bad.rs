@@ -92,15 +92,13 @@ fn companions_of_an_element_that_has_nothing_for_them() {
     out_of_place(|a, b| (damper(a, b), tuning), "SpringTuning", NO_SPRING);
     let twist = |a, b| TorsionDamper::new(a, b, Vec3::X).with_damping(5.0);
     let own = || CustomSpringLaw::new(|x| 10.0 * x);
-    out_of_place(|a, b| (twist(a, b), own()), "SpringLaw", NO_SPRING);
-    out_of_place(
-        |a, b| {
-            let spring = Spring::new(a, b).with_stiffness(50.0);
-            (spring, DampingLaw::sided(5.0, 5.0))
-        },
-        "DampingLaw",
-        "stands on a spring without a damper",
-    );
+    out_of_place(|a, b| (twist(a, b), own()), "CustomSpringLaw", NO_SPRING);
+    const NO_DAMPER: &str = "stands on a spring without a damper";
+    let spring = |a, b| Spring::new(a, b).with_stiffness(50.0);
+    let sided = DampingLaw::sided(5.0, 5.0);
+    out_of_place(|a, b| (spring(a, b), sided), "DampingLaw", NO_DAMPER);
+    let own = CustomDampingLaw::new(|v| 5.0 * v);
+    out_of_place(|a, b| (spring(a, b), own), "CustomDampingLaw", NO_DAMPER);
 }
 
 #[test]
@@ -171,6 +169,23 @@ fn a_function_of_ones_own_that_gives_nan() {
         if x < 0.2 { f64::NAN } else { 100.0 * x }
     }));
     assert_eq!(said, 1, "{fault:?}");
+}
+
+#[test]
+fn a_function_that_gives_nan_between_two_points_is_told_until_it_gives_numbers() {
+    let mut lab = Lab::weightless();
+    let (a, b) = (lab.point(Vec3::ZERO), lab.point(Vec3::X));
+    let law = CustomSpringLaw::new(|x: f64| if x > 0.2 { f64::NAN } else { 10.0 * x });
+    let element = lab.spawn((Spring::new(a, b).with_rest_length(1.0), law));
+    for (x, is_told) in [(1.0, false), (2.0, true), (1.1, false)] {
+        lab.get_mut::<Transform>(b).translation.x = x;
+        lab.run(0.1);
+        let fault = lab.app.world().get::<SpringFault>(element);
+        assert_eq!(fault.is_some(), is_told, "at {x} m: {fault:?}");
+        assert!(fault.is_none_or(|fault| fault.field == "ForceLaw"));
+    }
+    let force = lab.readout(element).spring_force;
+    assert!((force - 1.0).abs() < 1e-4, "{force} N");
 }
 
 #[test]

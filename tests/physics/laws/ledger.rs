@@ -197,6 +197,68 @@ fn an_anchor_that_is_put_elsewhere_on_its_body_does_the_work_of_the_stretch() {
     assert!((seen.stored_energy + motion - 0.4).abs() < 1e-3);
 }
 
+/// A body of 10 t, which hardly moves, is 0.6 m beside and 0.8 m below a hook, on a spring of 100 N/m and 0.5 m.
+#[test]
+fn another_axis_or_an_anchor_on_the_hook_does_the_work_of_the_stretch() {
+    type Change = fn(&mut EntityWorldMut);
+    let changes: [(&str, Change, f64); 3] = [
+        (
+            "an anchor on the hook",
+            |spring| {
+                spring.insert(Anchors::new(Vec3::Y * 0.8, Vec3::ZERO));
+            },
+            0.6,
+        ),
+        (
+            "an axis",
+            |spring| {
+                spring.insert(SpringAxis::World(Vec3::X));
+            },
+            0.6,
+        ),
+        (
+            "another axis",
+            |spring| {
+                spring.insert(SpringAxis::World(Vec3::Y));
+            },
+            0.8,
+        ),
+    ];
+    let stored = |length: f64| 50.0 * (length - 0.5) * (length - 0.5);
+    for (name, change, length) in changes {
+        for neighbours in [0, 1] {
+            let mut lab = Lab::weightless();
+            let hook = lab.point(Vec3::ZERO);
+            let body = lab.body(1e4, Vec3::new(0.6, 0.8, 0.0));
+            let spring = Spring::new(hook, body)
+                .with_stiffness(100.0)
+                .with_rest_length(0.5);
+            let element = lab.spawn(spring);
+            for _ in 0..neighbours {
+                let other = lab.body(1e4, Vec3::new(1.6, 0.8, 0.0));
+                lab.spawn(Spring::new(body, other));
+            }
+            lab.run(0.1);
+            change(&mut lab.app.world_mut().entity_mut(element));
+            lab.run(0.1);
+            let seen = lab.readout(element);
+            let (was, now) = (stored(1.0), stored(length));
+            let about = format!("{name}, {neighbours} neighbours: {seen:?}");
+            assert!(
+                (f64::from(seen.stored_energy) - now).abs() < 0.01,
+                "{about}"
+            );
+            assert!((f64::from(seen.work) - (now - was)).abs() < 0.01, "{about}");
+            // Back again.
+            let mut entity = lab.app.world_mut().entity_mut(element);
+            entity.remove::<(Anchors, SpringAxis)>();
+            lab.run(0.1);
+            let work = lab.readout(element).work;
+            assert!(work.abs() < 0.01, "{name}: {work} J at last");
+        }
+    }
+}
+
 /// A car body of 1200 kg at 3 m/s on four springs with dampers at its corners. All energy it loses is heat.
 #[test]
 fn the_heat_of_a_network_is_as_exact_as_its_motion() {

@@ -4,6 +4,7 @@ mod axis;
 mod bad;
 mod blows;
 mod breaking;
+mod computed;
 mod driven;
 mod extreme;
 mod given;

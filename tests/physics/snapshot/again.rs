@@ -3,6 +3,10 @@
 use super::film::*;
 use super::scenes::*;
 use crate::dice::in_turn;
+use crate::harness::body;
+use bevy::prelude::*;
+use bevy_coilover::prelude::*;
+use bevy_rapier3d::prelude::*;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// Ticks until the snapshot, and ticks compared after it.
@@ -70,4 +74,29 @@ fn a_scene_that_goes_back_has_the_same_future() {
         }
     }
     assert!(failures.is_empty(), "{failures:#?}");
+}
+
+/// The first step does not know that the wheel stands, so it does not know either which end is the load.
+#[test]
+fn a_sag_that_is_computed_once_more_is_so_after_going_back_too() {
+    let mut film = Film::new(CoiloverPlugin::default());
+    film.ground();
+    let guided = LockedAxes::ROTATION_LOCKED
+        | LockedAxes::TRANSLATION_LOCKED_X
+        | LockedAxes::TRANSLATION_LOCKED_Z;
+    let load = film.spawn((body(300.0, Vec3::Y * 0.8), guided));
+    let wheel = film.solid(Vec3::Y * 0.3, Collider::ball(0.3), 20.0);
+    let tuning = SpringTuning::sag(0.1, 0.3);
+    let element = film.spawn((SpringDamper::new(load, wheel), tuning));
+    film.run(1);
+    let then = Both::take(&film);
+    let known = *film.lab.get::<SpringDamper>(element);
+    assert_eq!(known.rest_length, None, "not final yet");
+    let first = film.watch(60);
+    let rest = film.lab.get::<SpringDamper>(element).rest_length;
+    film.insert(element, (known, tuning));
+    then.restore(&mut film);
+    assert_same("sag", &first, &film.watch(60));
+    let again = film.lab.get::<SpringDamper>(element).rest_length;
+    assert_eq!(again, rest);
 }

@@ -6,6 +6,7 @@ use crate::backend::rapier::find::RapierFinder;
 use crate::backend::rapier::forces::SpringLoad;
 use crate::backend::rapier::held::add_up;
 use crate::backend::{BodyId, Wrench};
+use crate::element::SpringTuning;
 use crate::input::companions::Companions;
 use crate::input::parts::{Acts, Parts};
 use crate::readout::SpringReadout;
@@ -267,7 +268,9 @@ impl Kept {
             if let Some(mut readout) = world.get_mut::<SpringReadout>(kept.entity) {
                 readout.set_if_neq(kept.readout);
             }
-            if let Some(rest) = kept.rest_length {
+            if let Some(rest) = kept.rest_length
+                && !kept.is_provisional(world)
+            {
                 write_rest(kept.entity, rest, world);
             }
         }
@@ -299,6 +302,15 @@ impl Kept {
 }
 
 impl KeptElement {
+    /// Whether its rest length is computed once more in the next tick, because a sag needs the contacts.
+    fn is_provisional(&self, world: &World) -> bool {
+        self.flags.contains(ElementFlags::TUNED_AGAIN)
+            && matches!(
+                world.get::<SpringTuning>(self.entity),
+                Some(SpringTuning::Sag { .. })
+            )
+    }
+
     /// Fills a row with the remembered state. Returns whether the parameters in its component differ from those that acted last.
     fn fill(&self, row: &mut ElementRow, context: Option<Entity>) -> bool {
         let p = &mut row.numbers;

@@ -90,6 +90,7 @@ fn take_element(row: &ElementRow, places: &[u32], world: &World) -> KeptElement 
         held: _,
         places: ends,
         facings,
+        leapt: _,
         angle,
         jump,
         scales,
