@@ -64,8 +64,6 @@ def faults(element):
     if element.kind.startswith("torsion"):
         if Vector(element.axis).length < 1e-6:
             found.append("The axis has no direction")
-        if body(element.a) is None or body(element.b) is None:
-            found.append("Both ends of a torsion element have to be rigid bodies")
         return found
     if not found and length(element) < 1e-6:
         found.append("Both anchors are at the same point")

@@ -178,6 +178,13 @@ def test_faults_are_named_before_bevy_finds_them(scene):
     assert ends.faults(element) == ["End A is missing"]
 
 
+def test_a_torsion_spring_may_end_at_an_object_that_is_no_body(scene):
+    """Bevy's importer gives such an end a fixed body."""
+    hook, wheel = scene.empty("Hook", (0, 0, 1)), scene.body("Wheel", (0, 0, 0))
+    element = scene.spring(hook, wheel, kind="torsionSpring").coilover
+    assert ends.faults(element) == []
+
+
 def test_every_field_of_the_table_is_a_property(scene):
     element = scene.empty("E").coilover
     for companion in fields.COMPANIONS:
