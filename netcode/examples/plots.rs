@@ -11,6 +11,7 @@ use netcode::lossy::Weather;
 use netcode::peers::Peers;
 use netcode::rollback::{Physics, RollbackPhysicsPlugin};
 use plotters::prelude::*;
+use plotters::style::Color as _;
 use std::error::Error;
 use std::path::{Path, PathBuf};
 
