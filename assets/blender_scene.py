@@ -123,6 +123,8 @@ def car(place, mass=600.0, stiffness=40e3, damping=2.5e3):
                            layers=(3,))
             wheel = body(f"Wheel {name}", axle, (2 * wheel_radius, 2 * wheel_radius, 0.2), 18.0, "CYLINDER",
                          ALONG_Y, "Rubber")
+            # In Rapier, a cylinder on a box has a contact normal that is up to a degree off, and drives itself.
+            wheel.rigid_body.collision_shape = "SPHERE"
             joint("HINGE", chassis, lower, (axle.x, inner, low), ALONG_X)
             joint("HINGE", chassis, upper, (axle.x, inner, high), ALONG_X)
             joint("HINGE", lower, knuckle, (axle.x, outer, low), ALONG_X)

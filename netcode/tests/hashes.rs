@@ -270,7 +270,7 @@ fn each_scene_ends_in_the_bits_that_are_noted() {
             "on the ground",
             on_the_ground,
             default(),
-            0x474d_6346_bf8f_466f,
+            0xc9dc_f971_068c_a1de,
         ),
         (
             "cloth, by a tolerance",

@@ -39,3 +39,4 @@ mod surfaces;
 mod torsion;
 mod wall;
 mod winch;
+mod wheel_shapes;

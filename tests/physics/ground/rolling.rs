@@ -11,7 +11,7 @@ const LOAD: f32 = 300.0;
 const REST: f32 = 0.5;
 
 /// Shape of the ground.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Ground {
     HalfSpace,
     Cuboid,
