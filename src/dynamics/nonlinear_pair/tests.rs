@@ -107,6 +107,7 @@ fn no_law_gains_energy_at_any_step() {
         ] {
             let law = Law::new(Recipe {
                 limits,
+                most: limits[1],
                 travel,
                 stop: Stop {
                     stiffness: 100.0 * stiffness,

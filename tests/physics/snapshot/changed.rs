@@ -310,3 +310,26 @@ fn a_weight_without_a_spring_in_the_saved_state_falls_freely_when_that_is_loaded
     let gained = film.lab.velocity(weight).y - before;
     assert!((gained + 9.81 * 0.5).abs() < 0.2, "{gained} m/s");
 }
+
+/// The ends are the game's: what goes back are the forces in the engine, which nothing would take from a body without elements.
+#[test]
+fn a_body_whose_element_went_elsewhere_falls_freely_after_going_back() {
+    let mut lab = Lab::new();
+    let hook = lab.point(Vec3::ZERO);
+    let [first, second] = [-1.0, 1.0].map(|x| lab.body(1.0, Vec3::new(x, -1.0, 0.0)));
+    let spring = lab.spawn(Spring::new(hook, first).with_stiffness(50.0));
+    lab.run(0.2);
+    let world = lab.app.world();
+    let then = (RapierSnapshot::take(world), CoiloverSnapshot::take(world));
+    lab.get_mut::<Spring>(spring).body_b = second;
+    lab.run(0.2);
+    let world = lab.app.world_mut();
+    then.0.restore(world).expect("the engine goes back");
+    then.1.restore(world).expect("the springs go back");
+    let before = lab.velocity(first);
+    lab.run(0.5);
+    let gained = lab.velocity(first) - before;
+    let free = Vec3::NEG_Y * 9.81 * 0.5;
+    println!("gained {gained} m/s, in free fall {free}");
+    assert!((gained - free).length() < 1e-3, "{gained}");
+}

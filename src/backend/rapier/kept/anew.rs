@@ -3,7 +3,7 @@
 
 use super::check::is_in;
 use crate::backend::rapier::body::{give, handle, id};
-use crate::backend::{Push, Wrench};
+use crate::backend::{BodyId, Push, Wrench};
 use crate::scene::kept::{Kept, KeptElement};
 use crate::scene::rows::Raised;
 use crate::scene::state::Scene;
@@ -22,6 +22,22 @@ impl Kept {
             let link = world.get::<RapierContextEntityLink>(body.entity)?;
             Some(link.0)
         })
+    }
+
+    /// Takes the elements' share of that time from the forces in the engine, for those bodies that have no elements now: no step
+    /// does so.
+    pub(super) fn take_share(&self, world: &mut World, is_free: impl Fn(Entity) -> bool) {
+        for body in self.bodies.iter().filter(|body| is_free(body.entity)) {
+            let [force, torque] = body.user;
+            if force.is_finite()
+                && torque.is_finite()
+                && let Some((context, id)) = place(world, body.entity)
+                && let Some(mut set) = world.get_mut::<RapierRigidBodySet>(context)
+                && let Some(body) = set.bodies.get_mut(handle(id))
+            {
+                give(body, &Push::default(), &Wrench { force, torque });
+            }
+        }
     }
 
     /// Makes the next step remove from the engine what springs had in it when the snapshot was taken.
@@ -46,32 +62,13 @@ impl Kept {
             Some((context, inside.put(context)))
         });
         let insides: Vec<_> = insides.collect();
-        let place = |entity: Entity| {
-            let body = world.get_entity(entity).ok()?;
-            let handle = body.get::<RapierRigidBodyHandle>()?.0;
-            Some((body.get::<RapierContextEntityLink>()?.0, id(handle)))
-        };
         let raised = self.bodies.iter().filter(|body| body.raised.is_any());
         let raised = raised.filter_map(|body| {
-            let (context, id) = place(body.entity)?;
+            let (context, id) = place(world, body.entity)?;
             Some((context, id, body.raised))
         });
         let raised: Vec<_> = raised.chain(self.unloaded.iter().copied()).collect();
-        let loaded = self.bodies.iter().filter_map(|body| {
-            let [force, torque] = body.user;
-            let (context, id) = place(body.entity)?;
-            let is_known = force.is_finite() && torque.is_finite();
-            is_known.then_some((context, id, Wrench { force, torque }))
-        });
-        let loaded: Vec<_> = loaded.collect();
-        // The engine contains the elements' share of that time. No step takes it from a body that has no elements now.
-        for (context, id, user) in loaded {
-            if let Some(mut set) = world.get_mut::<RapierRigidBodySet>(context)
-                && let Some(body) = set.bodies.get_mut(handle(id))
-            {
-                give(body, &Push::default(), &user);
-            }
-        }
+        self.take_share(world, |_| true);
         let Some(mut scene) = world.get_resource_mut::<Scene>() else {
             return;
         };
@@ -90,6 +87,13 @@ impl Kept {
             .collect();
         scene.stale = true;
     }
+}
+
+/// Context and handle of a body.
+fn place(world: &World, entity: Entity) -> Option<(Entity, BodyId)> {
+    let body = world.get_entity(entity).ok()?;
+    let handle = body.get::<RapierRigidBodyHandle>()?.0;
+    Some((body.get::<RapierContextEntityLink>()?.0, id(handle)))
 }
 
 /// Returns whether Rapier's snapshot was restored after the last step, and resets that fact.

@@ -63,6 +63,9 @@ impl Kept {
         kept.fill_groups(&mut scene);
         kept.fill_scene(&mut scene);
         kept.leave_faulty(&mut scene, world);
+        if !kept.engine_stays {
+            kept.take_share(world, |body| !scene.index.contains_key(&body));
+        }
         kept.show(&scene, world);
         // Everything written so far belongs to the restored state. Only later writes count as changes.
         scene.since = Some(world.change_tick());
