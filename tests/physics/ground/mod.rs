@@ -38,5 +38,5 @@ mod stand;
 mod surfaces;
 mod torsion;
 mod wall;
-mod winch;
 mod wheel_shapes;
+mod winch;
