@@ -55,6 +55,6 @@ pub(crate) fn single(number: f64) -> f32 {
 }
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
 #[cfg(test)]
 mod undamped;

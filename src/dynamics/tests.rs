@@ -13,7 +13,7 @@ use std::cell::Cell;
 
 const DT: f64 = 1.0 / 60.0;
 
-pub(super) fn point(mass: f64, position: DVec3, gravity: DVec3) -> Body {
+pub(crate) fn point(mass: f64, position: DVec3, gravity: DVec3) -> Body {
     Body {
         position,
         velocity: DVec3::ZERO,
@@ -41,7 +41,7 @@ pub(super) fn turning(mut body: Body, inertia: DVec3, velocity: DVec3) -> Body {
     body
 }
 
-pub(super) fn element(a: End, b: End, stiffness: f64, damping: f64, rest_length: f64) -> Element {
+pub(crate) fn element(a: End, b: End, stiffness: f64, damping: f64, rest_length: f64) -> Element {
     Element {
         ends: [a, b],
         stiffness,

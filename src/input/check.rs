@@ -12,6 +12,9 @@ pub(crate) struct Fault {
 }
 
 impl Fault {
+    /// That of a law of the user's, which may give anything.
+    pub(crate) const UNSOUND_LAW: Self = Self::new("ForceLaw", "gives NaN or infinity");
+
     pub(crate) const fn new(field: &'static str, reason: &'static str) -> Self {
         Self { field, reason }
     }

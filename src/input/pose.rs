@@ -36,8 +36,7 @@ impl Companions<'_, '_> {
         bare.limits = [f64::NEG_INFINITY, f64::INFINITY];
         let preload = (tension - Law::new(bare).elastic(length, rest).force) as f32;
         if !preload.is_finite() {
-            // A custom law may give anything.
-            return Err(Fault::new("ForceLaw", "gives NaN or infinity"));
+            return Err(Fault::UNSOUND_LAW);
         }
         recipe.preload = f64::from(preload);
         let law = Law::new(recipe);

@@ -93,7 +93,7 @@ pub(crate) fn element(row: &mut ElementRow, ends: [End; 2], bodies: &[Body]) -> 
     }
     let rate = line.motion(&element, bodies, 0.0).axial;
     if !element.is_sound(line.distance(), rate) {
-        let fault = Fault::new("ForceLaw", "gives NaN or infinity");
+        let fault = Fault::UNSOUND_LAW;
         row.trouble.set_passing(Some(fault));
         return None;
     }

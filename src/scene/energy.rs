@@ -72,7 +72,7 @@ impl ElementRow {
     pub(crate) fn judge_law(&mut self, (length, rate): (f64, f64)) {
         if self.law.is_some() {
             let sound = self.is_sound_at(length, rate);
-            let fault = (!sound).then_some(Fault::new("ForceLaw", "gives NaN or infinity"));
+            let fault = (!sound).then_some(Fault::UNSOUND_LAW);
             self.trouble.set_passing(fault);
         }
     }

@@ -1,21 +1,11 @@
 //! Are the numbers that are computed for the first step right, whatever stands beside them and happens before it?
 
+use super::hold::{hook_and_ball, strays};
 use crate::harness::*;
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
 use std::f32::consts::TAU;
-
-/// Greatest distance of a body from its place within three seconds, m.
-fn strays(lab: &mut Lab, body: Entity) -> f32 {
-    let start = lab.position(body);
-    let mut most = 0.0_f32;
-    for _ in 0..lab.ticks(3.0) {
-        lab.tick();
-        most = most.max(lab.position(body).distance(start));
-    }
-    most
-}
 
 #[test]
 fn a_load_that_is_put_elsewhere_before_the_first_step_is_held_there() {
@@ -45,16 +35,7 @@ fn a_load_that_is_put_elsewhere_before_the_first_step_is_held_there() {
 
 #[test]
 fn a_pose_is_held_beside_a_tuning() {
-    let mut lab = Lab::new();
-    let hook = lab.point(Vec3::Y * 5.0);
-    // What can touch something is tuned once more after the first step.
-    let ball = lab.spawn((
-        RigidBody::Dynamic,
-        Collider::ball(0.2),
-        ColliderMassProperties::Mass(2.0),
-        Transform::from_xyz(0.0, 4.0, 0.0),
-        Velocity::default(),
-    ));
+    let (mut lab, [hook, ball]) = hook_and_ball();
     let pair = SpringDamper::new(hook, ball).with_rest_length(0.9);
     let both = (SpringTuning::frequency(2.0, 0.3), HoldPose::new());
     let element = lab.spawn((pair, both));
@@ -67,14 +48,7 @@ fn a_pose_is_held_beside_a_tuning() {
 
 #[test]
 fn a_tuning_that_is_taken_away_after_the_first_step_leaves_no_pose_behind() {
-    let mut lab = Lab::new();
-    let hook = lab.point(Vec3::Y * 5.0);
-    let ball = lab.spawn((
-        RigidBody::Dynamic,
-        Collider::ball(0.2),
-        ColliderMassProperties::Mass(2.0),
-        Transform::from_xyz(0.0, 4.0, 0.0),
-    ));
+    let (mut lab, [hook, ball]) = hook_and_ball();
     let pair = SpringDamper::new(hook, ball);
     let element = lab.spawn((pair, SpringTuning::frequency(2.0, 0.3)));
     lab.tick();

@@ -6,7 +6,7 @@ use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
 
 /// Greatest distance of a body from its place within three seconds, m.
-fn strays(lab: &mut Lab, body: Entity) -> f32 {
+pub(super) fn strays(lab: &mut Lab, body: Entity) -> f32 {
     let start = lab.position(body);
     let mut most = 0.0_f32;
     for _ in 0..lab.ticks(3.0) {
@@ -14,6 +14,20 @@ fn strays(lab: &mut Lab, body: Entity) -> f32 {
         most = most.max(lab.position(body).distance(start));
     }
     most
+}
+
+/// A hook, and 1 m below it a ball of 2 kg. What can touch something is tuned once more after the first step.
+pub(super) fn hook_and_ball() -> (Lab, [Entity; 2]) {
+    let mut lab = Lab::new();
+    let hook = lab.point(Vec3::Y * 5.0);
+    let ball = lab.spawn((
+        RigidBody::Dynamic,
+        Collider::ball(0.2),
+        ColliderMassProperties::Mass(2.0),
+        Transform::from_xyz(0.0, 4.0, 0.0),
+        Velocity::default(),
+    ));
+    (lab, [hook, ball])
 }
 
 fn fault_of(lab: &Lab, element: Entity) -> SpringFault {
@@ -260,15 +274,7 @@ fn a_sag_without_a_rest_length_leaves_the_body_where_it_was_spawned() {
 
 #[test]
 fn a_sag_of_a_ball_that_can_touch_is_held_as_well() {
-    let mut lab = Lab::new();
-    let hook = lab.point(Vec3::Y * 5.0);
-    let ball = lab.spawn((
-        RigidBody::Dynamic,
-        Collider::ball(0.2),
-        ColliderMassProperties::Mass(2.0),
-        Transform::from_xyz(0.0, 4.0, 0.0),
-        Velocity::default(),
-    ));
+    let (mut lab, [hook, ball]) = hook_and_ball();
     let element = lab.spawn((SpringDamper::new(hook, ball), SpringTuning::sag(0.2, 0.3)));
     let moved = strays(&mut lab, ball);
     assert!(moved < 1e-4, "{moved}");

@@ -160,6 +160,14 @@ fn in_a_scene_with_every_law_nothing_is_lost_in_a_minute() {
     assert_eq!(solved, scene.elements.len() as f64);
 }
 
+/// The game did this work (J) on an element at a body of 1 kg, and it is there as stored energy and motion.
+fn assert_work(lab: &Lab, element: Entity, body: Entity, work: f32) {
+    let seen = lab.readout(element);
+    let motion = 0.5 * lab.velocity(body).length_squared();
+    assert!((seen.work - work).abs() < 1e-4, "{seen:?}");
+    assert!((seen.stored_energy + motion - work).abs() < 1e-3);
+}
+
 #[test]
 fn what_an_actuator_does_is_its_work() {
     // Shortening the rest length by Δ = 0.1 m at once puts in ½ k Δ².
@@ -174,10 +182,7 @@ fn what_an_actuator_does_is_its_work() {
     lab.run(0.1);
     lab.get_mut::<Spring>(element).rest_length = Some(0.9);
     lab.run(0.5);
-    let seen = lab.readout(element);
-    let motion = 0.5 * lab.velocity(body).length_squared();
-    assert!((seen.work - 0.4).abs() < 1e-4, "{seen:?}");
-    assert!((seen.stored_energy + motion - 0.4).abs() < 1e-3);
+    assert_work(&lab, element, body, 0.4);
 }
 
 #[test]
@@ -191,10 +196,7 @@ fn an_anchor_that_is_put_elsewhere_on_its_body_does_the_work_of_the_stretch() {
     let farther = Anchors::new(Vec3::ZERO, Vec3::X * 0.1);
     lab.app.world_mut().entity_mut(element).insert(farther);
     lab.run(0.5);
-    let seen = lab.readout(element);
-    let motion = 0.5 * lab.velocity(body).length_squared();
-    assert!((seen.work - 0.4).abs() < 1e-4, "{seen:?}");
-    assert!((seen.stored_energy + motion - 0.4).abs() < 1e-3);
+    assert_work(&lab, element, body, 0.4);
 }
 
 /// A body of 10 t, which hardly moves, is 0.6 m beside and 0.8 m below a hook, on a spring of 100 N/m and 0.5 m.

@@ -1,11 +1,10 @@
 //! How firm a rope may be on a body that joints hold.
 
 use super::Order;
-use crate::dynamics::body::{Body, Spin};
-use crate::dynamics::element::{Element, End, Path};
-use crate::dynamics::guide::Guide;
+use crate::dynamics::element::{End, Path};
+use crate::dynamics::tests::{element, point};
 use crate::scene::held::{Inside, Leeway};
-use bevy::math::{DQuat, DVec3};
+use bevy::math::DVec3;
 use bevy::prelude::default;
 
 /// Mass of the hook at the end of the rope, kg.
@@ -13,41 +12,13 @@ const HOOK: f64 = 0.1;
 
 /// Greatest stiffness (N/m) and damping (N s/m) of a rope on a hook whose joints leave the share `jointed` of its inverse mass.
 fn firmest(jointed: f64) -> [f64; 2] {
-    let bodies = [Body {
-        position: DVec3::X,
-        velocity: DVec3::ZERO,
-        rotation: DQuat::IDENTITY,
-        spin: Spin::Ignored,
-        inverse_mass: DVec3::splat(HOOK.recip()),
-        inertia: DVec3::ONE,
-        principal: DQuat::IDENTITY,
-        rotation_locked: [false; 3],
-        farthest_turn: f64::INFINITY,
-        acceleration: DVec3::ZERO,
-        torque: DVec3::ZERO,
-        given: (DVec3::ZERO, DVec3::ZERO),
-        torque_work: 0.0,
-        turned: None,
-    }];
-    let rope = Element {
-        ends: [
-            End::Path(Path::straight(DVec3::ZERO, DVec3::ZERO)),
-            End::Body {
-                index: 0,
-                arm: DVec3::ZERO,
-            },
-        ],
-        stiffness: 1e3,
-        damping: 0.0,
-        rest_length: 1.0,
-        guide: Guide::Centres,
-        law: None,
-        angle: 0.0,
-        heat: 0.0,
-        work: 0.0,
-        direction: None,
-        stiff_damper: false,
+    let bodies = [point(HOOK, DVec3::X, DVec3::ZERO)];
+    let fixed = End::Path(Path::straight(DVec3::ZERO, DVec3::ZERO));
+    let hook = End::Body {
+        index: 0,
+        arm: DVec3::ZERO,
     };
+    let rope = element(fixed, hook, 1e3, 0.0, 1.0);
     let line = rope.line(&bodies).expect("its ends are apart");
     let inside = Inside {
         leeway: Leeway {
