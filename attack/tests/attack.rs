@@ -2,9 +2,9 @@
 //! finite, or leaves something behind.
 //!
 //! `cargo test --workspace --test attack` runs a few. `cargo test --release --workspace --test attack -- --scenes 100000`
-//! is the long search. `--seed N` starts at another seed than 0. This is a program of its own and not a list of tests, so
-//! that it prints its findings as it goes on. It also fails if it met nothing of a kind that it is to judge, such as a
-//! snapshot that fits.
+//! is the long search. `--minutes N` ends the search after that time, whatever the number of scenes. `--seed N` starts at
+//! another seed than 0. This is a program of its own and not a list of tests, so that it prints its findings as it goes on.
+//! It also fails if it met nothing of a kind that it is to judge, such as a snapshot that fits.
 
 use attack::judge::{Met, Verdict, judge};
 use attack::plan::{Plan, plans};
@@ -14,6 +14,7 @@ use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 use std::collections::BTreeMap;
 use std::error::Error;
 use std::process::ExitCode;
+use std::time::{Duration, Instant};
 
 /// Number of scenes of a short search. A search of fewer scenes, as for one seed, need not meet everything.
 const SCENES: u64 = 200;
@@ -31,36 +32,65 @@ fn main() -> ExitCode {
         Ok(true) => ExitCode::SUCCESS,
         Ok(false) => ExitCode::FAILURE,
         Err(wrong) => {
-            eprintln!("{wrong}\n[--scenes N] [--seed N]");
+            eprintln!("{wrong}\n[--scenes N] [--minutes N] [--seed N]");
             ExitCode::FAILURE
         }
     }
 }
 
+/// What the command line asks for.
+struct Wishes {
+    scenes: u64,
+    /// First seed.
+    seed: u64,
+    /// Time after which no further scene begins.
+    time: Option<Duration>,
+}
+
+impl Wishes {
+    /// Reads the command line. `None` if it asks for other tests than this one.
+    fn read() -> Result<Option<Self>, Box<dyn Error>> {
+        let (mut scenes, mut seed, mut time) = (None, 0, None);
+        let mut words = lexopt::Parser::from_env();
+        while let Some(word) = words.next()? {
+            match word {
+                Long("scenes") => scenes = Some(words.value()?.parse()?),
+                Long("seed") => seed = words.value()?.parse()?,
+                Long("minutes") => {
+                    let minutes: f64 = words.value()?.parse()?;
+                    time = Some(Duration::try_from_secs_f64(60.0 * minutes)?);
+                }
+                // Arguments that Cargo passes to every test program.
+                Value(filter) if !"attack".contains(&*filter.to_string_lossy()) => return Ok(None),
+                Value(_) | Long("nocapture" | "quiet") | Short('q') => {}
+                other => return Err(other.unexpected().into()),
+            }
+        }
+        let most = if time.is_some() { u64::MAX } else { SCENES };
+        Ok(Some(Self {
+            scenes: scenes.unwrap_or(most),
+            seed,
+            time,
+        }))
+    }
+}
+
 /// Returns whether no fault of this crate was found, and everything was met that the search is to judge.
 fn search() -> Result<bool, Box<dyn Error>> {
-    let (mut scenes, mut seed) = (SCENES, 0_u64);
-    let mut words = lexopt::Parser::from_env();
-    while let Some(word) = words.next()? {
-        match word {
-            Long("scenes") => scenes = words.value()?.parse()?,
-            Long("seed") => seed = words.value()?.parse()?,
-            // Arguments that Cargo passes to every test program.
-            Value(filter) if !"attack".contains(&*filter.to_string_lossy()) => {
-                println!("attack: filtered out, no scene was run");
-                return Ok(true);
-            }
-            Value(_) | Long("nocapture" | "quiet") | Short('q') => {}
-            other => return Err(other.unexpected().into()),
-        }
-    }
+    let Some(Wishes { scenes, seed, time }) = Wishes::read()? else {
+        println!("attack: filtered out, no scene was run");
+        return Ok(true);
+    };
+    let begin = Instant::now();
     let mut engines = BTreeMap::<String, u64>::new();
     let mut ours = BTreeMap::<String, u64>::new();
     let mut met = Met::default();
-    let seeds = ONCE_WRONG
-        .into_iter()
-        .chain(seed..seed.saturating_add(scenes));
-    for (scene, seed) in (1..).zip(seeds) {
+    let mut run = 0;
+    let new = seed..seed.saturating_add(scenes);
+    for seed in ONCE_WRONG.into_iter().chain(new) {
+        if time.is_some_and(|time| begin.elapsed() > time) {
+            break;
+        }
         let mut tree = scene_of(seed)?;
         match judge(&tree.current(), &mut met) {
             Verdict::Sound => {}
@@ -75,14 +105,15 @@ fn search() -> Result<bool, Box<dyn Error>> {
                 }
             }
         }
-        if scene % 1000 == 0 {
-            println!("{scene} scenes, ours {ours:?}, the engine's {engines:?}");
+        run += 1;
+        if run % 1000 == 0 {
+            println!("{run} scenes, ours {ours:?}, the engine's {engines:?}");
         }
     }
     println!(
-        "{scenes} scenes from seed {seed}: ours {ours:#?}, the engine's {engines:#?}, {met:?}"
+        "{run} scenes, the new ones from seed {seed}: ours {ours:#?}, the engine's {engines:#?}, {met:?}"
     );
-    let missing = if scenes < SCENES {
+    let missing = if run < SCENES {
         Vec::new()
     } else {
         met.missing()
