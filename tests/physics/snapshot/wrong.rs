@@ -197,6 +197,34 @@ fn springs_alone_do_not_fit_a_rapier_that_solves_other_bodies_more_finely_now() 
     );
 }
 
+/// A box on the ground below a point, on a spring to it, and `more` bodies without elements far away.
+fn below_a_point(more: usize) -> Film {
+    let mut film = Film::new(CoiloverPlugin::default());
+    film.ground();
+    let load = film.solid(Vec3::Y * 0.1, Collider::cuboid(0.1, 0.1, 0.1), 2.0);
+    let hook = film.point(Vec3::Y);
+    film.spawn(coil(hook, load, 10.0, 1.0).with_rest_length(0.9));
+    for i in 0..more {
+        film.brick(1.0, Vec3::X * (i as f32 + 10.0));
+    }
+    film.run(30);
+    film
+}
+
+/// Rapier has a hidden body for the point. In the other world the handle of that body is the brick's.
+#[test]
+fn a_body_of_the_game_is_not_taken_for_one_that_stands_for_a_point() {
+    let (film, mut other) = (below_a_point(0), below_a_point(1));
+    let spring = film.cast[3];
+    assert_eq!(film.lab.readout(spring).method, SpringMethod::Engine);
+    let mut then = CoiloverSnapshot::take(film.lab.app.world());
+    let pairs = film.cast.iter().copied().zip(other.cast.iter().copied());
+    let mut names: EntityHashMap<Entity> = pairs.collect();
+    then.map_entities(&mut names);
+    assert_eq!(springs(&mut other, &then), Err(SnapshotError::OtherEngine));
+    assert_eq!(springs(&mut other, &then.without_engine()), Ok(()));
+}
+
 #[test]
 fn what_is_not_put_back_makes_another_future() {
     // Otherwise no comparison of these tests would depend on the state that springs keep.
