@@ -5,6 +5,7 @@ use crate::backend::rapier::body::read;
 use crate::compat;
 use crate::dynamics::single;
 use crate::element::{Anchors, MaxForce, SpringAxis, SpringDamper, SpringFault, SpringTuning};
+use crate::input::check::MOST;
 use crate::input::say::{Stays, say};
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::{
@@ -86,10 +87,11 @@ impl MouseSpring {
     /// Returns the field and the reason if this component cannot pull.
     fn fault(&self) -> Option<(&'static str, &'static str)> {
         let is_positive = |x: f32| x > 0.0 && x.is_finite();
-        if !self.target.is_finite() {
-            Some(("MouseSpring::target", "is NaN or infinite"))
-        } else if !self.point.is_finite() {
-            Some(("MouseSpring::point", "is NaN or infinite"))
+        let is_place = |at: Vec3| at.abs().cmple(Vec3::splat(MOST)).all();
+        if !is_place(self.target) {
+            Some(("MouseSpring::target", "is NaN or larger than 1e12"))
+        } else if !is_place(self.point) {
+            Some(("MouseSpring::point", "is NaN or larger than 1e12"))
         } else if !is_positive(self.frequency) {
             Some(("MouseSpring::frequency", "is not above zero, or not finite"))
         } else if !self.max_force.is_none_or(is_positive) {

@@ -11,6 +11,7 @@ use std::fmt;
 #[reflect(Component, Debug, PartialEq, Clone)]
 pub struct SpringFault {
     /// The element that does not act.
+    #[entities]
     pub entity: Entity,
     /// Component and field at fault, such as `Spring::stiffness`.
     pub field: String,

@@ -136,8 +136,8 @@ pub struct CustomSpringLaw(pub(crate) Arc<dyn ForceLaw>);
 
 /// A [`ForceLaw`] of your own as the force of the damper over the rate of the length, instead of a
 /// [`DampingLaw`](crate::DampingLaw). The element's damping is ignored. The force must have the sign of the rate; a
-/// force of the other sign counts as zero. With a [`DampingLaw`](crate::DampingLaw) on the same entity, the element
-/// gets a [`SpringFault`](crate::SpringFault) and does not act.
+/// force of the other sign counts as zero. With a force at rest, or with a [`DampingLaw`](crate::DampingLaw) on the same
+/// entity, the element gets a [`SpringFault`](crate::SpringFault) and does not act.
 #[derive(Component, Clone)]
 pub struct CustomDampingLaw(pub(crate) Arc<dyn ForceLaw>);
 

@@ -30,7 +30,8 @@ use bevy::prelude::*;
 ///   the first step is written back if the component has none.
 /// - Rapier: bodies, contacts, joints. [`RapierSnapshot`] contains them, with `Transform`, `Velocity` and `Sleeping` of
 ///   bodies. Restore it first.
-/// - `Transform` of ends that are not bodies, `Time<Fixed>`, and whatever else the game's own systems read.
+/// - `Transform` of ends that are not bodies, [`CoiloverSettings`](crate::CoiloverSettings), `Time<Fixed>`, and whatever
+///   else the game's own systems read.
 ///
 /// It takes about 930 bytes for a spring with a body of its own (`cargo bench -p benches --bench snapshot`); see
 /// [`bytes`](Self::bytes).

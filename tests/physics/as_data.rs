@@ -18,7 +18,7 @@ pub fn paths(lab: &Lab) -> BTreeSet<&'static str> {
         .collect()
 }
 
-const COMPONENTS: [&str; 22] = [
+const COMPONENTS: [&str; 23] = [
     "Spring",
     "Damper",
     "SpringDamper",
@@ -41,6 +41,7 @@ const COMPONENTS: [&str; 22] = [
     "HoldPose",
     "WorldAnchors",
     "MouseSpring",
+    "EndNames",
 ];
 
 #[test]
@@ -95,6 +96,32 @@ fn a_clone_of_both_ends_and_element_points_at_the_clones() {
     let mut pair = SpringDamper::new(a, b);
     Component::map_entities(&mut pair, &mut map);
     assert_eq!((pair.body_a, pair.body_b), (c, d));
+    let mut spring = TorsionSpring::new(a, b, Vec3::X);
+    Component::map_entities(&mut spring, &mut map);
+    assert_eq!((spring.body_a, spring.body_b), (c, d));
+    let mut damper = TorsionDamper::new(a, b, Vec3::X);
+    Component::map_entities(&mut damper, &mut map);
+    assert_eq!((damper.body_a, damper.body_b), (c, d));
+    let mut pair = TorsionSpringDamper::new(a, b, Vec3::X);
+    Component::map_entities(&mut pair, &mut map);
+    assert_eq!((pair.body_a, pair.body_b), (c, d));
+}
+
+#[test]
+fn a_pointer_and_a_fault_name_the_clones_too() {
+    let mut world = World::new();
+    let [before, clone] = [(), ()].map(|()| world.spawn_empty().id());
+    let mut map = EntityHashMap::from_iter([(before, clone)]);
+    let mut pointer = MouseSpring::new(before, Vec3::ZERO, Vec3::ZERO);
+    Component::map_entities(&mut pointer, &mut map);
+    assert_eq!(pointer.body, clone);
+    let mut fault = SpringFault {
+        entity: before,
+        field: "Spring::stiffness".into(),
+        reason: "is NaN".into(),
+    };
+    Component::map_entities(&mut fault, &mut map);
+    assert_eq!(fault.entity, clone);
 }
 
 #[test]

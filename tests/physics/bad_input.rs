@@ -172,6 +172,16 @@ fn a_transform_that_is_not_finite() {
 }
 
 #[test]
+fn a_point_that_is_farther_than_the_engine_can_compute() {
+    let mut b = bench();
+    // Rapier's f32 cannot hold the square of this distance.
+    b.lab.get_mut::<Transform>(b.hook).translation.x = 1e30;
+    b.expect_fault("SpringDamper::body_a", "farther than");
+    b.lab.get_mut::<Transform>(b.hook).translation.x = 0.0;
+    b.expect_recovery();
+}
+
+#[test]
 fn a_dynamic_body_without_mass() {
     let mut b = bench();
     let empty = b

@@ -152,6 +152,9 @@ fn numbers_that_mean_nothing_are_told_once_and_mended_by_better_ones() {
             "max_force",
             MouseSpring::new(body, Vec3::ZERO, Vec3::Y).with_max_force(f32::NAN),
         ),
+        // Rapier's f32 cannot hold the square of such a distance.
+        ("target", MouseSpring::new(body, Vec3::ZERO, 1e30 * Vec3::Y)),
+        ("point", MouseSpring::new(body, 1e30 * Vec3::X, Vec3::Y)),
     ];
     for (field, spring) in bad {
         *lab.get_mut::<MouseSpring>(mouse) = spring;

@@ -2,7 +2,7 @@
 
 use super::body::id;
 use crate::backend::Place;
-use crate::input::check::Fault;
+use crate::input::check::{Fault, MOST};
 use crate::input::named_ends::MOST_LEVELS;
 use bevy::ecs::system::SystemParam;
 use bevy::math::{DAffine3, DVec3};
@@ -73,9 +73,7 @@ impl Ends<'_, '_> {
                 None => break None,
             }
         };
-        if !point.is_finite() {
-            return Err(Fault::new(field, "has a Transform that is not finite"));
-        }
+        check(point, field)?;
         Ok(match body {
             Some((body, context)) => Place::OnBody {
                 entity: current,
@@ -86,6 +84,20 @@ impl Ends<'_, '_> {
             None => Place::Point(point),
         })
     }
+}
+
+/// Returns a fault if a point is not finite or too far away for the engine.
+fn check(point: DVec3, field: &'static str) -> Result<(), Fault> {
+    // NaN is not within any bound.
+    if point.abs().cmple(DVec3::splat(f64::from(MOST))).all() {
+        return Ok(());
+    }
+    let reason = if point.is_finite() {
+        "is farther than 1e12 m from the origin, or from its body"
+    } else {
+        "has a Transform that is not finite"
+    };
+    Err(Fault::new(field, reason))
 }
 
 /// The body's global scale. The scale of a rotating transform changes in its last bits, which would make the anchor tremble.

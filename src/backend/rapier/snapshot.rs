@@ -32,6 +32,9 @@ use std::collections::HashMap;
 ///
 /// The snapshot contains no events and no other components of the game, such as `ExternalForce` of bodies without springs.
 /// Restore such a force with `bypass_change_detection`, because Rapier wakes a body whose force is written.
+///
+/// Rapier does not check its own data. So restore only snapshots from sources that you trust: a forged one can make Rapier panic
+/// or hang.
 #[derive(Clone)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub struct RapierSnapshot(Vec<Context>);

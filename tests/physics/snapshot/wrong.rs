@@ -2,6 +2,7 @@
 
 use super::film::*;
 use super::scenes::*;
+use crate::harness::{Engine, Lab};
 use bevy::ecs::entity::{EntityHashMap, MapEntities};
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
@@ -195,6 +196,84 @@ fn springs_alone_do_not_fit_a_rapier_that_solves_other_bodies_more_finely_now() 
         springs(&mut film, &then.springs),
         Err(SnapshotError::OtherEngine)
     );
+}
+
+/// A box on the ground below a point, on a spring to it, and `more` bodies without elements far away.
+fn below_a_point(more: usize) -> Film {
+    let mut film = Film::new(CoiloverPlugin::default());
+    film.ground();
+    let load = film.solid(Vec3::Y * 0.1, Collider::cuboid(0.1, 0.1, 0.1), 2.0);
+    let hook = film.point(Vec3::Y);
+    film.spawn(coil(hook, load, 10.0, 1.0).with_rest_length(0.9));
+    for i in 0..more {
+        film.brick(1.0, Vec3::X * (i as f32 + 10.0));
+    }
+    film.run(30);
+    film
+}
+
+/// Rapier has a hidden body for the point. In the other world the handle of that body is the brick's.
+#[test]
+fn a_body_of_the_game_is_not_taken_for_one_that_stands_for_a_point() {
+    let (film, mut other) = (below_a_point(0), below_a_point(1));
+    let spring = film.cast[3];
+    assert_eq!(film.lab.readout(spring).method, SpringMethod::Engine);
+    let mut then = CoiloverSnapshot::take(film.lab.app.world());
+    let pairs = film.cast.iter().copied().zip(other.cast.iter().copied());
+    let mut names: EntityHashMap<Entity> = pairs.collect();
+    then.map_entities(&mut names);
+    assert_eq!(springs(&mut other, &then), Err(SnapshotError::OtherEngine));
+    assert_eq!(springs(&mut other, &then.without_engine()), Ok(()));
+}
+
+/// A box on the ground on a taut rope to a point. `strangers` are entities that the app has before Rapier's context.
+fn on_a_rope(strangers: usize) -> Film {
+    let mut lab = Lab::without_plugin(Engine::default());
+    for _ in 0..strangers {
+        lab.spawn(());
+    }
+    lab.app.add_plugins(CoiloverPlugin::default());
+    lab.prime();
+    let mut film = Film {
+        lab,
+        cast: Vec::new(),
+        tick: 0,
+        deed: |_| {},
+    };
+    film.ground();
+    let load = film.solid(Vec3::Y * 0.1, Collider::cuboid(0.1, 0.1, 0.1), 2.0);
+    let hook = film.point(Vec3::Y);
+    let rope = coil(hook, load, 10.0, 1.0).with_rest_length(0.5);
+    film.spawn((rope, SpringAction::Pull));
+    film.run(30);
+    film
+}
+
+fn context(film: &mut Film) -> Entity {
+    let world = film.lab.app.world_mut();
+    let mut contexts = world.query_filtered::<Entity, With<RapierContextSimulation>>();
+    contexts.single(world).expect("one context")
+}
+
+#[test]
+fn sweeps_count_too_where_the_context_is_another_entity() {
+    let (mut film, mut other) = (on_a_rope(0), on_a_rope(5));
+    let here = context(&mut other);
+    assert_ne!(context(&mut film), here);
+    let mut then = CoiloverSnapshot::take(film.lab.app.world());
+    let pairs = film.cast.iter().copied().zip(other.cast.iter().copied());
+    let mut names: EntityHashMap<Entity> = pairs.collect();
+    then.map_entities(&mut names);
+    let order = |film: &mut Film, sweeps: usize| {
+        let mut engine = film.lab.get_mut::<RapierContextSimulation>(here);
+        let number = &mut engine.integration_parameters.num_internal_pgs_iterations;
+        std::mem::replace(number, sweeps)
+    };
+    let ours = order(&mut other, 3);
+    assert!(ours > 3, "a rope takes more than {ours}");
+    assert_eq!(springs(&mut other, &then), Err(SnapshotError::OtherEngine));
+    order(&mut other, ours);
+    assert_eq!(springs(&mut other, &then), Ok(()));
 }
 
 #[test]

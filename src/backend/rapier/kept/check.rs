@@ -1,5 +1,6 @@
 //! Checks whether a snapshot of the springs fits a world.
 
+use crate::backend::BodyId;
 use crate::backend::rapier::body::{handle, joint_handle};
 use crate::backend::rapier::held::{fits, is_ours};
 use crate::input::parts::Acts;
@@ -136,7 +137,8 @@ impl Kept {
     }
 }
 
-/// Whether all joints and hidden bodies of an element are in the engine, and the joints were made by the crate.
+/// Whether all joints and hidden bodies of an element are in the engine. A handle alone does not tell: in another world it may
+/// belong to a joint between other bodies, or to a body of the game.
 pub(crate) fn is_in(
     inside: &KeptInside,
     set: &RapierRigidBodySet,
@@ -144,8 +146,13 @@ pub(crate) fn is_in(
 ) -> bool {
     let there = |kept: &KeptJoint| {
         let joint = joints.impulse_joints.get(joint_handle(kept.id));
-        joint.is_some_and(is_ours)
+        let bodies = kept.joint.bodies.map(handle);
+        joint.is_some_and(|joint| is_ours(joint) && [joint.body1(), joint.body2()] == bodies)
     };
-    let mut hidden = inside.hidden.iter().flatten();
-    inside.joints.iter().all(there) && hidden.all(|body| set.bodies.contains(handle(*body)))
+    let is_hidden = |body: &BodyId| {
+        let body = set.bodies.get(handle(*body));
+        // A body of the game has the bits of its entity here, which are never zero.
+        body.is_some_and(|body| body.user_data == 0)
+    };
+    inside.joints.iter().all(there) && inside.hidden.iter().flatten().all(is_hidden)
 }

@@ -33,15 +33,13 @@ impl Kept {
     /// Restores the springs of a world to the state of the snapshot.
     pub(crate) fn put(&self, world: &mut World) -> Result<(), SnapshotError> {
         let engine_went_back = engine_went_back(world);
-        let fits = self.check(world, engine_went_back);
+        let mut kept = self.clone();
+        kept.name_contexts(world);
+        let fits = kept.check(world, engine_went_back);
         if fits.is_err() && engine_went_back {
-            let mut kept = self.clone();
-            kept.name_contexts(world);
             kept.begin_anew(world);
         }
         fits?;
-        let mut kept = self.clone();
-        kept.name_contexts(world);
         let Some(mut scene) = world.remove_resource::<Scene>() else {
             return Err(SnapshotError::NoPlugin);
         };
