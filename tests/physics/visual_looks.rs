@@ -194,3 +194,22 @@ fn a_skin_that_was_spawned_disabled_is_placed_once_it_is_enabled() {
     lab.run(0.1);
     assert!(goes(&lab, skin, Vec3::X, Vec3::X * 3.0));
 }
+
+#[test]
+fn looks_that_go_before_they_are_drawn_leave_no_size_behind() {
+    let mut lab = lab();
+    let (a, b) = (lab.point(Vec3::ZERO), lab.point(Vec3::ZERO));
+    // Not drawn yet, because the ends coincide.
+    let element = lab.spawn((Damper::new(a, b), Coil::fitted()));
+    lab.run(0.1);
+    lab.app.world_mut().entity_mut(element).remove::<Coil>();
+    lab.run(0.1);
+    lab.get_mut::<Transform>(b).translation = 2.0 * Vec3::Y;
+    let looks = Telescope::fitted();
+    lab.app.world_mut().entity_mut(element).insert(looks);
+    lab.run(0.1);
+    let widths = parts(&lab, element).into_iter().map(|part| part.scale().x);
+    let widest = widths.fold(0.0, f32::max);
+    // The collar is 1.12 times as wide as the tube, whose radius is 4.8 % of the length.
+    assert!((0.095..0.12).contains(&widest), "{widest}");
+}
