@@ -213,12 +213,13 @@ pub(super) fn wind(
         let Some(coil) = coil else {
             return false;
         };
-        let first = *twist.first.get_or_insert(size.unwrap_or(SIZE));
-        let coil = coil.at(first);
+        let first = twist.first.or(size);
+        let coil = coil.at(first.unwrap_or(SIZE));
         if let Err(wrong) = coil.check() {
             log::warn!("{element}: TorsionCoil: {wrong}; it is not drawn until that is mended");
             return false;
         }
+        twist.first = first;
         twist.coil = Some(coil);
         twist.step = 0;
         let strip = spirals.strip(&coil, 0, &mut meshes);

@@ -263,6 +263,23 @@ fn it_is_a_quarter_as_large_as_what_it_turns() {
 }
 
 #[test]
+fn a_spiral_whose_center_was_wrong_fits_once_it_is_mended() {
+    let mut lab = lab();
+    let (frame, door) = (lab.point(Vec3::ZERO), lab.point(Vec3::X * 2.0));
+    let element = lab.spawn((
+        TorsionSpring::new(frame, door, Vec3::Y).with_rest_angle(0.0),
+        TorsionCoil::default().with_center(Vec3::NAN),
+    ));
+    lab.run(0.1);
+    assert!(parts(&lab, element).is_empty());
+    lab.get_mut::<TorsionCoil>(element).center = Vec3::ZERO;
+    lab.run(0.1);
+    let far = |at: &GlobalTransform| at.translation().length();
+    let radius = parts(&lab, element).iter().map(far).fold(0.0, f32::max);
+    assert!((radius / 0.5 - 1.0).abs() < 0.05, "{radius}");
+}
+
+#[test]
 fn spirals_that_cannot_be_drawn_or_stand_on_a_linear_element_are_told_once() {
     let log = Log::capture();
     let mut lab = lab();
