@@ -17,13 +17,15 @@ use bevy::mesh::{Mesh, Mesh3d};
 use bevy::pbr::{MeshMaterial3d, StandardMaterial};
 use bevy::platform::collections::HashMap;
 use bevy::prelude::*;
-use bevy_rapier3d::prelude::Collider;
+use bevy_rapier3d::prelude::{Collider, ColliderScale};
 use std::f32::consts::TAU;
 
 /// A spiral that no camera sees is turned only once in this many frames, because it may cast a shadow into the picture.
 const SELDOM: u32 = 8;
 /// Size of what a spiral turns, if it cannot be measured, m.
 const SIZE: f32 = 0.5;
+/// Fineness of a round shape that is scaled unevenly, as in Rapier's plugin.
+const SUBDIVISIONS: u32 = 10;
 /// Number of meshes that are kept before the first search for unused ones. A spring that swings shows the same few
 /// again.
 const KEPT: usize = 256;
@@ -98,7 +100,7 @@ impl TurnItem<'_, '_> {
 pub(super) struct Turns<'w, 's> {
     bodies: Bodies<'w, 's>,
     globals: Query<'w, 's, &'static GlobalTransform, Without<Winding>>,
-    colliders: Query<'w, 's, &'static Collider>,
+    colliders: Query<'w, 's, (&'static Collider, Option<&'static ColliderScale>)>,
 }
 
 impl Turns<'_, '_> {
@@ -129,10 +131,18 @@ impl Turns<'_, '_> {
         let (_, body, ..) = turn.element()?;
         let at = self.globals.get(body).ok()?;
         let mut size = at.translation().distance(pose.center);
-        if let Ok(collider) = self.colliders.get(body) {
+        if let Ok((collider, scale)) = self.colliders.get(body) {
+            let scale = match scale {
+                Some(ColliderScale::Absolute(scale)) => *scale,
+                Some(ColliderScale::Relative(scale)) => *scale * at.scale(),
+                None => at.scale(),
+            };
+            // Rapier's plugin scales the shape only in the first tick, which may be after the first frame.
+            let mut collider = collider.clone();
+            collider.set_scale(scale, SUBDIVISIONS);
             let bounds = collider.raw.compute_local_bounding_sphere();
-            let farthest = at.transform_point(bounds.center).distance(pose.center) + bounds.radius;
-            size = size.max(farthest);
+            let middle = at.translation() + at.rotation() * bounds.center;
+            size = size.max(middle.distance(pose.center) + bounds.radius);
         }
         let is_known = size.is_finite() && size > 1e-3;
         Some(if is_known { size } else { SIZE })

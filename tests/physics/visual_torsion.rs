@@ -263,6 +263,44 @@ fn it_is_a_quarter_as_large_as_what_it_turns() {
 }
 
 #[test]
+fn it_fits_a_scaled_door_before_the_first_tick_as_after_it() {
+    let ball = (Vec3::X, Quat::IDENTITY, Collider::ball(0.2));
+    for (collider, scale, size) in [
+        (
+            Collider::cuboid(0.5, 1.0, 0.1),
+            Vec3::new(1.0, 2.0, 1.0),
+            Vec3::new(0.5, 2.0, 0.1).length(),
+        ),
+        // Off the centre of the door. Its bounding box counts.
+        (
+            Collider::compound(vec![ball]),
+            Vec3::splat(2.0),
+            2.0 + 0.4 * 3.0_f32.sqrt(),
+        ),
+    ] {
+        for is_stepped in [false, true] {
+            let mut lab = lab();
+            let frame = lab.point(Vec3::ZERO);
+            let door = lab.spawn((Transform::from_scale(scale), collider.clone()));
+            if is_stepped {
+                lab.run(0.1);
+            }
+            let element = lab.spawn((
+                TorsionSpring::new(frame, door, Vec3::Y).with_rest_angle(0.0),
+                TorsionCoil::default(),
+            ));
+            lab.app.world_mut().run_schedule(PostUpdate);
+            let far = |at: &GlobalTransform| at.translation().length();
+            let radius = parts(&lab, element).iter().map(far).fold(0.0, f32::max);
+            assert!(
+                (radius / (0.25 * size) - 1.0).abs() < 0.05,
+                "{radius} for {size}"
+            );
+        }
+    }
+}
+
+#[test]
 fn a_spiral_whose_center_was_wrong_fits_once_it_is_mended() {
     let mut lab = lab();
     let (frame, door) = (lab.point(Vec3::ZERO), lab.point(Vec3::X * 2.0));
