@@ -20,7 +20,8 @@ use bevy::prelude::*;
 use bevy_rapier3d::prelude::{Collider, ColliderScale};
 use std::f32::consts::TAU;
 
-/// A spiral that no camera sees is turned only once in this many frames, because it may cast a shadow into the picture.
+/// A spiral that no camera sees is turned only once in this many frames, unless its shadow is in a picture. It is not
+/// left alone altogether, because it may come to cast one.
 const SELDOM: u32 = 8;
 /// Size of what a spiral turns, if it cannot be measured, m.
 const SIZE: f32 = 0.5;
@@ -44,6 +45,8 @@ pub struct Twist {
     /// Transforms of the parts in the world, in the order of [`Winding`].
     places: [GlobalTransform; 3],
     step: i32,
+    /// Whether some part of it was in some view in the last frame, even if only for its shadow.
+    shows: bool,
 }
 
 /// What the places of the parts are computed from.
@@ -301,6 +304,8 @@ pub(super) fn turn(
             continue;
         };
         let twist = twist.bypass_change_detection();
+        // `lay` sets it again in this frame.
+        let shows = std::mem::take(&mut twist.shows);
         if twist.from == Some(pose) {
             continue;
         }
@@ -310,7 +315,7 @@ pub(super) fn turn(
             .is_multiple_of(SELDOM);
         let reach = 1.1 * coil.radius + coil.width;
         let is_seen = views.sight(pose.center.into(), reach).seen;
-        if is_seen || has_turn || twist.from.is_none() {
+        if is_seen || shows || has_turn || twist.from.is_none() {
             twist.follow(&coil, pose);
         }
     }
@@ -318,16 +323,24 @@ pub(super) fn turn(
 
 /// Places the parts, and changes the mesh of a strip whose twist step has changed.
 pub(super) fn lay(
-    elements: Query<&Twist>,
-    mut parts: Query<(&Winding, &ChildOf, &mut GlobalTransform)>,
+    mut elements: Query<&mut Twist>,
+    mut parts: Query<(
+        &Winding,
+        &ChildOf,
+        &mut GlobalTransform,
+        Option<&ViewVisibility>,
+    )>,
     mut strips: Query<(&ChildOf, &mut Mesh3d, &mut Wound)>,
     mut spirals: ResMut<Spirals>,
     mut meshes: ResMut<Assets<Mesh>>,
 ) {
-    for (part, parent, mut global) in &mut parts {
-        if let Ok(twist) = elements.get(parent.parent())
+    for (part, parent, mut global, visibility) in &mut parts {
+        if let Ok(mut twist) = elements.get_mut(parent.parent())
             && twist.from.is_some()
         {
+            if visibility.is_some_and(|visibility| visibility.get()) {
+                twist.bypass_change_detection().shows = true;
+            }
             // `GlobalTransform` is written, because propagation has run and rendering reads it. A part that has not
             // moved must not look changed, or it would be sent to the graphics card again.
             global.set_if_neq(twist.places[*part as usize]);

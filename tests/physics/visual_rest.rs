@@ -253,7 +253,7 @@ fn a_skin_given_to_another_element_or_changed_follows_at_once() {
 }
 
 /// A camera with the computed values that a renderer would give it.
-fn look(lab: &mut Lab, at: Transform) -> Entity {
+pub fn look(lab: &mut Lab, at: Transform) -> Entity {
     let projection = Projection::default();
     let computed = ComputedCameraValues {
         clip_from_view: projection.get_clip_from_view(),

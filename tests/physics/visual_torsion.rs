@@ -3,6 +3,7 @@
 use crate::harness::*;
 use crate::messages::Log;
 use crate::visual_data::{lab, parts};
+use crate::visual_rest::look;
 use bevy::mesh::VertexAttributeValues;
 use bevy::prelude::*;
 use bevy::transform::StaticTransformOptimizations;
@@ -204,6 +205,29 @@ fn at_rest_nothing_of_it_is_sent_to_the_graphics_card_again() {
     door.turn(0.002);
     // Three parts change: the strip, its pin, and the arbor, which keeps its mesh but turns.
     assert_eq!(sent(&door), before + 3);
+}
+
+#[test]
+fn out_of_sight_but_with_a_shadow_in_the_picture_it_is_turned_in_every_frame() {
+    let mut door = Door::new(TorsionCoil::new(RADIUS, 4.0));
+    let [_, rest] = door.ends();
+    let away = Transform::from_xyz(0.0, 0.0, 10.0).looking_to(Vec3::Z, Vec3::Y);
+    look(&mut door.lab, away);
+    door.lab.run(0.2);
+    let drawn: Vec<Entity> = door.lab.get::<Children>(door.element).to_vec();
+    for i in 0..16 {
+        for part in &drawn {
+            // The renderer marks a part like this when the view of a light sees it.
+            let mut part = door.lab.app.world_mut().entity_mut(*part);
+            part.insert(ViewVisibility::VISIBLE);
+        }
+        let angle = 0.1 * i as f32;
+        door.turn(angle);
+        let [_, outer] = door.ends();
+        let wanted = Vec3::X + Quat::from_rotation_z(angle) * (rest - Vec3::X);
+        // The visibility is known from the frame before.
+        assert!(i < 2 || outer.distance(wanted) < 1e-4, "frame {i}: {outer}");
+    }
 }
 
 #[test]
