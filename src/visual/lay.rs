@@ -34,9 +34,14 @@ pub(super) fn lay(
         Option<(&Levels, &mut Mesh3d)>,
     )>,
     mut elements: Query<&mut Placement>,
+    disabled: Query<(), (With<Placement>, With<Disabled>)>,
 ) {
     for (part, parent, mut global, visibility, mut levels) in &mut parts {
         let Ok(mut placement) = elements.get_mut(parent.parent()) else {
+            // The parts that the crate made are gone. What users brought along stays, but is not drawn either.
+            if disabled.contains(parent.parent()) {
+                global.set_if_neq(nothing());
+            }
             continue;
         };
         // A change by other code, such as transform propagation, is overwritten.
@@ -87,11 +92,16 @@ fn is_same(one: &Handle<Mesh>, other: &Handle<Mesh>) -> bool {
     }
 }
 
+/// Transform of a part that is not drawn.
+fn nothing() -> GlobalTransform {
+    GlobalTransform::from_scale(Vec3::ZERO)
+}
+
 /// Transform of a part in the world. A part that never had a place has no size.
 #[inline]
 fn world(placement: &Placement, part: Part) -> GlobalTransform {
     if !placement.is_known() {
-        return GlobalTransform::from_scale(Vec3::ZERO);
+        return nothing();
     }
     let columns = rotation(placement.axis, placement.side);
     let (at, scale) = placement.layout.lay(part, placement.length);

@@ -12,6 +12,8 @@ use bevy::prelude::*;
 /// If `length` is not finite and above zero, or the entity has no parent, a warning is logged and the child is not
 /// placed until that is mended.
 ///
+/// While the element is [disabled](bevy::ecs::entity_disabling::Disabled), the child is not drawn.
+///
 /// Once this component is removed, the child goes where its own `Transform` says.
 ///
 /// Such scaling flattens or thickens the wire of a mesh; that of a [`Coil`](crate::Coil) stays round.

@@ -196,6 +196,32 @@ fn a_skin_that_was_spawned_disabled_is_placed_once_it_is_enabled() {
 }
 
 #[test]
+fn a_skin_of_a_disabled_element_is_not_drawn_until_that_is_enabled() {
+    let mut lab = lab();
+    let (a, b) = (lab.point(Vec3::X), lab.point(Vec3::X * 3.0));
+    let element = lab.spawn(Spring::new(a, b));
+    let skin = lab.spawn((SpringSkin { length: 1.0 }, ChildOf(element)));
+    lab.run(0.1);
+    assert!(goes(&lab, skin, Vec3::X, Vec3::X * 3.0));
+    let size = |lab: &Lab, skin: Entity| lab.get::<GlobalTransform>(skin).scale();
+    // As `WhenBroken::Disable` does.
+    lab.app.world_mut().entity_mut(element).insert(Disabled);
+    lab.tick();
+    assert_eq!(size(&lab, skin), Vec3::ZERO);
+    lab.get_mut::<Transform>(b).translation = Vec3::X * 2.0;
+    lab.run(0.1);
+    assert_eq!(size(&lab, skin), Vec3::ZERO);
+    lab.app.world_mut().entity_mut(element).remove::<Disabled>();
+    lab.tick();
+    assert!(goes(&lab, skin, Vec3::X, Vec3::X * 2.0));
+    // An element that is spawned disabled, as from a pool.
+    let pooled = lab.spawn((Spring::new(a, b), Disabled));
+    let skin = lab.spawn((SpringSkin { length: 1.0 }, ChildOf(pooled)));
+    lab.run(0.1);
+    assert_eq!(size(&lab, skin), Vec3::ZERO);
+}
+
+#[test]
 fn looks_that_go_before_they_are_drawn_leave_no_size_behind() {
     let mut lab = lab();
     let (a, b) = (lab.point(Vec3::ZERO), lab.point(Vec3::ZERO));
