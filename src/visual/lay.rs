@@ -4,6 +4,7 @@ use super::heading::rotation;
 use super::layout::Part;
 use super::parts::Levels;
 use super::place::{Due, Placement};
+use super::skin::SpringSkin;
 use bevy::ecs::entity_disabling::Disabled;
 use bevy::math::{Affine3A, Mat3A};
 use bevy::mesh::Mesh3d;
@@ -79,6 +80,25 @@ pub(super) fn lay(
             if !is_same(&mesh.0, wanted) {
                 mesh.0 = wanted.clone();
             }
+        }
+    }
+}
+
+/// Takes along what hangs below a skin. Transform propagation has placed it by the skin's own `Transform`.
+pub(super) fn carry(
+    skins: Query<(&GlobalTransform, &Children), (With<Part>, With<SpringSkin>)>,
+    mut below: Query<(&Transform, &mut GlobalTransform, Option<&Children>), Without<Part>>,
+    mut waiting: Local<Vec<(Entity, GlobalTransform)>>,
+) {
+    for (global, children) in &skins {
+        waiting.extend(children.into_iter().map(|child| (*child, *global)));
+    }
+    while let Some((entity, above)) = waiting.pop() {
+        if let Ok((own, mut global, children)) = below.get_mut(entity) {
+            let here = above * *own;
+            global.set_if_neq(here);
+            let children = children.into_iter().flatten();
+            waiting.extend(children.map(|child| (*child, here)));
         }
     }
 }

@@ -196,6 +196,32 @@ fn a_skin_that_was_spawned_disabled_is_placed_once_it_is_enabled() {
 }
 
 #[test]
+fn what_hangs_below_a_skin_goes_with_it() {
+    let mut lab = lab();
+    let (a, b) = (lab.point(Vec3::X), lab.point(Vec3::X * 3.0));
+    let element = lab.spawn(Spring::new(a, b));
+    let skin = lab.spawn((SpringSkin { length: 1.0 }, ChildOf(element)));
+    let knot = lab.spawn((Transform::from_xyz(0.0, 0.5, 0.0), ChildOf(skin)));
+    let tag = lab.spawn((Transform::from_xyz(0.0, 0.25, 0.0), ChildOf(knot)));
+    let is_at = |lab: &Lab, entity: Entity, wanted: Vec3| {
+        let at = lab.get::<GlobalTransform>(entity).translation();
+        assert!(at.distance(wanted) < 1e-5, "{at}, not {wanted}");
+    };
+    lab.run(0.1);
+    is_at(&lab, knot, 2.0 * Vec3::X);
+    is_at(&lab, tag, 2.5 * Vec3::X);
+    lab.get_mut::<Transform>(b).translation = 5.0 * Vec3::X;
+    lab.tick();
+    is_at(&lab, tag, 4.0 * Vec3::X);
+    lab.get_mut::<Transform>(tag).translation.y = 0.5;
+    lab.tick();
+    is_at(&lab, tag, 5.0 * Vec3::X);
+    lab.app.world_mut().entity_mut(skin).remove::<SpringSkin>();
+    lab.run(0.1);
+    is_at(&lab, tag, Vec3::Y);
+}
+
+#[test]
 fn a_skin_of_a_disabled_element_is_not_drawn_until_that_is_enabled() {
     let mut lab = lab();
     let (a, b) = (lab.point(Vec3::X), lab.point(Vec3::X * 3.0));
