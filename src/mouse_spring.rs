@@ -112,6 +112,8 @@ impl MouseSpring {
 
 /// The springs of a [`MouseSpring`], and the component for which they were made.
 #[derive(Component, Clone, Copy, Debug)]
+// The springs are those of the original. A copy of the entity gets its own.
+#[component(clone_behavior = Ignore)]
 pub(crate) struct Grip {
     /// None along an axis along which the point cannot move.
     springs: [Option<Entity>; 3],

@@ -55,7 +55,7 @@ pub fn shoot(stage: &Stage, film: Film) -> AppExit {
         _ => ticks,
     };
     let begun = match &film {
-        Film::Last(_) => ticks.saturating_sub((LENGTH as f32 / DT) as u32),
+        Film::Last(_) => ticks.saturating_sub((LENGTH as f32 / DT).round() as u32),
         _ => 0,
     };
     if begun > 0 {

@@ -1,6 +1,7 @@
 //! Lines for debugging: ends, rest length, forces.
 
 use super::bodies::Bodies;
+use super::layout::SHORT;
 use super::place::{Ends, Line, Lines};
 use crate::element::{Spring, SpringAxis, SpringDamper};
 use crate::readout::SpringReadout;
@@ -111,7 +112,7 @@ fn draw(
         let rest = spring
             .and_then(|s| s.rest_length)
             .or_else(|| pair.and_then(|p| p.rest_length));
-        if let Some(rest) = rest {
+        if let Some(rest) = rest.filter(|rest| rest.is_finite()) {
             // Beside the line and about its middle, so that a difference to the length shows at both ends.
             let beside = cross * direction.any_orthonormal_vector();
             let middle = 0.5 * (from + to) + beside;
@@ -125,8 +126,13 @@ fn draw(
         // Tension pulls both ends inwards.
         let color = if force > 0.0 { TENSION } else { COMPRESSION };
         let pull = scale * force * direction;
-        gizmos.arrow(from.into(), (from + pull).into(), color);
-        gizmos.arrow(to.into(), (to - pull).into(), color);
+        for (end, tip) in [(from, from + pull), (to, to - pull)] {
+            let length = end.distance(tip);
+            // Bevy finds no direction for the head of a shorter arrow, and would draw it at NaN.
+            if length > SHORT && length.is_finite() {
+                gizmos.arrow(end.into(), tip.into(), color);
+            }
+        }
     }
 }
 

@@ -4,6 +4,7 @@ use super::heading::rotation;
 use super::layout::Part;
 use super::parts::Levels;
 use super::place::{Due, Placement};
+use super::skin::SpringSkin;
 use bevy::ecs::entity_disabling::Disabled;
 use bevy::math::{Affine3A, Mat3A};
 use bevy::mesh::Mesh3d;
@@ -34,9 +35,14 @@ pub(super) fn lay(
         Option<(&Levels, &mut Mesh3d)>,
     )>,
     mut elements: Query<&mut Placement>,
+    disabled: Query<(), (With<Placement>, With<Disabled>)>,
 ) {
     for (part, parent, mut global, visibility, mut levels) in &mut parts {
         let Ok(mut placement) = elements.get_mut(parent.parent()) else {
+            // The parts that the crate made are gone. What users brought along stays, but is not drawn either.
+            if disabled.contains(parent.parent()) {
+                global.set_if_neq(nothing());
+            }
             continue;
         };
         // A change by other code, such as transform propagation, is overwritten.
@@ -78,6 +84,25 @@ pub(super) fn lay(
     }
 }
 
+/// Takes along what hangs below a skin. Transform propagation has placed it by the skin's own `Transform`.
+pub(super) fn carry(
+    skins: Query<(&GlobalTransform, &Children), (With<Part>, With<SpringSkin>)>,
+    mut below: Query<(&Transform, &mut GlobalTransform, Option<&Children>), Without<Part>>,
+    mut waiting: Local<Vec<(Entity, GlobalTransform)>>,
+) {
+    for (global, children) in &skins {
+        waiting.extend(children.into_iter().map(|child| (*child, *global)));
+    }
+    while let Some((entity, above)) = waiting.pop() {
+        if let Ok((own, mut global, children)) = below.get_mut(entity) {
+            let here = above * *own;
+            global.set_if_neq(here);
+            let children = children.into_iter().flatten();
+            waiting.extend(children.map(|child| (*child, here)));
+        }
+    }
+}
+
 /// Whether both handles are of the same mesh. Fast where one handle is a clone of the other.
 #[inline]
 fn is_same(one: &Handle<Mesh>, other: &Handle<Mesh>) -> bool {
@@ -87,11 +112,16 @@ fn is_same(one: &Handle<Mesh>, other: &Handle<Mesh>) -> bool {
     }
 }
 
+/// Transform of a part that is not drawn.
+fn nothing() -> GlobalTransform {
+    GlobalTransform::from_scale(Vec3::ZERO)
+}
+
 /// Transform of a part in the world. A part that never had a place has no size.
 #[inline]
 fn world(placement: &Placement, part: Part) -> GlobalTransform {
     if !placement.is_known() {
-        return GlobalTransform::from_scale(Vec3::ZERO);
+        return nothing();
     }
     let columns = rotation(placement.axis, placement.side);
     let (at, scale) = placement.layout.lay(part, placement.length);

@@ -95,6 +95,7 @@ impl Plugin for CoiloverVisualPlugin {
                     lay::recall,
                     place::place,
                     lay::lay,
+                    lay::carry,
                 )
                     .chain()
                     .in_set(CoiloverVisualSystems),

@@ -121,14 +121,20 @@ pub(super) fn build(
         };
         // Sizes may depend on the distance between the ends, so the ends must exist.
         let length = lines.ends(&line).map(|ends| ends.from.distance(ends.to));
-        let bare = coil.is_none() && telescope.is_none();
         // Ends that coincide give no sizes, unless the sizes are already known.
         let tells = |length: &f32| length.is_finite() && (*length > SHORT || placement.is_drawn());
-        let Some(length) = length.filter(tells).or(bare.then_some(0.0)) else {
+        let length = length.filter(tells);
+        // Without looks nothing is drawn, so the length of this moment says nothing about later looks.
+        let bare = coil.is_none() && telescope.is_none();
+        let first = if bare {
+            Some(0.0)
+        } else {
+            length.map(|length| placement.first(length))
+        };
+        let Some(first) = first else {
             return true;
         };
         workshop.maker.clear(element);
-        let first = placement.first(length);
         let (coil, telescope) = (coil.map(|c| c.at(first)), telescope.map(|t| t.at(first)));
         let coil = sound(element, "Coil", coil.as_ref(), |c| {
             c.helix(1.0).check().map_err(|e| e.to_string())

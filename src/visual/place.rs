@@ -12,7 +12,7 @@ use bevy::prelude::*;
 /// An element that no camera sees is placed only once in this many frames. It is not left alone altogether, because it
 /// may cast a shadow into the picture. The visibility and the level of detail of an element in sight are updated as
 /// seldom: in between, it may be drawn a little too finely or too coarsely, or be placed in vain after it has gone out
-/// of sight.
+/// of sight. All are updated in the frame in which the views jump.
 const SELDOM: u32 = 8;
 
 /// Where an element is drawn.
@@ -267,7 +267,8 @@ pub(super) fn place(
             continue;
         };
         let turn = element.index_u32().wrapping_add(*frame);
-        placement.due = placement.find(ends, &views, turn.is_multiple_of(SELDOM));
+        let has_turn = turn.is_multiple_of(SELDOM) || views.have_jumped();
+        placement.due = placement.find(ends, &views, has_turn);
         if placement.has_become_squeezed() {
             log::warn!(
                 "{element}: Coil: it is {} m long, but all its turns touch at {} m already, so wire \

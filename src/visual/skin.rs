@@ -2,7 +2,8 @@ use bevy::prelude::*;
 
 /// On a child of a [`Spring`](crate::Spring), [`Damper`](crate::Damper) or [`SpringDamper`](crate::SpringDamper):
 /// whatever the child draws, with any mesh and any material, is placed between the ends of the element. Its +Y points
-/// from end A to end B, and it is scaled along that axis.
+/// from end A to end B, and it is scaled along that axis. Its own children, such as the meshes of a node from a glTF file,
+/// go with it.
 ///
 /// The mesh must stand on its origin: its foot at y = 0, its top at y = [`length`](Self::length). Bevy's cylinder has
 /// its middle at the origin, unless it is made with `CylinderAnchor::Bottom`. The element gets the `Transform` and
@@ -11,6 +12,8 @@ use bevy::prelude::*;
 ///
 /// If `length` is not finite and above zero, or the entity has no parent, a warning is logged and the child is not
 /// placed until that is mended.
+///
+/// While the element is [disabled](bevy::ecs::entity_disabling::Disabled), the child is not drawn.
 ///
 /// Once this component is removed, the child goes where its own `Transform` says.
 ///

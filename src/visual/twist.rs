@@ -17,13 +17,16 @@ use bevy::mesh::{Mesh, Mesh3d};
 use bevy::pbr::{MeshMaterial3d, StandardMaterial};
 use bevy::platform::collections::HashMap;
 use bevy::prelude::*;
-use bevy_rapier3d::prelude::Collider;
+use bevy_rapier3d::prelude::{Collider, ColliderScale};
 use std::f32::consts::TAU;
 
-/// A spiral that no camera sees is turned only once in this many frames, because it may cast a shadow into the picture.
+/// A spiral that no camera sees is turned only once in this many frames, unless its shadow is in a picture. It is not
+/// left alone altogether, because it may come to cast one.
 const SELDOM: u32 = 8;
 /// Size of what a spiral turns, if it cannot be measured, m.
 const SIZE: f32 = 0.5;
+/// Fineness of a round shape that is scaled unevenly, as in Rapier's plugin.
+const SUBDIVISIONS: u32 = 10;
 /// Number of meshes that are kept before the first search for unused ones. A spring that swings shows the same few
 /// again.
 const KEPT: usize = 256;
@@ -42,6 +45,8 @@ pub struct Twist {
     /// Transforms of the parts in the world, in the order of [`Winding`].
     places: [GlobalTransform; 3],
     step: i32,
+    /// Whether some part of it was in some view in the last frame, even if only for its shadow.
+    shows: bool,
 }
 
 /// What the places of the parts are computed from.
@@ -98,7 +103,7 @@ impl TurnItem<'_, '_> {
 pub(super) struct Turns<'w, 's> {
     bodies: Bodies<'w, 's>,
     globals: Query<'w, 's, &'static GlobalTransform, Without<Winding>>,
-    colliders: Query<'w, 's, &'static Collider>,
+    colliders: Query<'w, 's, (&'static Collider, Option<&'static ColliderScale>)>,
 }
 
 impl Turns<'_, '_> {
@@ -129,10 +134,18 @@ impl Turns<'_, '_> {
         let (_, body, ..) = turn.element()?;
         let at = self.globals.get(body).ok()?;
         let mut size = at.translation().distance(pose.center);
-        if let Ok(collider) = self.colliders.get(body) {
+        if let Ok((collider, scale)) = self.colliders.get(body) {
+            let scale = match scale {
+                Some(ColliderScale::Absolute(scale)) => *scale,
+                Some(ColliderScale::Relative(scale)) => *scale * at.scale(),
+                None => at.scale(),
+            };
+            // Rapier's plugin scales the shape only in the first tick, which may be after the first frame.
+            let mut collider = collider.clone();
+            collider.set_scale(scale, SUBDIVISIONS);
             let bounds = collider.raw.compute_local_bounding_sphere();
-            let farthest = at.transform_point(bounds.center).distance(pose.center) + bounds.radius;
-            size = size.max(farthest);
+            let middle = at.translation() + at.rotation() * bounds.center;
+            size = size.max(middle.distance(pose.center) + bounds.radius);
         }
         let is_known = size.is_finite() && size > 1e-3;
         Some(if is_known { size } else { SIZE })
@@ -213,12 +226,13 @@ pub(super) fn wind(
         let Some(coil) = coil else {
             return false;
         };
-        let first = *twist.first.get_or_insert(size.unwrap_or(SIZE));
-        let coil = coil.at(first);
+        let first = twist.first.or(size);
+        let coil = coil.at(first.unwrap_or(SIZE));
         if let Err(wrong) = coil.check() {
             log::warn!("{element}: TorsionCoil: {wrong}; it is not drawn until that is mended");
             return false;
         }
+        twist.first = first;
         twist.coil = Some(coil);
         twist.step = 0;
         let strip = spirals.strip(&coil, 0, &mut meshes);
@@ -290,6 +304,8 @@ pub(super) fn turn(
             continue;
         };
         let twist = twist.bypass_change_detection();
+        // `lay` sets it again in this frame.
+        let shows = std::mem::take(&mut twist.shows);
         if twist.from == Some(pose) {
             continue;
         }
@@ -299,7 +315,7 @@ pub(super) fn turn(
             .is_multiple_of(SELDOM);
         let reach = 1.1 * coil.radius + coil.width;
         let is_seen = views.sight(pose.center.into(), reach).seen;
-        if is_seen || has_turn || twist.from.is_none() {
+        if is_seen || shows || has_turn || twist.from.is_none() {
             twist.follow(&coil, pose);
         }
     }
@@ -307,16 +323,24 @@ pub(super) fn turn(
 
 /// Places the parts, and changes the mesh of a strip whose twist step has changed.
 pub(super) fn lay(
-    elements: Query<&Twist>,
-    mut parts: Query<(&Winding, &ChildOf, &mut GlobalTransform)>,
+    mut elements: Query<&mut Twist>,
+    mut parts: Query<(
+        &Winding,
+        &ChildOf,
+        &mut GlobalTransform,
+        Option<&ViewVisibility>,
+    )>,
     mut strips: Query<(&ChildOf, &mut Mesh3d, &mut Wound)>,
     mut spirals: ResMut<Spirals>,
     mut meshes: ResMut<Assets<Mesh>>,
 ) {
-    for (part, parent, mut global) in &mut parts {
-        if let Ok(twist) = elements.get(parent.parent())
+    for (part, parent, mut global, visibility) in &mut parts {
+        if let Ok(mut twist) = elements.get_mut(parent.parent())
             && twist.from.is_some()
         {
+            if visibility.is_some_and(|visibility| visibility.get()) {
+                twist.bypass_change_detection().shows = true;
+            }
             // `GlobalTransform` is written, because propagation has run and rendering reads it. A part that has not
             // moved must not look changed, or it would be sent to the graphics card again.
             global.set_if_neq(twist.places[*part as usize]);

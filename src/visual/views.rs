@@ -53,6 +53,7 @@ pub(super) struct Views {
     now: Vec<View>,
     before: Vec<View>,
     changes: u32,
+    has_jumped: bool,
 }
 
 /// The components of a camera that are read.
@@ -89,6 +90,19 @@ impl Views {
         self.changes = self
             .changes
             .wrapping_add(u32::from(self.now != self.before));
+        let is_near = |(now, before): (&View, &View)| {
+            let bounds = HYSTERESIS.recip()..=HYSTERESIS;
+            now.focal == before.focal || bounds.contains(&(now.focal / before.focal))
+        };
+        self.has_jumped =
+            self.now.len() != self.before.len() || !self.now.iter().zip(&self.before).all(is_near);
+    }
+
+    /// Whether a view is new, or shows everything suddenly larger or smaller, as that of a window whose size has
+    /// changed. Then the levels of detail of all elements are wrong.
+    #[inline]
+    pub const fn have_jumped(&self) -> bool {
+        self.has_jumped
     }
 
     /// A number that changes whenever the cameras change.

@@ -122,6 +122,22 @@ fn who_lets_go_leaves_nothing_behind() {
 }
 
 #[test]
+fn a_copy_pulls_by_springs_of_its_own() {
+    let mut lab = Lab::weightless();
+    let body = lab.body(1.0, Vec3::ZERO);
+    let mouse = grab(&mut lab, body, Vec3::Y);
+    lab.run(0.2);
+    let copy = lab.app.world_mut().entity_mut(mouse).clone_and_spawn();
+    lab.run(0.1);
+    assert_eq!(elements(&mut lab), 6);
+    lab.app.world_mut().despawn(copy);
+    lab.run(0.1);
+    assert_eq!(elements(&mut lab), 3, "the original still pulls");
+    lab.run(3.0);
+    assert!(lab.position(body).distance(Vec3::Y) < 1e-3);
+}
+
+#[test]
 fn a_held_body_that_is_despawned_is_let_go_without_a_word() {
     let log = Log::capture();
     let mut lab = Lab::weightless();

@@ -13,9 +13,9 @@ use std::f32::consts::FRAC_PI_2;
 /// Position of end B. End A is at the origin, rotated so that its Y axis points along −X.
 const B: Vec3 = Vec3::new(0.3, 1.0, 0.0);
 
-/// Start and end of each arrow shaft of an element under a tension of 40 N. With `below`, end A is a child of a body,
-/// and is itself turned by this against the body.
-fn arrows(axis: Option<SpringAxis>, below: Option<Quat>) -> Vec<[Vec3; 2]> {
+/// Start and end of each red line of an element under a tension (N): arrows with their heads. With `below`, end A is a
+/// child of a body, and is itself turned by this against the body.
+fn lines(tension: f32, axis: Option<SpringAxis>, below: Option<Quat>) -> Vec<[Vec3; 2]> {
     // Without the physics plugin, which would overwrite the readout.
     let mut lab = Lab::without_plugin(Engine::default());
     lab.app
@@ -36,7 +36,7 @@ fn arrows(axis: Option<SpringAxis>, below: Option<Quat>) -> Vec<[Vec3; 2]> {
     };
     let b = lab.point(B);
     let tension = SpringReadout {
-        spring_force: 40.0,
+        spring_force: tension,
         ..default()
     };
     let element = lab.spawn((Spring::new(a, b), tension, ShowSpringGizmos(true)));
@@ -50,7 +50,6 @@ fn arrows(axis: Option<SpringAxis>, below: Option<Quat>) -> Vec<[Vec3; 2]> {
     let handle = handle.and_then(Option::as_ref).expect("lines");
     let drawn = world.resource::<Assets<GizmoAsset>>().get(handle);
     let drawn = drawn.expect("lines").buffer().buffer();
-    // The shaft of an arrow is ten times as long as its tips.
     let lines = drawn
         .list_positions
         .chunks(2)
@@ -58,7 +57,6 @@ fn arrows(axis: Option<SpringAxis>, below: Option<Quat>) -> Vec<[Vec3; 2]> {
     lines
         .filter(|(_, colors)| colors[0].red > 0.5 && colors[0].green < 0.1)
         .map(|(line, _)| [line[0], line[1]])
-        .filter(|[from, to]| from.distance(*to) > 0.1)
         .collect()
 }
 
@@ -75,12 +73,23 @@ fn forces_lie_along_the_line_between_the_ends_or_along_the_axis_of_the_element()
         // 5 mm per newton.
         let pull = 0.2 * way;
         let wanted = [[Vec3::ZERO, pull], [B, B - pull]];
-        let drawn = arrows(axis, below);
+        let mut drawn = lines(40.0, axis, below);
+        // The shaft of an arrow is ten times as long as the lines of its head.
+        drawn.retain(|[from, to]| from.distance(*to) > 0.1);
         assert_eq!(drawn.len(), 2, "{axis:?}, {below:?}: {drawn:?}");
         for (drawn, wanted) in drawn.into_iter().zip(wanted) {
             let is_near =
                 drawn[0].distance(wanted[0]) < 1e-5 && drawn[1].distance(wanted[1]) < 1e-5;
             assert!(is_near, "{axis:?}, {below:?}: {drawn:?}, not {wanted:?}");
         }
+    }
+}
+
+#[test]
+fn a_force_too_weak_or_too_strong_for_an_arrow_has_none() {
+    assert_eq!(lines(1.0, None, None).len(), 10);
+    for tension in [1e-30, 1e-6, 1e38] {
+        let drawn = lines(tension, None, None);
+        assert!(drawn.is_empty(), "{tension} N: {drawn:?}");
     }
 }

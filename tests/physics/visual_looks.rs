@@ -194,3 +194,74 @@ fn a_skin_that_was_spawned_disabled_is_placed_once_it_is_enabled() {
     lab.run(0.1);
     assert!(goes(&lab, skin, Vec3::X, Vec3::X * 3.0));
 }
+
+#[test]
+fn what_hangs_below_a_skin_goes_with_it() {
+    let mut lab = lab();
+    let (a, b) = (lab.point(Vec3::X), lab.point(Vec3::X * 3.0));
+    let element = lab.spawn(Spring::new(a, b));
+    let skin = lab.spawn((SpringSkin { length: 1.0 }, ChildOf(element)));
+    let knot = lab.spawn((Transform::from_xyz(0.0, 0.5, 0.0), ChildOf(skin)));
+    let tag = lab.spawn((Transform::from_xyz(0.0, 0.25, 0.0), ChildOf(knot)));
+    let is_at = |lab: &Lab, entity: Entity, wanted: Vec3| {
+        let at = lab.get::<GlobalTransform>(entity).translation();
+        assert!(at.distance(wanted) < 1e-5, "{at}, not {wanted}");
+    };
+    lab.run(0.1);
+    is_at(&lab, knot, 2.0 * Vec3::X);
+    is_at(&lab, tag, 2.5 * Vec3::X);
+    lab.get_mut::<Transform>(b).translation = 5.0 * Vec3::X;
+    lab.tick();
+    is_at(&lab, tag, 4.0 * Vec3::X);
+    lab.get_mut::<Transform>(tag).translation.y = 0.5;
+    lab.tick();
+    is_at(&lab, tag, 5.0 * Vec3::X);
+    lab.app.world_mut().entity_mut(skin).remove::<SpringSkin>();
+    lab.run(0.1);
+    is_at(&lab, tag, Vec3::Y);
+}
+
+#[test]
+fn a_skin_of_a_disabled_element_is_not_drawn_until_that_is_enabled() {
+    let mut lab = lab();
+    let (a, b) = (lab.point(Vec3::X), lab.point(Vec3::X * 3.0));
+    let element = lab.spawn(Spring::new(a, b));
+    let skin = lab.spawn((SpringSkin { length: 1.0 }, ChildOf(element)));
+    lab.run(0.1);
+    assert!(goes(&lab, skin, Vec3::X, Vec3::X * 3.0));
+    let size = |lab: &Lab, skin: Entity| lab.get::<GlobalTransform>(skin).scale();
+    // As `WhenBroken::Disable` does.
+    lab.app.world_mut().entity_mut(element).insert(Disabled);
+    lab.tick();
+    assert_eq!(size(&lab, skin), Vec3::ZERO);
+    lab.get_mut::<Transform>(b).translation = Vec3::X * 2.0;
+    lab.run(0.1);
+    assert_eq!(size(&lab, skin), Vec3::ZERO);
+    lab.app.world_mut().entity_mut(element).remove::<Disabled>();
+    lab.tick();
+    assert!(goes(&lab, skin, Vec3::X, Vec3::X * 2.0));
+    // An element that is spawned disabled, as from a pool.
+    let pooled = lab.spawn((Spring::new(a, b), Disabled));
+    let skin = lab.spawn((SpringSkin { length: 1.0 }, ChildOf(pooled)));
+    lab.run(0.1);
+    assert_eq!(size(&lab, skin), Vec3::ZERO);
+}
+
+#[test]
+fn looks_that_go_before_they_are_drawn_leave_no_size_behind() {
+    let mut lab = lab();
+    let (a, b) = (lab.point(Vec3::ZERO), lab.point(Vec3::ZERO));
+    // Not drawn yet, because the ends coincide.
+    let element = lab.spawn((Damper::new(a, b), Coil::fitted()));
+    lab.run(0.1);
+    lab.app.world_mut().entity_mut(element).remove::<Coil>();
+    lab.run(0.1);
+    lab.get_mut::<Transform>(b).translation = 2.0 * Vec3::Y;
+    let looks = Telescope::fitted();
+    lab.app.world_mut().entity_mut(element).insert(looks);
+    lab.run(0.1);
+    let widths = parts(&lab, element).into_iter().map(|part| part.scale().x);
+    let widest = widths.fold(0.0, f32::max);
+    // The collar is 1.12 times as wide as the tube, whose radius is 4.8 % of the length.
+    assert!((0.095..0.12).contains(&widest), "{widest}");
+}

@@ -253,7 +253,7 @@ fn a_skin_given_to_another_element_or_changed_follows_at_once() {
 }
 
 /// A camera with the computed values that a renderer would give it.
-fn look(lab: &mut Lab, at: Transform) -> Entity {
+pub fn look(lab: &mut Lab, at: Transform) -> Entity {
     let projection = Projection::default();
     let computed = ComputedCameraValues {
         clip_from_view: projection.get_clip_from_view(),
@@ -354,4 +354,25 @@ fn a_resting_coil_gets_coarser_as_the_camera_goes_away_and_finer_as_it_comes_bac
     assert!(away.windows(2).all(|w| w[1] < w[0]), "{away:?}");
     let back = [60.0, 20.0, 6.0, 2.0].map(&mut vertices);
     assert_eq!(back, [away[3], away[2], away[1], away[0]]);
+}
+
+#[test]
+fn a_picture_that_suddenly_has_other_pixels_has_the_right_detail_at_once() {
+    let mut rest = Rest::new();
+    let camera = look(&mut rest.lab, Transform::from_xyz(0.0, 0.5, 6.0));
+    rest.lab.run(0.2);
+    let mut vertices = |height: u32| {
+        rest.lab.get_mut::<Camera>(camera).computed.target_info = Some(RenderTargetInfo {
+            physical_size: UVec2::new(height, height),
+            scale_factor: 1.0,
+        });
+        rest.lab.tick();
+        let mesh = rest.lab.get::<Mesh3d>(rest.coil);
+        let meshes = rest.lab.app.world().resource::<Assets<Mesh>>();
+        meshes.get(mesh).expect("loaded").count_vertices()
+    };
+    for change in 0..8 {
+        let [small, large] = [135, 1080].map(&mut vertices);
+        assert!(small < large, "change {change}: {small}, {large}");
+    }
 }

@@ -3,6 +3,7 @@
 use crate::harness::*;
 use crate::messages::Log;
 use crate::visual_data::{lab, parts};
+use crate::visual_rest::look;
 use bevy::mesh::VertexAttributeValues;
 use bevy::prelude::*;
 use bevy::transform::StaticTransformOptimizations;
@@ -207,6 +208,29 @@ fn at_rest_nothing_of_it_is_sent_to_the_graphics_card_again() {
 }
 
 #[test]
+fn out_of_sight_but_with_a_shadow_in_the_picture_it_is_turned_in_every_frame() {
+    let mut door = Door::new(TorsionCoil::new(RADIUS, 4.0));
+    let [_, rest] = door.ends();
+    let away = Transform::from_xyz(0.0, 0.0, 10.0).looking_to(Vec3::Z, Vec3::Y);
+    look(&mut door.lab, away);
+    door.lab.run(0.2);
+    let drawn: Vec<Entity> = door.lab.get::<Children>(door.element).to_vec();
+    for i in 0..16 {
+        for part in &drawn {
+            // The renderer marks a part like this when the view of a light sees it.
+            let mut part = door.lab.app.world_mut().entity_mut(*part);
+            part.insert(ViewVisibility::VISIBLE);
+        }
+        let angle = 0.1 * i as f32;
+        door.turn(angle);
+        let [_, outer] = door.ends();
+        let wanted = Vec3::X + Quat::from_rotation_z(angle) * (rest - Vec3::X);
+        // The visibility is known from the frame before.
+        assert!(i < 2 || outer.distance(wanted) < 1e-4, "frame {i}: {outer}");
+    }
+}
+
+#[test]
 fn springs_that_swing_alike_share_their_meshes_and_keep_few() {
     let mut lab = lab();
     let doors: Vec<Entity> = (0..20)
@@ -260,6 +284,61 @@ fn it_is_a_quarter_as_large_as_what_it_turns() {
             "{radius} for {size}"
         );
     }
+}
+
+#[test]
+fn it_fits_a_scaled_door_before_the_first_tick_as_after_it() {
+    let ball = (Vec3::X, Quat::IDENTITY, Collider::ball(0.2));
+    for (collider, scale, size) in [
+        (
+            Collider::cuboid(0.5, 1.0, 0.1),
+            Vec3::new(1.0, 2.0, 1.0),
+            Vec3::new(0.5, 2.0, 0.1).length(),
+        ),
+        // Off the centre of the door. Its bounding box counts.
+        (
+            Collider::compound(vec![ball]),
+            Vec3::splat(2.0),
+            2.0 + 0.4 * 3.0_f32.sqrt(),
+        ),
+    ] {
+        for is_stepped in [false, true] {
+            let mut lab = lab();
+            let frame = lab.point(Vec3::ZERO);
+            let door = lab.spawn((Transform::from_scale(scale), collider.clone()));
+            if is_stepped {
+                lab.run(0.1);
+            }
+            let element = lab.spawn((
+                TorsionSpring::new(frame, door, Vec3::Y).with_rest_angle(0.0),
+                TorsionCoil::default(),
+            ));
+            lab.app.world_mut().run_schedule(PostUpdate);
+            let far = |at: &GlobalTransform| at.translation().length();
+            let radius = parts(&lab, element).iter().map(far).fold(0.0, f32::max);
+            assert!(
+                (radius / (0.25 * size) - 1.0).abs() < 0.05,
+                "{radius} for {size}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_spiral_whose_center_was_wrong_fits_once_it_is_mended() {
+    let mut lab = lab();
+    let (frame, door) = (lab.point(Vec3::ZERO), lab.point(Vec3::X * 2.0));
+    let element = lab.spawn((
+        TorsionSpring::new(frame, door, Vec3::Y).with_rest_angle(0.0),
+        TorsionCoil::default().with_center(Vec3::NAN),
+    ));
+    lab.run(0.1);
+    assert!(parts(&lab, element).is_empty());
+    lab.get_mut::<TorsionCoil>(element).center = Vec3::ZERO;
+    lab.run(0.1);
+    let far = |at: &GlobalTransform| at.translation().length();
+    let radius = parts(&lab, element).iter().map(far).fold(0.0, f32::max);
+    assert!((radius / 0.5 - 1.0).abs() < 0.05, "{radius}");
 }
 
 #[test]

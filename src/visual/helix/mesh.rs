@@ -18,12 +18,15 @@ pub struct HelixMeshBuilder {
     pub helix: Helix,
     /// Number of segments along the wire, per turn.
     pub along: u32,
-    /// Number of segments around the wire, rounded up to a multiple of four. This makes length and radii exact.
+    /// Number of segments around the wire, rounded up to a multiple of four, which makes length and radii exact. At most
+    /// 1000.
     pub around: u32,
 }
 
 /// Most segments along a wire, whatever was asked for.
 const MOST_RINGS: f32 = 100_000.0;
+/// Most segments around a wire, a multiple of four.
+const MOST_AROUND: u32 = 1000;
 
 /// V coordinate on the end caps: `CAP_RIM` plus the share around the wire at the rim, `CAP_MIDDLE` in the middle.
 const CAP_RIM: f32 = 2.0;
@@ -64,7 +67,7 @@ impl HelixMeshBuilder {
     pub(crate) fn triangles(&self) -> Mesh {
         let wire = Wire::new(&self.helix);
         let turns = self.helix.turns;
-        let around = self.around.max(4).next_multiple_of(4);
+        let around = self.around.clamp(4, MOST_AROUND).next_multiple_of(4);
         let rings = (turns * self.along.max(3) as f32).ceil();
         let rings = rings.clamp(4.0, MOST_RINGS) as u32;
         let right = self.helix.handedness == super::Handedness::Right;

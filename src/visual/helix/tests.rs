@@ -330,3 +330,14 @@ fn the_solid_length_is_where_the_turns_touch() {
         assert!((rise - 0.032).abs() < 0.01 * 0.032, "{ends:?}: {rise}");
     }
 }
+
+#[test]
+fn any_resolution_gives_a_mesh() {
+    let helix = Helix::new(0.5, 0.06, 1.0, 1.0);
+    let vertices = |along, around| {
+        let mesh = helix.mesh().resolution(along, around).build();
+        mesh.count_vertices()
+    };
+    assert_eq!(vertices(0, u32::MAX), vertices(3, 1000));
+    assert_eq!(vertices(0, 0), vertices(3, 4));
+}
