@@ -11,7 +11,6 @@ use crate::input::check::{Numbers, Parameters, Ties, Trouble};
 use crate::input::companions::Companion;
 use crate::scene::held::Inside;
 use crate::scene::still::Stepped;
-use bevy::ecs::entity::EntityHashMap;
 use bevy::math::{DQuat, DVec3};
 use bevy::prelude::*;
 use std::num::NonZeroU32;
@@ -88,9 +87,8 @@ impl From<Outcome> for Solved {
 pub(crate) struct BodyIndex(NonZeroU32);
 
 impl BodyIndex {
-    fn new(index: usize) -> Option<Self> {
-        let number = u32::try_from(index).ok()?.checked_add(1)?;
-        NonZeroU32::new(number).map(Self)
+    fn new(index: u32) -> Option<Self> {
+        NonZeroU32::new(index.checked_add(1)?).map(Self)
     }
 
     fn get(self) -> usize {
@@ -317,8 +315,8 @@ impl ElementRow {
         self.solved = Solved::default();
     }
 
-    /// Connects an end to the place where it was found. `index` has the row index of each body.
-    pub(crate) fn hold(&mut self, end: usize, place: &Place, index: &EntityHashMap<u32>) {
+    /// Connects an end to the place where it was found. `row` is the row index of the body there, if elements can move it.
+    pub(crate) fn hold(&mut self, end: usize, place: &Place, row: Option<u32>) {
         self.rare.held[end] = match *place {
             Place::OnBody {
                 entity,
@@ -329,8 +327,7 @@ impl ElementRow {
                 let ties = &self.rare.ties;
                 let direct = entity == ties.ends[end] && ties.anchors[end] == Vec3::ZERO;
                 self.flags.set(WATCHED[end], !direct);
-                let index = index.get(&entity);
-                self.on[end] = index.and_then(|index| BodyIndex::new(*index as usize));
+                self.on[end] = row.and_then(BodyIndex::new);
                 Held::Body {
                     body,
                     context,
