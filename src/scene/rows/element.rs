@@ -135,7 +135,8 @@ pub(crate) struct RareElement {
     pub places: [Option<DVec3>; 2],
     /// Rotations, after the last step, of the bodies at its ends. Valid only for an element with an axis,
     /// at an end that elements cannot move.
-    pub facings: [DQuat; 2],
+    /// None until one of them is stored.
+    pub facings: Option<Box<[DQuat; 2]>>,
     /// Whether its length is another one at once, because it was given other anchors or another axis since the last step. Valid
     /// only with [`ElementFlags::REFITTED`].
     pub leapt: bool,
@@ -144,8 +145,40 @@ pub(crate) struct RareElement {
     /// Valid only with [`ElementFlags::JUMPED`] or [`ElementFlags::LEADS`].
     pub jump: Jump,
     /// Scales of the bodies at its ends. They ignore the rounding noise of transforms.
-    pub scales: [Option<DVec3>; 2],
-    pub controller: Controller,
+    pub scales: [Option<Vec3>; 2],
+    /// None while it has nothing to remember, as for an element that takes equal micro-steps.
+    pub controller: Option<Box<Controller>>,
+}
+
+impl RareElement {
+    pub(crate) fn facings(&self) -> [DQuat; 2] {
+        self.facings
+            .as_deref()
+            .copied()
+            .unwrap_or([DQuat::IDENTITY; 2])
+    }
+
+    pub(crate) fn set_facings(&mut self, facings: [DQuat; 2]) {
+        match &mut self.facings {
+            Some(known) => **known = facings,
+            None if facings != [DQuat::IDENTITY; 2] => self.facings = Some(Box::new(facings)),
+            None => {}
+        }
+    }
+
+    pub(crate) fn controller(&self) -> Controller {
+        self.controller.as_deref().copied().unwrap_or_default()
+    }
+
+    pub(crate) fn set_controller(&mut self, controller: Controller) {
+        match &mut self.controller {
+            Some(known) => **known = controller,
+            None if controller != Controller::default() => {
+                self.controller = Some(Box::new(controller));
+            }
+            None => {}
+        }
+    }
 }
 
 /// For each end, the flag that says that it must be looked for in every tick.
@@ -171,12 +204,12 @@ impl ElementRow {
                 guide: Guide::default(),
                 held: [Held::NOWHERE; 2],
                 places: [None; 2],
-                facings: [DQuat::IDENTITY; 2],
+                facings: None,
                 leapt: false,
                 angle: 0.0,
                 jump: Jump::default(),
                 scales: [None; 2],
-                controller: Controller::default(),
+                controller: None,
             }),
             ledger: EnergyLedger::default(),
             direction: DVec3::ZERO,
