@@ -8,6 +8,7 @@ use crate::backend::{Engine, Seen, Sight};
 use crate::dynamics::body::Body;
 use crate::scene::rows::{BodyFlags, BodyRow, ElementRow, Members, Rest, Rows, RowsMut, take};
 use crate::scene::step::Step;
+use bevy::math::Quat;
 
 /// Speed below which a body counts as resting: m/s, times the engine's length unit, and rad/s. With ten times as much, slow swings
 /// fall asleep. Pinned by `sleeping::a_long_pendulum_on_a_stiff_spring_does_not_fall_asleep_at_its_turning_point`.
@@ -49,7 +50,7 @@ fn is_restless(
     time: f32,
     length_unit: f32,
 ) -> bool {
-    let (position, rotation) = (body.origin, body.rotation);
+    let (position, rotation) = (body.origin, body.rotation.to_array());
     let place = position.abs().max_element() * f32::EPSILON;
     // The engine's velocities are those of its last substep. In a component that it solves, they tremble although places stay, so
     // mainly the position decides.
@@ -78,7 +79,11 @@ fn is_restless(
     };
     let rest = &mut row.rare.rest;
     let strayed = rest.position.distance(position) > creep * QUIET * length_unit + ROUNDING * place
-        || (rest.rotation.inverse() * rotation).xyz().length() * size > 0.5 * creep * QUIET;
+        || (Quat::from_array(rest.rotation).inverse() * body.rotation)
+            .xyz()
+            .length()
+            * size
+            > 0.5 * creep * QUIET;
     if strayed {
         row.flags.remove(BodyFlags::RESTS);
         return true;

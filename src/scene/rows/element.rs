@@ -378,11 +378,17 @@ impl ElementRow {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::rows::body::BodyRow;
+    use crate::scene::rows::body::{BodyRow, RareBody};
 
     #[test]
     fn a_row_is_what_a_step_reads_of_it() {
         assert_eq!(size_of::<ElementRow>(), 192);
         assert_eq!(size_of::<BodyRow>(), 64);
+    }
+
+    #[test]
+    fn what_not_every_step_needs_is_no_larger_than_it_must_be() {
+        assert_eq!(size_of::<RareElement>(), 352);
+        assert_eq!(size_of::<RareBody>(), 224);
     }
 }
