@@ -27,6 +27,9 @@ impl Scene {
         commands: &mut Commands,
     ) {
         let mut found_all = Vec::with_capacity(self.elements.len());
+        if self.elements.is_empty() {
+            self.elements.reserve_exact(elements.iter().len());
+        }
         self.changed.clear();
         self.faulty.clear();
         self.followed.clear();
@@ -213,6 +216,7 @@ impl Scene {
         let before = take(&mut self.bodies);
         let mut before = before.into_iter().peekable();
         let mut gone = Vec::new();
+        self.bodies.reserve_exact(wanted.len());
         for body in wanted {
             while let Some(row) = before.next_if(|row| row.entity < body.entity) {
                 gone.push(row);
