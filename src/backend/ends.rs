@@ -59,7 +59,7 @@ pub(crate) trait Finder {
         end: Entity,
         anchor: Vec3,
         field: &'static str,
-        scale: &mut Option<DVec3>,
+        scale: &mut Option<Vec3>,
     ) -> Result<Place, Fault>;
 
     /// Finds both ends, or the fault of the element. The engine has not yet recomputed the masses of the bodies in `modified`.
@@ -67,7 +67,7 @@ pub(crate) trait Finder {
         &mut self,
         parameters: &Parameters,
         guide: Guide,
-        scales: &mut [Option<DVec3>; 2],
+        scales: &mut [Option<Vec3>; 2],
         modified: &EntityHashSet,
     ) -> Result<Found, Fault>;
 

@@ -27,7 +27,7 @@ const FAR_BELOW: f64 = 0.1;
 const LONGEST_WAIT: u8 = 16;
 
 /// Memory of how finely a motion had to be followed.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Excited {
     /// Number of micro-steps with which the next attempt begins.

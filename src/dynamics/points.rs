@@ -206,11 +206,16 @@ impl Points {
 
     /// Loads a network in its present state.
     pub(super) fn load_from(&mut self, elements: &[Element], bodies: &[Body], budget: u32) {
+        let ends = elements.iter().flat_map(|element| &element.ends);
+        let prescribed = ends.filter(|end| end.is_path()).count();
         self.points.clear();
+        self.points.reserve_exact(bodies.len() + prescribed);
         self.points.extend(bodies.iter().map(Point::of));
         self.bodies = bodies.len();
         self.wires.clear();
+        self.wires.reserve_exact(elements.len());
         self.exchanged.clear();
+        self.exchanged.reserve_exact(elements.len());
         for element in elements {
             let ends = element.ends.map(|end| match end {
                 End::Body { index, .. } => index as u32,

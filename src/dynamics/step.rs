@@ -46,17 +46,24 @@ pub(crate) struct Component {
 #[derive(Clone, Default)]
 pub(super) struct Memory {
     memo: Memo,
-    network: Network,
-    points: Points,
+    /// None until it is first needed, as by a component of several elements.
+    network: Option<Box<Network>>,
+    /// None until it is first needed, as by a network in which no body turns.
+    points: Option<Box<Points>>,
     /// Length of the last step if the points can continue from it, s.
     carriable: Option<f64>,
     controller: Controller,
     kinks: Kinks,
     caution: Caution,
     bound: Bound,
-    saved: [Saved; 3],
+    /// States of this step. Unless they are [lent](Component::swap_copies), they are kept to the next one.
+    saved: Vec<Saved>,
     max_iterations: u32,
 }
+
+/// Memory for copies of the state within a step. Components that are stepped one after the other can share it.
+#[derive(Default)]
+pub(crate) struct Copies(Vec<Saved>);
 
 /// A copy of the state.
 #[derive(Clone, Default)]
@@ -93,7 +100,12 @@ impl Component {
         }
         let accuracy = self.memory.caution.pass(time, accuracy);
         if self.is_warm {
-            self.memory.points.go_on(self.memory.max_iterations);
+            let Memory {
+                points,
+                max_iterations,
+                ..
+            } = &mut self.memory;
+            points.get_or_insert_default().go_on(*max_iterations);
         }
         if self.is_warm || self.is_of_points(time) {
             let outcome = self.advance_points(time, accuracy, |motion| {
@@ -113,7 +125,8 @@ impl Component {
         if alone {
             return outcome;
         }
-        let (iterates, converged) = self.memory.network.take_effort();
+        let network = self.memory.network.get_or_insert_default();
+        let (iterates, converged) = network.take_effort();
         outcome.method = if iterates {
             Method::Iterative
         } else {
@@ -123,12 +136,17 @@ impl Component {
         outcome
     }
 
+    /// Exchanges the memory for copies of the state with that of the owner: before a step to lend it, and after the step to take
+    /// it back.
+    pub(crate) fn swap_copies(&mut self, copies: &mut Copies) {
+        std::mem::swap(&mut self.memory.saved, &mut copies.0);
+    }
+
     /// Whether the state after a step is finite.
     pub(crate) fn is_finite(&self) -> bool {
-        if self.is_warm {
-            self.memory.points.are_finite()
-        } else {
-            self.bodies.iter().all(Body::is_finite)
+        match &self.memory.points {
+            Some(points) if self.is_warm => points.are_finite(),
+            _ => self.bodies.iter().all(Body::is_finite),
         }
     }
 
@@ -197,7 +215,7 @@ impl Component {
                 ..
             } = &mut self.memory;
             let kinks = kinks.keep_energy();
-            network.kick(
+            network.get_or_insert_default().kick(
                 &mut self.elements,
                 &mut self.bodies,
                 step,
@@ -259,7 +277,7 @@ impl Component {
 
 /// Makes `to` a copy of `from` without spare capacity. A vector that grows begins with a capacity of four, but most
 /// components have one element and two bodies.
-pub(crate) fn copy<T: Clone>(to: &mut Vec<T>, from: &[T]) {
+fn copy<T: Clone>(to: &mut Vec<T>, from: &[T]) {
     to.clear();
     to.reserve_exact(from.len());
     to.extend_from_slice(from);
@@ -267,9 +285,12 @@ pub(crate) fn copy<T: Clone>(to: &mut Vec<T>, from: &[T]) {
 
 impl Motion for Component {
     fn save(&mut self, slot: usize) {
-        let saved = &mut self.memory.saved[slot];
-        copy(&mut saved.bodies, &self.bodies);
-        copy(&mut saved.elements, &self.elements);
+        let saved = &mut self.memory.saved;
+        if saved.len() <= slot {
+            saved.resize_with(slot + 1, Saved::default);
+        }
+        copy(&mut saved[slot].bodies, &self.bodies);
+        copy(&mut saved[slot].elements, &self.elements);
     }
 
     fn load(&mut self, slot: usize) {
@@ -289,7 +310,7 @@ impl Motion for Component {
             });
             return lone_steps(z, most);
         }
-        let network = &mut self.memory.network;
+        let network = self.memory.network.get_or_insert_default();
         let (z, _) = network.bounds(&self.elements, &self.bodies, time);
         let mut least = network_steps(z, self.elements.len(), most);
         least.count = least.count.max(self.steps_at_bends(z, time));
@@ -365,7 +386,7 @@ impl Motion for Component {
         if self.is_alone() {
             return kick::resolved(&self.elements[0], &self.bodies, step, EXTRAPOLATION_LIMIT);
         }
-        let network = &mut self.memory.network;
+        let network = self.memory.network.get_or_insert_default();
         let (z, g) = network.bounds(&self.elements, &self.bodies, step);
         let resolved = z < EXTRAPOLATION_LIMIT * EXTRAPOLATION_LIMIT && g < EXTRAPOLATION_LIMIT;
         resolved && !self.memory.kinks.are_near()

@@ -156,7 +156,7 @@ const BUSY: u32 = 8;
 const GROWTH: f64 = 2.0;
 
 /// Memory of a motion's errors.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Controller {
     /// Error constants in steps of length `step`, m/s: of plain micro-steps, and of extrapolation where it converges.

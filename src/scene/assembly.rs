@@ -1,14 +1,15 @@
 //! Takes one component through a step: reads it, decides whether it is awake, integrates it, and gives the result to the engine.
 
-use crate::backend::{Engine, Push, Seen, Sight};
+use crate::backend::{Engine, Push, Sight};
 use crate::dynamics::body::Body;
-use crate::dynamics::step::{Component, copy};
+use crate::dynamics::step::{Component, Copies};
 use crate::dynamics::tolerance::{Accuracy, Outcome};
 use crate::scene::element::element;
+use crate::scene::push::Manner;
 use crate::scene::rows::{
     BodyFlags, BodyRow, Cut, ElementFlags, ElementRow, Members, Solved, pull_mark, take,
 };
-use crate::scene::sleep::{omega_of, rouse};
+use crate::scene::sleep::{omega_of, rouse, wake_with};
 use crate::scene::step::Step;
 use crate::scene::warm_start::WarmStart;
 use std::mem::{replace, take};
@@ -22,11 +23,12 @@ pub(crate) struct Assembly {
     /// Index of its group.
     pub(crate) group: usize,
     pub(crate) component: Component,
-    /// The bodies at the start of the step.
-    start: Vec<Body>,
-    seen: Vec<Seen>,
+    /// How the engine steps each body.
+    manners: Vec<Manner>,
     /// The push for each body.
     orders: Vec<Push>,
+    /// Indices, within the component, of the bodies that were asleep and that the step sets in motion.
+    woken: Vec<u32>,
     pub(crate) state: State,
     /// Whether it was found asleep.
     asleep: bool,
@@ -100,7 +102,7 @@ impl Assembly {
         if !self.gather_bodies(step, members, bodies, sight) {
             return;
         }
-        let sound = self.start.iter().all(Body::is_finite);
+        let sound = self.component.bodies.iter().all(Body::is_finite);
         let disturbed = self.gather_elements(step, members, elements, bodies, sight);
         let omega = self.warm.omega;
         let (awake, rouse) = step.is_awake(bodies, members.bodies, false, omega, sight, disturbed);
@@ -113,7 +115,6 @@ impl Assembly {
             self.asleep = true;
             return;
         }
-        copy(&mut self.component.bodies, &self.start);
         self.state = if sound && !self.component.elements.is_empty() {
             State::Ready
         } else {
@@ -132,13 +133,14 @@ impl Assembly {
         let component = &mut self.component;
         component.forget_points();
         component.elements.clear();
-        self.start.clear();
-        self.seen.clear();
+        component.bodies.clear();
+        self.manners.clear();
         self.warm.begin();
         component.perturbed = self.warm.perturbed;
-        self.start.reserve_exact(members.bodies.len());
-        self.seen.reserve_exact(members.bodies.len());
-        self.orders.reserve_exact(members.bodies.len());
+        // A vector that grows begins with a capacity of four, but most components have one element and two bodies.
+        component.bodies.reserve_exact(members.bodies.len());
+        self.manners.reserve_exact(members.bodies.len());
+        self.warm.centers.reserve_exact(members.bodies.len());
         component.elements.reserve_exact(members.elements.len());
         for b in members.bodies {
             let row = &mut bodies[*b as usize];
@@ -158,8 +160,8 @@ impl Assembly {
             let pulled = pull_mark(free.acceleration);
             component.perturbed |= row.was_perturbed(&seen, free.position);
             component.perturbed |= replace(&mut row.rare.pulled, pulled) != pulled;
-            self.start.push(free);
-            self.seen.push(seen);
+            component.bodies.push(free);
+            self.manners.push(Manner::of(&seen));
         }
         true
     }
@@ -182,14 +184,14 @@ impl Assembly {
             self.component.perturbed |= take!(row.flags, ElementFlags::REFITTED);
             disturbed |= row.has(ElementFlags::CHANGED) || has_moved;
             let ends = [0, 1].map(|end| step.end(row, end, bodies, sight));
-            let element = element(row, ends, &self.start);
+            let element = element(row, ends, &self.component.bodies);
             let inert = element.is_none();
             // An element that begins to act brings its energy with it.
             self.component.perturbed |= row.has(ElementFlags::INERT) != inert;
             row.flags.set(ElementFlags::INERT, inert);
             if let Some(element) = element {
                 if has_moved {
-                    row.account_for_leap(element.distance(&self.start).0);
+                    row.account_for_leap(element.distance(&self.component.bodies).0);
                 }
                 omega = omega.max(omega_of(row));
                 for (end, _) in ends.iter().enumerate().filter(|(_, end)| end.is_path()) {
@@ -203,31 +205,39 @@ impl Assembly {
     }
 
     /// Integrates over the step and computes the push for each body.
-    pub(crate) fn advance(&mut self, step: &Step, accuracy: Accuracy) {
+    pub(crate) fn advance(&mut self, step: &Step, accuracy: Accuracy, copies: &mut Copies) {
         if self.state != State::Ready {
             return;
         }
-        let carried = self.component.is_warm;
+        self.component.swap_copies(copies);
         self.outcome = self.component.advance(step.plan.time, accuracy);
         if !self.component.is_finite() {
             self.state = State::Powerless;
             self.component.forget_points();
             self.component.forget_solutions();
         }
-        if carried && !self.component.is_warm {
-            self.start.clone_from_slice(self.component.start_bodies());
-        }
         self.orders.clear();
-        if self.state != State::Ready || self.component.is_warm {
-            return;
+        self.woken.clear();
+        if self.component.is_warm {
+            // The points have all that is given to the bodies.
+            self.orders.shrink_to_fit();
+        } else if self.state == State::Ready {
+            self.order(step);
         }
-        let ways = self.start.iter().zip(&self.component.bodies);
-        let pushes = self
-            .seen
-            .iter()
-            .zip(ways)
-            .map(|(seen, (start, end))| step.push(seen, start, end));
-        self.orders.extend(pushes);
+        self.component.swap_copies(copies);
+    }
+
+    /// Computes the push for each body after a step of rigid bodies.
+    fn order(&mut self, step: &Step) {
+        let ends = &self.component.bodies;
+        let ways = self.component.start_bodies().iter().zip(ends);
+        self.orders.reserve_exact(ends.len());
+        for (slot, (manner, (start, end))) in self.manners.iter().zip(ways).enumerate() {
+            self.orders.push(step.push(manner, start, end));
+            if manner.is_asleep && step.sets_moving(start, end) {
+                self.woken.push(slot as u32);
+            }
+        }
     }
 
     /// Gives each body its push.
@@ -251,13 +261,7 @@ impl Assembly {
             return self.deliver_warm(step, members, elements, bodies, engine);
         }
         if ready {
-            step.wake_the_moved(
-                bodies,
-                members.bodies,
-                &self.start,
-                &self.component.bodies,
-                engine,
-            );
+            wake_with(&self.woken, bodies, members.bodies, engine);
         }
         for (slot, b) in members.bodies.iter().enumerate() {
             let row = &mut bodies[*b as usize];

@@ -2,6 +2,7 @@
 //! only after all of them are read and solved.
 
 use crate::backend::{Engine, Sight};
+use crate::dynamics::step::Copies;
 use crate::scene::assembly::Assembly;
 use crate::scene::lone::{Lone, Piece, Route, Way, Worker, pieces};
 use crate::scene::rows::Cut;
@@ -23,6 +24,10 @@ pub(crate) struct Spare {
     /// Group index of each assembly in `general` that is in use.
     groups: Vec<u32>,
     runs: Runs,
+    /// For each piece of work, memory that its assemblies share.
+    copies: Vec<Copies>,
+    /// Memory that the assemblies in `general` share.
+    general_copies: Copies,
 }
 
 impl Scene {
@@ -43,9 +48,9 @@ impl Scene {
         self.noting |= general > 0 || !self.assemblies.is_empty();
         let accuracy = step.accuracy.shared(general);
         for assembly in &mut spare.general[..general] {
-            assembly.advance(step, accuracy);
+            assembly.advance(step, accuracy, &mut spare.general_copies);
         }
-        advance(&mut self.assemblies, step);
+        advance(&mut self.assemblies, step, &mut spare.copies);
         // Write.
         let (elements, bodies) = (&mut self.elements, &mut self.bodies);
         if let Some(lone) = lone {
@@ -190,7 +195,7 @@ impl Scene {
 
 /// Integrates all assemblies, on several threads if there is enough work. They share no data, so the number
 /// of threads does not change the result.
-fn advance(assemblies: &mut [Assembly], step: &Step) {
+fn advance(assemblies: &mut [Assembly], step: &Step, copies: &mut Vec<Copies>) {
     if assemblies.is_empty() {
         return;
     }
@@ -204,9 +209,14 @@ fn advance(assemblies: &mut [Assembly], step: &Step) {
     } else {
         assemblies.len().max(1)
     };
-    threads::share(assemblies.chunks_mut(each), |assemblies| {
+    let pieces = assemblies.chunks_mut(each);
+    copies.resize_with(copies.len().max(pieces.len()), Copies::default);
+    threads::share(pieces.zip(copies), |(assemblies, copies)| {
+        // Several threads must not write to neighbours in memory again and again.
+        let mut own = take(copies);
         for assembly in assemblies {
-            assembly.advance(step, accuracy);
+            assembly.advance(step, accuracy, &mut own);
         }
+        *copies = own;
     });
 }

@@ -204,6 +204,7 @@ impl Groups {
                 self.list[g].take(g, before.unwrap_or_default(), assemblies);
             }
         }
+        assemblies.shrink_to_fit();
     }
 
     /// Stores whether contacts or joints hold a body of a group.

@@ -21,6 +21,7 @@ pub(crate) mod element;
 pub(crate) mod energy;
 pub(crate) mod free;
 pub(crate) mod group;
+pub(crate) mod handles;
 pub(crate) mod held;
 pub(crate) mod kept;
 pub(crate) mod lone;

@@ -170,7 +170,9 @@ impl ElementRow {
                 Held::Body { .. } => point.0,
             });
             if !moves && rare.guide != Guide::Centres {
-                rare.facings[end] = frame(&rare.held[end], eyes).0;
+                let mut facings = rare.facings();
+                facings[end] = frame(&rare.held[end], eyes).0;
+                rare.set_facings(facings);
             }
         }
     }

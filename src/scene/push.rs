@@ -17,6 +17,26 @@ pub(crate) struct Terms {
     pub second_substep: bool,
 }
 
+/// How the engine steps a body before its step, as far as the push depends on it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Manner {
+    /// Number of extra substeps for which the body asks.
+    more: u32,
+    /// Whether the engine applies gyroscopic forces to it.
+    is_gyroscopic: bool,
+    pub is_asleep: bool,
+}
+
+impl Manner {
+    pub(crate) fn of(body: &Seen) -> Self {
+        Self {
+            more: body.more_substeps as u32,
+            is_gyroscopic: body.is_gyroscopic,
+            is_asleep: body.is_asleep,
+        }
+    }
+}
+
 /// What is given to a body that is moved but not turned.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Given {
@@ -102,8 +122,8 @@ impl Step {
     }
 
     /// The push that takes a body from `start` to `end` over the step.
-    pub(crate) fn push(&self, seen: &Seen, start: &Body, end: &Body) -> Push {
-        let terms = self.terms(seen.more_substeps);
+    pub(crate) fn push(&self, manner: &Manner, start: &Body, end: &Body) -> Push {
+        let terms = self.terms(manner.more as usize);
         let (velocity, linear) = self.straight(
             start.velocity,
             end.position - start.position,
@@ -117,7 +137,9 @@ impl Step {
             let before = start.angular_velocity();
             let Delivery { jump, rate } = {
                 let rule = self.plan.turn;
-                terms.schedule.angular(start, seen.is_gyroscopic, end, rule)
+                terms
+                    .schedule
+                    .angular(start, manner.is_gyroscopic, end, rule)
             };
             spin = Some((before + jump).as_vec3());
             torque = torque_for(rate, inverse_inertia) - start.torque;

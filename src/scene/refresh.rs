@@ -31,7 +31,7 @@ pub(crate) fn refresh(
     } = scene;
     // A change while the context is not stepped is kept until its next step.
     marked.retain(|index| {
-        let row = &mut rows[*index];
+        let row = &mut rows[*index as usize];
         let waits = !row.has_acted(bodies, stepped);
         row.flags.set(ElementFlags::CHANGED, waits);
         waits
@@ -50,7 +50,7 @@ pub(crate) fn refresh(
         let row = &mut rows[*index as usize];
         if !row.has(ElementFlags::CHANGED) {
             row.flags.insert(ElementFlags::CHANGED);
-            marked.push(*index as usize);
+            marked.push(*index);
         }
         let new = parts.parameters().and_then(|new| {
             new.check()?;
@@ -66,8 +66,8 @@ pub(crate) fn refresh(
         }
     }
     followed.iter().all(|(index, end)| {
-        let row = &mut rows[*index];
-        row.trouble.lasting().is_some() || follow(row, *end, finder, bodies, shifted)
+        let (row, end) = (&mut rows[*index as usize], usize::from(*end));
+        row.trouble.lasting().is_some() || follow(row, end, finder, bodies, shifted)
     })
 }
 

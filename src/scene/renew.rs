@@ -27,6 +27,9 @@ impl Scene {
         commands: &mut Commands,
     ) {
         let mut found_all = Vec::with_capacity(self.elements.len());
+        if self.elements.is_empty() {
+            self.elements.reserve_exact(elements.iter().len());
+        }
         self.changed.clear();
         self.faulty.clear();
         self.followed.clear();
@@ -50,10 +53,10 @@ impl Scene {
             row.trouble.set_lasting(found.as_ref().err().copied());
             report(row, commands);
             if changed {
-                self.changed.push(index);
+                self.changed.push(index as u32);
             }
             if found.is_err() {
-                self.faulty.push(index);
+                self.faulty.push(index as u32);
             }
             let elsewhere = found.as_ref().is_ok_and(|found| row.is_elsewhere(found));
             if found.is_err() || elsewhere || !held_by.acts_like(&row.rare.ties) {
@@ -68,8 +71,8 @@ impl Scene {
             }
             self.left.extend(gone.take_inside());
         }
-        let signatures = self.enter_bodies(&found_all, modified);
-        self.hold_ends(&found_all);
+        let (signatures, held) = self.enter_bodies(&found_all, modified);
+        self.hold_ends(&found_all, &held);
         self.notice_other_elements(&signatures);
         self.leave_what_moves_nothing();
         self.groups.find(&self.elements, &self.bodies);
@@ -77,14 +80,14 @@ impl Scene {
         self.awaited = self.elements.iter().any(ElementRow::awaits_step);
     }
 
-    /// Connects rows of elements with the rows of their bodies.
-    fn hold_ends(&mut self, found_all: &[Option<Found>]) {
+    /// Connects rows of elements with the rows of their bodies. `held` has the row index of the body at each end.
+    fn hold_ends(&mut self, found_all: &[Option<Found>], held: &[Option<u32>]) {
         for (index, (row, found)) in self.elements.iter_mut().zip(found_all).enumerate() {
             let Some(found) = found else { continue };
             for end in 0..2 {
-                row.hold(end, &found.places[end], &self.index);
+                row.hold(end, &found.places[end], held[2 * index + end]);
                 if row.is_watched(end) {
-                    self.followed.push((index, end));
+                    self.followed.push((index as u32, end as u8));
                 }
                 if let (Place::OnBody { entity, .. }, None) = (found.places[end], row.movable(end))
                 {
@@ -133,7 +136,7 @@ impl Scene {
             for (slot, b) in self.groups.members(group).bodies.iter().enumerate() {
                 let row = &mut self.bodies[*b as usize];
                 (row.rare.group, row.rare.slot) = (g as u32, slot as u32);
-                self.handles.insert((row.rare.context, row.id), *b);
+                self.handles.insert(row.rare.context, row.id, *b);
             }
         }
         self.groups
@@ -173,10 +176,19 @@ impl Scene {
     }
 
     /// Makes the rows of all movable bodies. The row of a body that is still the same is kept. Returns for each body a hash of
-    /// the elements that acted on it before.
-    fn enter_bodies(&mut self, found_all: &[Option<Found>], modified: &EntityHashSet) -> Vec<u64> {
-        let mut wanted: Vec<_> = found_all.iter().flatten().flat_map(Wanted::of).collect();
+    /// the elements that acted on it before, and for each end of each element the row index of the body that it moves.
+    fn enter_bodies(
+        &mut self,
+        found_all: &[Option<Found>],
+        modified: &EntityHashSet,
+    ) -> (Vec<u64>, Vec<Option<u32>>) {
+        let found = found_all.iter().enumerate();
+        let mut wanted: Vec<_> = found
+            .filter_map(|(element, found)| Some(Wanted::of(element, found.as_ref()?)))
+            .flatten()
+            .collect();
         wanted.sort_unstable_by_key(|body| body.entity);
+        let held = Wanted::rows(&wanted, found_all.len());
         wanted.dedup_by(|again, first| {
             let same = again.entity == first.entity;
             first.turns |= same && again.turns;
@@ -187,7 +199,7 @@ impl Scene {
             self.replace_bodies(&wanted);
         }
         let rows = self.bodies.iter_mut().zip(&wanted);
-        rows.map(|(row, body)| {
+        let signatures = rows.map(|(row, body)| {
             row.flags.set(BodyFlags::TURNS, body.turns);
             row.rare.center = body.center;
             if modified.contains(&row.entity) {
@@ -195,17 +207,17 @@ impl Scene {
             }
             // A new body has no earlier signature. It is marked as disturbed anyway.
             take(&mut row.rare.signature)
-        })
-        .collect()
+        });
+        (signatures.collect(), held)
     }
 
     /// Replaces the rows of bodies. If no element moves a body any more, its changed settings are stored, to be restored later.
     fn replace_bodies(&mut self, wanted: &[Wanted]) {
-        self.index.clear();
         let before = take(&mut self.bodies);
         let mut before = before.into_iter().peekable();
         let mut gone = Vec::new();
-        for (slot, body) in wanted.iter().enumerate() {
+        self.bodies.reserve_exact(wanted.len());
+        for body in wanted {
             while let Some(row) = before.next_if(|row| row.entity < body.entity) {
                 gone.push(row);
             }
@@ -216,7 +228,6 @@ impl Scene {
                 row.rare.rank = body.rank;
                 row
             }));
-            self.index.insert(body.entity, slot as u32);
         }
         let raised = gone.into_iter().chain(before);
         let raised = raised.filter(|row| row.rare.raised.is_any());

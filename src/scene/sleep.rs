@@ -8,6 +8,7 @@ use crate::backend::{Engine, Seen, Sight};
 use crate::dynamics::body::Body;
 use crate::scene::rows::{BodyFlags, BodyRow, ElementRow, Members, Rest, Rows, RowsMut, take};
 use crate::scene::step::Step;
+use bevy::math::Quat;
 
 /// Speed below which a body counts as resting: m/s, times the engine's length unit, and rad/s. With ten times as much, slow swings
 /// fall asleep. Pinned by `sleeping::a_long_pendulum_on_a_stiff_spring_does_not_fall_asleep_at_its_turning_point`.
@@ -49,7 +50,7 @@ fn is_restless(
     time: f32,
     length_unit: f32,
 ) -> bool {
-    let (position, rotation) = (body.origin, body.rotation);
+    let (position, rotation) = (body.origin, body.rotation.to_array());
     let place = position.abs().max_element() * f32::EPSILON;
     // The engine's velocities are those of its last substep. In a component that it solves, they tremble although places stay, so
     // mainly the position decides.
@@ -78,7 +79,11 @@ fn is_restless(
     };
     let rest = &mut row.rare.rest;
     let strayed = rest.position.distance(position) > creep * QUIET * length_unit + ROUNDING * place
-        || (rest.rotation.inverse() * rotation).xyz().length() * size > 0.5 * creep * QUIET;
+        || (Quat::from_array(rest.rotation).inverse() * body.rotation)
+            .xyz()
+            .length()
+            * size
+            > 0.5 * creep * QUIET;
     if strayed {
         row.flags.remove(BodyFlags::RESTS);
         return true;
@@ -97,13 +102,6 @@ fn is_restless(
         row.flags.insert(BodyFlags::RESTS_LONG);
     }
     !row.has(BodyFlags::RESTS_LONG)
-}
-
-/// Whether a step would set a sleeping body in motion: with its acceleration it would exceed the speed of rest within a second.
-fn is_set_moving(start: &Body, end: &Body, time: f64, length_unit: f32) -> bool {
-    let rest = f64::from(REST) * time;
-    (end.velocity - start.velocity).length() > rest * f64::from(length_unit)
-        || (end.angular_velocity() - start.angular_velocity()).length() > rest
 }
 
 /// Natural frequency of an element between its own ends, as of the last step, rad/s.
@@ -154,28 +152,12 @@ impl Step {
         is_restless(row, body, inside, size, omega, time, self.plan.length_unit)
     }
 
-    /// Wakes all bodies of a component if the step would set a sleeping body in motion. Otherwise
-    /// that body would act like a wall.
-    pub(crate) fn wake_the_moved(
-        &self,
-        rows: &[BodyRow],
-        members: &[u32],
-        start: &[Body],
-        end: &[Body],
-        engine: &mut impl Engine,
-    ) {
-        let bodies = || members.iter().map(|b| rows[*b as usize].id);
-        let moved = bodies()
-            .zip(start.iter().zip(end))
-            .any(|(body, (start, end))| {
-                engine.is_asleep(body)
-                    && is_set_moving(start, end, self.plan.time, self.plan.length_unit)
-            });
-        if moved {
-            for body in bodies() {
-                engine.wake(body);
-            }
-        }
+    /// Whether the step would set a sleeping body in motion: with its acceleration it would exceed the speed of rest within a
+    /// second.
+    pub(crate) fn sets_moving(&self, start: &Body, end: &Body) -> bool {
+        let rest = f64::from(REST) * self.plan.time;
+        (end.velocity - start.velocity).length() > rest * f64::from(self.plan.length_unit)
+            || (end.angular_velocity() - start.angular_velocity()).length() > rest
     }
 
     /// Returns whether there is anything to do for a component, and whether all its bodies must be [roused](rouse). `omega` is
@@ -204,6 +186,25 @@ impl Step {
         }
         let awake = !all_asleep || disturbed;
         (awake, awake && (disturbed || restless))
+    }
+}
+
+/// Wakes all bodies of a component if one of those that its step sets in motion, given by their indices within the component, is
+/// still asleep. Otherwise that body would act like a wall.
+pub(crate) fn wake_with(
+    moved: &[u32],
+    rows: &[BodyRow],
+    members: &[u32],
+    engine: &mut impl Engine,
+) {
+    let id = |b: u32| rows[b as usize].id;
+    if moved
+        .iter()
+        .any(|slot| engine.is_asleep(id(members[*slot as usize])))
+    {
+        for b in members {
+            engine.wake(id(*b));
+        }
     }
 }
 

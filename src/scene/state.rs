@@ -3,13 +3,13 @@
 use crate::backend::BodyId;
 use crate::scene::assembly::Assembly;
 use crate::scene::group::{Group, Groups};
+use crate::scene::handles::Handles;
 use crate::scene::held::Inside;
 use crate::scene::lone::Lone;
 use crate::scene::rows::{BodyFlags, BodyRow, ElementRow, Raised, Sweeps};
 use crate::scene::still::{Stepped, Still};
 use bevy::ecs::change_detection::Tick;
 use bevy::ecs::entity::{EntityHashMap, EntityHashSet};
-use bevy::platform::collections::HashMap;
 use bevy::prelude::*;
 
 /// The scene as the engine's step sees it. Each field is data that one stage of a step leaves for another. A stage
@@ -21,17 +21,14 @@ pub struct Scene {
     /// Row index of each element.
     pub(crate) row_of: EntityHashMap<u32>,
     /// Row indices of elements that changed since the last step.
-    pub(crate) changed: Vec<usize>,
+    pub(crate) changed: Vec<u32>,
     /// Row indices of elements with a fault, which do not act.
-    pub(crate) faulty: Vec<usize>,
+    pub(crate) faulty: Vec<u32>,
     /// Row index of an element and index of its end, for each end that must be looked for in every tick.
-    pub(crate) followed: Vec<(usize, usize)>,
+    pub(crate) followed: Vec<(u32, u8)>,
     /// Rows of the bodies that elements can move, in the order of their entities.
     pub(crate) bodies: Vec<BodyRow>,
-    /// Row index of each body.
-    pub(crate) index: EntityHashMap<u32>,
-    /// Row index of each body, by context and engine handle.
-    pub(crate) handles: HashMap<(Entity, BodyId), u32>,
+    pub(crate) handles: Handles,
     /// Bodies that hold an element but that elements cannot move.
     pub(crate) walls: EntityHashSet,
     pub(crate) groups: Groups,
@@ -92,9 +89,16 @@ pub struct Scene {
 impl Scene {
     /// Whether an entity is an element, or a body that holds one.
     pub(crate) fn knows(&self, entity: Entity) -> bool {
-        self.index.contains_key(&entity)
-            || self.walls.contains(&entity)
+        self.walls.contains(&entity)
             || self.row_of.contains_key(&entity)
+            || self.body_row(entity).is_some()
+    }
+
+    /// Row index of a body, if elements can move it.
+    pub(crate) fn body_row(&self, body: Entity) -> Option<usize> {
+        self.bodies
+            .binary_search_by_key(&body, |row| row.entity)
+            .ok()
     }
 
     /// Makes the next tick make all rows anew.

@@ -119,7 +119,7 @@ impl Step {
             return false;
         }
         let (rotation, turning) = facing(&row.rare.held[end], self.plan.time, sight);
-        turning != DVec3::ZERO || rotation != row.rare.facings[end]
+        turning != DVec3::ZERO || rotation != row.rare.facings()[end]
     }
 
     /// Substeps of a body that asks for `more` extra substeps.

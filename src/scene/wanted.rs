@@ -14,6 +14,8 @@ pub(crate) struct Wanted {
     pub(crate) center: Vec3,
     /// See [`Movable::rank`].
     pub(crate) rank: u64,
+    /// The end of an element that is on it: twice the row index of the element, plus the index of the end.
+    pub(crate) end: u32,
 }
 
 impl Wanted {
@@ -22,10 +24,10 @@ impl Wanted {
         row.entity == self.entity && row.id == self.id && row.rare.context == self.context
     }
 
-    /// The bodies of both ends that elements can move.
-    pub(crate) fn of(found: &Found) -> impl Iterator<Item = Self> {
-        let ends = found.places.iter().zip(found.movable);
-        ends.filter_map(|(place, movable)| match (*place, movable) {
+    /// The bodies of both ends that elements can move. `element` is the row index of their element.
+    pub(crate) fn of(element: usize, found: &Found) -> impl Iterator<Item = Self> {
+        let ends = found.places.iter().zip(found.movable).enumerate();
+        ends.filter_map(move |(end, (place, movable))| match (*place, movable) {
             (
                 Place::OnBody {
                     entity,
@@ -45,8 +47,21 @@ impl Wanted {
                 turns,
                 center,
                 rank,
+                end: (2 * element + end) as u32,
             }),
             _ => None,
         })
+    }
+
+    /// For each end of `elements` elements, the row index of the body that it moves. `all` must be sorted by entity.
+    pub(crate) fn rows(all: &[Self], elements: usize) -> Vec<Option<u32>> {
+        let mut rows = vec![None; 2 * elements];
+        let bodies = all.chunk_by(|a, b| a.entity == b.entity);
+        for (row, body) in bodies.enumerate() {
+            for of in body {
+                rows[of.end as usize] = Some(row as u32);
+            }
+        }
+        rows
     }
 }

@@ -20,9 +20,8 @@ pub(crate) struct WarmStart {
     pub omega: f32,
     /// Centre of mass of each body in its own frame, m.
     pub centers: Vec<Vec3>,
-    in_memory: InMemory,
-    /// Velocity and force for each body.
-    given: Vec<Given>,
+    /// None for a component that never was a network of points.
+    in_memory: Option<Box<InMemory>>,
     /// Whether some body has not rested long enough to sleep.
     restless: bool,
     /// Whether something other than elements may have changed the energy of the network.
@@ -43,6 +42,8 @@ struct InMemory {
     pulls: Vec<DVec3>,
     /// For each body in `bodies`, its state before the step.
     met: Vec<Met>,
+    /// For each body of the component, its velocity and force.
+    given: Vec<Given>,
     /// Facts about each piece of `bodies`.
     noted: Vec<Noted>,
 }
@@ -170,7 +171,7 @@ impl WarmStart {
             met,
             noted,
             ..
-        } = &mut self.in_memory;
+        } = &mut **self.in_memory.get_or_insert_default();
         met.resize(slots.len(), Met::default());
         noted.clear();
         noted.resize(slots.len().div_ceil(PIECE), Noted::default());
@@ -195,7 +196,9 @@ impl WarmStart {
     /// Forgets the bodies before they are read anew.
     pub(crate) fn begin(&mut self) {
         self.centers.clear();
-        self.in_memory.bodies.clear();
+        if let Some(in_memory) = &mut self.in_memory {
+            in_memory.bodies.clear();
+        }
     }
 }
 
@@ -246,8 +249,9 @@ impl Assembly {
         let warm = &mut self.warm;
         let time = step.plan.time;
         let points = self.component.points_to_continue(time)?;
-        if warm.in_memory.bodies.is_empty() {
-            warm.in_memory.line_up(members, points);
+        let in_memory = warm.in_memory.get_or_insert_default();
+        if in_memory.bodies.is_empty() {
+            in_memory.line_up(members, points);
         }
         let noted = warm.meet(step, members, bodies, sight);
         self.touch_changed |= noted.touch_changed;
@@ -257,7 +261,8 @@ impl Assembly {
         if noted.stops {
             return None;
         }
-        if !points.place(|slot| &warm.in_memory.met(slot).point) {
+        let in_memory = warm.in_memory.as_deref()?;
+        if !points.place(|slot| &in_memory.met(slot).point) {
             return None;
         }
         for (index, (element, end)) in warm.ends.iter().enumerate() {
@@ -284,15 +289,17 @@ impl Assembly {
         bodies: &mut [BodyRow],
         engine: &mut impl Engine,
     ) {
-        let points = &*self.component.warm_points();
         let WarmStart {
             in_memory,
-            given,
             restless,
             ..
         } = &mut self.warm;
+        let (Some(points), Some(in_memory)) = (self.component.warm_points(), in_memory) else {
+            return;
+        };
+        let mut given = std::mem::take(&mut in_memory.given);
         given.resize(members.bodies.len(), Given::default());
-        each(given, |slot, given| {
+        each(&mut given, |slot, given| {
             let more = in_memory.met(slot).more as usize;
             let (origin, flight) = (points.origin(slot), points.flight(slot));
             *given = step.push_point(more, &origin, &flight).into();
@@ -318,5 +325,6 @@ impl Assembly {
                 row.set_direction(direction);
             }
         });
+        in_memory.given = given;
     }
 }

@@ -34,7 +34,7 @@ impl Ends<'_, '_> {
         end: Entity,
         anchor: Vec3,
         field: &'static str,
-        scale: &mut Option<DVec3>,
+        scale: &mut Option<Vec3>,
     ) -> Result<Place, Fault> {
         let mut point = anchor.as_dvec3();
         let mut current = end;
@@ -102,11 +102,12 @@ fn check(point: DVec3, field: &'static str) -> Result<(), Fault> {
 
 /// The body's global scale. The scale of a rotating transform changes in its last bits, which would make the anchor tremble.
 /// So relative changes below 1e-4 are ignored.
-fn steady_scale(global: Option<&GlobalTransform>, last: &mut Option<DVec3>) -> DVec3 {
-    let now = global.map_or(DVec3::ONE, |g| g.scale().as_dvec3());
-    let known = last.unwrap_or(DVec3::ONE);
-    let same = (now - known).abs().cmple(known.abs() * 1e-4).all();
+fn steady_scale(global: Option<&GlobalTransform>, last: &mut Option<Vec3>) -> DVec3 {
+    let now = global.map_or(Vec3::ONE, GlobalTransform::scale);
+    let known = last.unwrap_or(Vec3::ONE);
+    let [from, to] = [known, now].map(|scale| scale.as_dvec3());
+    let same = (to - from).abs().cmple(from.abs() * 1e-4).all();
     let scale = if same { known } else { now };
     *last = Some(scale);
-    scale
+    scale.as_dvec3()
 }

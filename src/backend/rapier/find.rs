@@ -37,7 +37,7 @@ impl Finder for RapierFinder<'_, '_> {
         end: Entity,
         anchor: Vec3,
         field: &'static str,
-        scale: &mut Option<DVec3>,
+        scale: &mut Option<Vec3>,
     ) -> Result<Place, Fault> {
         self.ends.find(end, anchor, field, scale)
     }
@@ -46,7 +46,7 @@ impl Finder for RapierFinder<'_, '_> {
         &mut self,
         parameters: &Parameters,
         guide: Guide,
-        scales: &mut [Option<DVec3>; 2],
+        scales: &mut [Option<Vec3>; 2],
         modified: &EntityHashSet,
     ) -> Result<Found, Fault> {
         parameters.check()?;

@@ -196,7 +196,7 @@ pub(crate) fn release(
     commands: &mut Commands,
 ) {
     for (entity, mut load, mut component) in loads {
-        if scene.index.contains_key(&entity) {
+        if scene.body(load.slot, entity).is_some() || scene.body_row(entity).is_some() {
             continue;
         }
         if let Ok((handle, link)) = handles.get(entity)

@@ -51,7 +51,7 @@ pub(crate) fn prepare(
     } = scene;
     same = same
         && faulty.iter().all(|index| {
-            let row = &mut rows[*index];
+            let row = &mut rows[*index as usize];
             still_faulty(row, &companions, &mut finder, modified, &mut commands)
         });
     scene.renewed = !same || (scene.renewed && scene.time <= 0.0);

@@ -29,7 +29,7 @@ impl Watch<'_, '_> {
     pub(crate) fn saw_change(&mut self, scene: &mut Scene) -> bool {
         self.mass_modified.clear();
         self.mass_modified.extend(self.masses.read().map(|m| m.0));
-        let is_loaded = |entity: &Entity| scene.index.contains_key(entity);
+        let is_loaded = |entity: &Entity| scene.body_row(*entity).is_some();
         let mut changed = self.changed.iter().any(|entity| scene.knows(entity));
         changed |= self.mass_modified.iter().any(is_loaded);
         changed | std::mem::take(&mut scene.disturbed)
@@ -61,30 +61,34 @@ pub(crate) fn watch(app: &mut App) {
     came::<Disabled>(app);
 }
 
-/// Marks the scene as disturbed if it knows the entity. While a snapshot is restored there is no scene resource, and nothing
-/// is to be noted.
-fn notice(entity: Entity, scene: Option<ResMut<Scene>>) {
-    if let Some(mut scene) = scene.filter(|scene| scene.knows(entity)) {
+/// Marks the scene as disturbed if it is `concerned`. While a snapshot is restored there is no scene resource, and nothing is to
+/// be noted.
+fn notice(scene: Option<ResMut<Scene>>, concerned: impl Fn(&Scene) -> bool) {
+    // When many entities go at once, only the first need be looked for.
+    let is_noted = |scene: &Scene| scene.disturbed && !scene.undisturbed;
+    if let Some(mut scene) = scene.filter(|scene| !is_noted(scene) && concerned(scene)) {
         scene.disturb();
     }
 }
 
 /// Observes that a body or an element gets a component.
 fn came<C: Component>(app: &mut App) {
-    app.add_observer(|on: Inserted<C>, scene: Option<ResMut<Scene>>| notice(on.entity, scene));
+    app.add_observer(|on: Inserted<C>, scene: Option<ResMut<Scene>>| {
+        notice(scene, |scene| scene.knows(on.entity));
+    });
 }
 
 /// Observes that an element or a body loses a component.
 fn lost<C: Component>(app: &mut App) {
-    app.add_observer(|on: Removed<C>, scene: Option<ResMut<Scene>>| notice(on.entity, scene));
+    app.add_observer(|on: Removed<C>, scene: Option<ResMut<Scene>>| {
+        notice(scene, |scene| scene.knows(on.entity));
+    });
 }
 
 /// Observes that a body that elements can move loses a component.
 fn unloaded<C: Component>(app: &mut App) {
     app.add_observer(|on: Removed<C>, scene: Option<ResMut<Scene>>| {
-        if let Some(mut scene) = scene.filter(|scene| scene.index.contains_key(&on.entity)) {
-            scene.disturb();
-        }
+        notice(scene, |scene| scene.body_row(on.entity).is_some());
     });
 }
 

@@ -27,6 +27,7 @@ impl Component {
             max_iterations,
             ..
         } = &mut self.memory;
+        let points = points.get_or_insert_default();
         points.load_from(&self.elements, &self.bodies, *max_iterations);
         3 * self.bodies.len() > DIRECT || points.bounds(time).0 < SOFT
     }
@@ -39,6 +40,7 @@ impl Component {
         drive: impl FnOnce(&mut Points) -> Outcome,
     ) -> Outcome {
         let Memory { points, bound, .. } = &mut self.memory;
+        let points: &mut Points = points.get_or_insert_default();
         let start = points.survey();
         let now = start.energy.sum();
         bound.start(now, start.rounding, start.power, self.perturbed);
@@ -59,13 +61,11 @@ impl Component {
             }
         } else {
             self.put_down();
-            let start = &mut self.memory.saved[0];
-            start.bodies.clone_from(&self.bodies);
-            start.elements.clone_from(&self.elements);
         }
-        self.memory
-            .points
-            .store_into(&mut self.elements, &mut self.bodies);
+        self.save(0);
+        if let Some(points) = &mut self.memory.points {
+            points.store_into(&mut self.elements, &mut self.bodies);
+        }
         if !kept {
             self.hold_back(time);
             self.keep_bound(time, accuracy, &mut outcome);
@@ -122,10 +122,12 @@ impl Component {
 
     fn settle(&mut self, time: f64, bound: &mut Bound) {
         let budget = self.memory.max_iterations;
-        let network = &mut self.memory.network;
+        let network = self.memory.network.get_or_insert_default();
         let motion = network.settle(&self.elements, &self.bodies, time, budget);
         self.yield_to(&motion, time, bound);
-        self.memory.network.give_back(motion);
+        if let Some(network) = &mut self.memory.network {
+            network.give_back(motion);
+        }
     }
 
     /// Moves the bodies with the velocities of `motion`, as far as the stored energy allows.

@@ -2,6 +2,7 @@
 
 use super::{Caution, Component, Kinks};
 use crate::dynamics::bound::Bound;
+use crate::dynamics::network::Network;
 use crate::dynamics::strut::Twists;
 use crate::dynamics::tolerance::Controller;
 use bevy::math::DVec3;
@@ -24,13 +25,15 @@ pub(crate) struct Remembered {
 impl Component {
     pub(crate) fn remembered(&self) -> Remembered {
         let memory = &self.memory;
+        let points = memory.points.as_deref();
+        let network = memory.network.as_deref().and_then(Network::start);
         Remembered {
             controller: memory.controller,
             kinks: memory.kinks,
             caution: memory.caution,
             bound: memory.bound,
-            points: memory.points.solution().to_vec(),
-            network: memory.network.start().cloned().unwrap_or_default(),
+            points: points.map_or_else(Vec::new, |points| points.solution().to_vec()),
+            network: network.cloned().unwrap_or_default(),
         }
     }
 
@@ -48,8 +51,12 @@ impl Component {
         let memory = &mut self.memory;
         (memory.controller, memory.kinks) = (*controller, *kinks);
         (memory.caution, memory.bound) = (*caution, *bound);
-        memory.points.start_from(points);
-        memory.network.start_from(network);
+        if memory.points.is_some() || !points.is_empty() {
+            memory.points.get_or_insert_default().start_from(points);
+        }
+        if memory.network.is_some() || !network.linear.is_empty() {
+            memory.network.get_or_insert_default().start_from(network);
+        }
     }
 }
 

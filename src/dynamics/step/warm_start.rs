@@ -10,7 +10,7 @@ impl Component {
     /// The points, if they can continue from the last step and it was as long as this one.
     pub(crate) fn points_to_continue(&mut self, time: f64) -> Option<&mut Points> {
         let can_go_on = self.memory.carriable == Some(time);
-        can_go_on.then_some(&mut self.memory.points)
+        self.memory.points.as_deref_mut().filter(|_| can_go_on)
     }
 
     /// Makes the next step load the points anew.
@@ -30,24 +30,32 @@ impl Component {
 
     /// Makes iterations start from zero. From values that are not finite they would never converge.
     pub(crate) fn forget_solutions(&mut self) {
-        self.memory.points.forget_solution();
-        self.memory.network.forget_solution();
+        if let Some(points) = &mut self.memory.points {
+            points.forget_solution();
+        }
+        if let Some(network) = &mut self.memory.network {
+            network.forget_solution();
+        }
     }
 
     /// The points after a step that was [warm](Self::is_warm) to its end.
-    pub(crate) fn warm_points(&mut self) -> &mut Points {
-        &mut self.memory.points
+    pub(crate) fn warm_points(&self) -> Option<&Points> {
+        self.memory.points.as_deref()
     }
 
-    /// Bodies at the start of a step that began warm but did not end so.
+    /// Bodies at the start of a step that did not end [warm](Self::is_warm).
     pub(crate) fn start_bodies(&self) -> &[Body] {
-        &self.memory.saved[0].bodies
+        match self.memory.saved.first() {
+            Some(start) => &start.bodies,
+            None => &[],
+        }
     }
 
     /// Ends a warm step. Bodies and elements are used again, in their state at the start of the step.
     pub(super) fn put_down(&mut self) {
-        if std::mem::take(&mut self.is_warm) {
-            let points = &self.memory.points;
+        if std::mem::take(&mut self.is_warm)
+            && let Some(points) = &self.memory.points
+        {
             points.restore(&mut self.elements, &mut self.bodies);
         }
     }

@@ -8,12 +8,12 @@ impl Memory {
         row.set_direction(self.direction);
         row.length = self.length;
         let rare = &mut *row.rare;
-        rare.controller = self.controller;
+        rare.set_controller(self.controller);
         rare.places = self.places;
         rare.leapt = false;
         rare.angle = self.angle;
-        rare.facings = self.facings;
-        rare.scales = self.scales;
+        rare.set_facings(self.facings);
+        rare.scales = self.scales.map(|scale| Some(scale?.as_vec3()));
         rare.jump = self.jump;
     }
 }

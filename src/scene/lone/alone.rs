@@ -127,8 +127,8 @@ fn drive(
     start: Separation,
 ) -> (Outcome, Separation) {
     let time = step.plan.time;
-    let controller = &mut row.rare.controller;
-    match &row.law {
+    let mut controller = row.rare.controller();
+    let driven = match &row.law {
         None => {
             let mut moving = Moving::new(pair, start, &mut row.memo);
             let outcome = controller.drive(&mut moving, time, step.accuracy);
@@ -139,5 +139,7 @@ fn drive(
             let outcome = controller.drive(&mut moving, time, step.accuracy);
             (outcome, moving.state)
         }
-    }
+    };
+    row.rare.set_controller(controller);
+    driven
 }

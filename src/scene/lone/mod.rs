@@ -146,5 +146,8 @@ pub(crate) fn list(
         });
         all[of].pairs.push(Pair::of(index, row, bodies));
     }
+    for lone in &mut all {
+        lone.pairs.shrink_to_fit();
+    }
     all
 }

@@ -38,7 +38,7 @@ impl Finder for Ends<'_, '_> {
         entity: Entity,
         anchor: Vec3,
         _: &'static str,
-        _: &mut Option<DVec3>,
+        _: &mut Option<Vec3>,
     ) -> Result<Place, Fault> {
         Ok(match self.bricks.get(entity) {
             Ok(brick) => Place::OnBody {
@@ -61,7 +61,7 @@ impl Finder for Ends<'_, '_> {
         &mut self,
         p: &Parameters,
         _: Guide,
-        scales: &mut [Option<DVec3>; 2],
+        scales: &mut [Option<Vec3>; 2],
         _: &EntityHashSet,
     ) -> Result<Found, Fault> {
         let Parameters { ties, .. } = p;

@@ -4,7 +4,7 @@ use super::flags::BodyFlags;
 use super::marks::turning_mark;
 use super::raised::Raised;
 use crate::backend::{BodyId, Seen, Wrench};
-use bevy::math::{DVec3, Quat, Vec3};
+use bevy::math::{DVec3, Vec3};
 use bevy::prelude::Entity;
 
 /// For how long and where a body has been at rest.
@@ -12,7 +12,8 @@ use bevy::prelude::Entity;
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Rest {
     pub position: Vec3,
-    pub rotation: Quat,
+    /// A quaternion. As such it would be aligned to 16 bytes, and the row with it.
+    pub rotation: [f32; 4],
     pub seconds: f32,
     /// Mean speed at which the body has moved away from `position`, m/s.
     pub rate: f32,

@@ -11,7 +11,6 @@ use crate::input::check::{Numbers, Parameters, Ties, Trouble};
 use crate::input::companions::Companion;
 use crate::scene::held::Inside;
 use crate::scene::still::Stepped;
-use bevy::ecs::entity::EntityHashMap;
 use bevy::math::{DQuat, DVec3};
 use bevy::prelude::*;
 use std::num::NonZeroU32;
@@ -88,9 +87,8 @@ impl From<Outcome> for Solved {
 pub(crate) struct BodyIndex(NonZeroU32);
 
 impl BodyIndex {
-    fn new(index: usize) -> Option<Self> {
-        let number = u32::try_from(index).ok()?.checked_add(1)?;
-        NonZeroU32::new(number).map(Self)
+    fn new(index: u32) -> Option<Self> {
+        NonZeroU32::new(index.checked_add(1)?).map(Self)
     }
 
     fn get(self) -> usize {
@@ -137,7 +135,8 @@ pub(crate) struct RareElement {
     pub places: [Option<DVec3>; 2],
     /// Rotations, after the last step, of the bodies at its ends. Valid only for an element with an axis,
     /// at an end that elements cannot move.
-    pub facings: [DQuat; 2],
+    /// None until one of them is stored.
+    pub facings: Option<Box<[DQuat; 2]>>,
     /// Whether its length is another one at once, because it was given other anchors or another axis since the last step. Valid
     /// only with [`ElementFlags::REFITTED`].
     pub leapt: bool,
@@ -146,8 +145,40 @@ pub(crate) struct RareElement {
     /// Valid only with [`ElementFlags::JUMPED`] or [`ElementFlags::LEADS`].
     pub jump: Jump,
     /// Scales of the bodies at its ends. They ignore the rounding noise of transforms.
-    pub scales: [Option<DVec3>; 2],
-    pub controller: Controller,
+    pub scales: [Option<Vec3>; 2],
+    /// None while it has nothing to remember, as for an element that takes equal micro-steps.
+    pub controller: Option<Box<Controller>>,
+}
+
+impl RareElement {
+    pub(crate) fn facings(&self) -> [DQuat; 2] {
+        self.facings
+            .as_deref()
+            .copied()
+            .unwrap_or([DQuat::IDENTITY; 2])
+    }
+
+    pub(crate) fn set_facings(&mut self, facings: [DQuat; 2]) {
+        match &mut self.facings {
+            Some(known) => **known = facings,
+            None if facings != [DQuat::IDENTITY; 2] => self.facings = Some(Box::new(facings)),
+            None => {}
+        }
+    }
+
+    pub(crate) fn controller(&self) -> Controller {
+        self.controller.as_deref().copied().unwrap_or_default()
+    }
+
+    pub(crate) fn set_controller(&mut self, controller: Controller) {
+        match &mut self.controller {
+            Some(known) => **known = controller,
+            None if controller != Controller::default() => {
+                self.controller = Some(Box::new(controller));
+            }
+            None => {}
+        }
+    }
 }
 
 /// For each end, the flag that says that it must be looked for in every tick.
@@ -173,12 +204,12 @@ impl ElementRow {
                 guide: Guide::default(),
                 held: [Held::NOWHERE; 2],
                 places: [None; 2],
-                facings: [DQuat::IDENTITY; 2],
+                facings: None,
                 leapt: false,
                 angle: 0.0,
                 jump: Jump::default(),
                 scales: [None; 2],
-                controller: Controller::default(),
+                controller: None,
             }),
             ledger: EnergyLedger::default(),
             direction: DVec3::ZERO,
@@ -317,8 +348,8 @@ impl ElementRow {
         self.solved = Solved::default();
     }
 
-    /// Connects an end to the place where it was found. `index` has the row index of each body.
-    pub(crate) fn hold(&mut self, end: usize, place: &Place, index: &EntityHashMap<u32>) {
+    /// Connects an end to the place where it was found. `row` is the row index of the body there, if elements can move it.
+    pub(crate) fn hold(&mut self, end: usize, place: &Place, row: Option<u32>) {
         self.rare.held[end] = match *place {
             Place::OnBody {
                 entity,
@@ -329,8 +360,7 @@ impl ElementRow {
                 let ties = &self.rare.ties;
                 let direct = entity == ties.ends[end] && ties.anchors[end] == Vec3::ZERO;
                 self.flags.set(WATCHED[end], !direct);
-                let index = index.get(&entity);
-                self.on[end] = index.and_then(|index| BodyIndex::new(*index as usize));
+                self.on[end] = row.and_then(BodyIndex::new);
                 Held::Body {
                     body,
                     context,
@@ -348,11 +378,17 @@ impl ElementRow {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::rows::body::BodyRow;
+    use crate::scene::rows::body::{BodyRow, RareBody};
 
     #[test]
     fn a_row_is_what_a_step_reads_of_it() {
         assert_eq!(size_of::<ElementRow>(), 192);
         assert_eq!(size_of::<BodyRow>(), 64);
+    }
+
+    #[test]
+    fn what_not_every_step_needs_is_no_larger_than_it_must_be() {
+        assert_eq!(size_of::<RareElement>(), 352);
+        assert_eq!(size_of::<RareBody>(), 224);
     }
 }

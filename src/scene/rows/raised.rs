@@ -23,7 +23,7 @@ impl Sweeps {
 #[derive(Clone, Copy, Debug, Default)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Raised {
-    substeps: Option<Replaced<usize>>,
+    substeps: Option<Replaced<u32>>,
     prediction: Option<Replaced<f32>>,
 }
 
@@ -61,7 +61,7 @@ impl Raised {
     /// Returns the number of extra substeps to set for a body: `wanted`, or the user's number if that is
     /// greater. `now` is the present number.
     pub(crate) fn order_substeps(&mut self, now: usize, wanted: usize) -> usize {
-        Replaced::order(&mut self.substeps, now, wanted)
+        Replaced::order(&mut self.substeps, short(now), short(wanted)) as usize
     }
 
     /// Returns the contact prediction distance to set for a body, m: `wanted`, or the user's if that is
@@ -73,7 +73,7 @@ impl Raised {
     /// Whether a body with these extra substeps and this prediction distance has the settings that this value records, and not
     /// those that the crate set later (`meanwhile`).
     pub(crate) fn fits(&self, substeps: usize, prediction: f32, meanwhile: Self) -> bool {
-        Replaced::fits(self.substeps, substeps, meanwhile.substeps)
+        Replaced::fits(self.substeps, short(substeps), meanwhile.substeps)
             && Replaced::fits(self.prediction, prediction, meanwhile.prediction)
     }
 
@@ -81,4 +81,9 @@ impl Raised {
     pub(crate) fn is_any(&self) -> bool {
         self.substeps.is_some() || self.prediction.is_some()
     }
+}
+
+/// A number of substeps as it is kept.
+fn short(substeps: usize) -> u32 {
+    u32::try_from(substeps).unwrap_or(u32::MAX)
 }

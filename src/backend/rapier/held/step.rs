@@ -224,8 +224,8 @@ impl Scene {
             .map(|b| &bodies[*b as usize])
             .collect();
         let clear = outlook.look(&rows, pushes, |handle| {
-            let row = handles.get(&(view.context, id(handle)));
-            row.is_some_and(|b| bodies[*b as usize].rare.group == g as u32)
+            let row = handles.row(view.context, id(handle), bodies);
+            row.is_some_and(|row| row.rare.group == g as u32)
         });
         for b in members.bodies {
             let row = &mut self.bodies[*b as usize];

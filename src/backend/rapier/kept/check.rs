@@ -91,8 +91,8 @@ impl Kept {
             let set = world.get::<RapierRigidBodySet>(context)?;
             let of = body.get::<RapierRigidBodyHandle>()?.0;
             let meanwhile = scene.and_then(|scene| {
-                let row = scene.index.get(&known.entity)?;
-                Some(scene.bodies[*row as usize].rare.raised)
+                let row = scene.body_row(known.entity)?;
+                Some(scene.bodies[row].rare.raised)
             });
             let meanwhile = meanwhile.unwrap_or_default();
             Some(fits(&known.raised, set.bodies.get(of)?, meanwhile))

@@ -62,7 +62,7 @@ impl Kept {
         kept.fill_scene(&mut scene);
         kept.leave_faulty(&mut scene, world);
         if !kept.engine_stays {
-            kept.take_share(world, |body| !scene.index.contains_key(&body));
+            kept.take_share(world, |body| scene.body_row(body).is_none());
         }
         kept.show(&scene, world);
         // Everything written so far belongs to the restored state. Only later writes count as changes.
@@ -117,7 +117,6 @@ impl Kept {
         let lent = scene.bodies.drain(..);
         let lent = lent.map(|row| (row.entity, (row.rare.context, row.id, row.rare.raised)));
         let mut lent: EntityHashMap<_> = lent.filter(|_| self.engine_stays).collect();
-        scene.index.clear();
         for kept in &self.bodies {
             let place = world.get_entity(kept.entity).ok().and_then(|body| {
                 let handle = body.get::<RapierRigidBodyHandle>()?.0;
@@ -135,10 +134,6 @@ impl Kept {
         let others = lent.values().filter(|(_, _, raised)| raised.is_any());
         scene.unloaded.extend(others.copied());
         scene.bodies.sort_by_key(|row| row.entity);
-        let rows = scene.bodies.iter().enumerate();
-        scene
-            .index
-            .extend(rows.map(|(slot, row)| (row.entity, slot as u32)));
         scene.assemblies.clear();
         scene.stale = false;
         scene.touched.clear();
@@ -165,13 +160,13 @@ impl Kept {
         }
         let rows = scene.elements.iter().enumerate();
         let changed = rows.filter(|(_, row)| row.has(ElementFlags::CHANGED));
-        scene.changed = changed.map(|(index, _)| index).collect();
+        scene.changed = changed.map(|(index, _)| index as u32).collect();
     }
 
     fn fill_bodies(&self, scene: &mut Scene) {
         for kept in &self.bodies {
-            if let Some(row) = scene.index.get(&kept.entity)
-                && let Some(row) = scene.bodies.get_mut(*row as usize)
+            if let Some(row) = scene.body_row(kept.entity)
+                && let Some(row) = scene.bodies.get_mut(row)
             {
                 let disturbed = kept.flags.contains(BodyFlags::DISTURBED);
                 row.flags.set(BodyFlags::DISTURBED, disturbed);
@@ -191,8 +186,8 @@ impl Kept {
         }
         let mut bodies = vec![NONE; scene.bodies.len()];
         for (place, kept) in self.bodies.iter().enumerate() {
-            if let Some(index) = scene.index.get(&kept.entity) {
-                bodies[*index as usize] = place as u32;
+            if let Some(index) = scene.body_row(kept.entity) {
+                bodies[index] = place as u32;
             }
         }
         scene.groups.arrange(&elements, &bodies, &scene.elements);
@@ -200,8 +195,8 @@ impl Kept {
         scene.number_groups();
         for kept in &self.groups {
             let body = self.bodies.get(kept.body as usize);
-            let row = body.and_then(|body| scene.index.get(&body.entity));
-            let Some(g) = row.map(|row| scene.bodies[*row as usize].rare.group as usize) else {
+            let row = body.and_then(|body| scene.body_row(body.entity));
+            let Some(g) = row.map(|row| scene.bodies[row].rare.group as usize) else {
                 continue;
             };
             if g >= scene.groups.list().len() {
@@ -276,7 +271,7 @@ impl Kept {
             }
         }
         let mut loads = world.query_filtered::<Entity, With<SpringLoad>>();
-        let is_gone = |entity: &Entity| !scene.index.contains_key(entity);
+        let is_gone = |entity: &Entity| scene.body_row(*entity).is_none();
         let gone: Vec<Entity> = loads.iter(world).filter(is_gone).collect();
         for entity in gone {
             let mut body = world.entity_mut(entity);
@@ -293,10 +288,10 @@ impl Kept {
         let now = world.change_tick();
         for kept in &self.bodies {
             if let (Some(slot), Ok(body)) = (
-                scene.index.get(&kept.entity),
+                scene.body_row(kept.entity),
                 world.get_entity_mut(kept.entity),
             ) {
-                kept.show(*slot as usize, body, now);
+                kept.show(slot, body, now);
             }
         }
     }

@@ -89,12 +89,12 @@ fn take_element(row: &ElementRow, places: &[u32], world: &World) -> KeptElement 
         guide: _,
         held: _,
         places: ends,
-        facings,
+        facings: _,
         leapt: _,
         angle,
         jump,
         scales,
-        controller,
+        controller: _,
     } = *row.rare;
     let on = |end: usize| row.movable(end).map_or(NONE, |body| places[body]);
     KeptElement {
@@ -115,11 +115,11 @@ fn take_element(row: &ElementRow, places: &[u32], world: &World) -> KeptElement 
         memory: Memory {
             direction: row.direction(),
             length: row.length,
-            controller,
+            controller: row.rare.controller(),
             places: ends,
             angle,
-            facings,
-            scales,
+            facings: row.rare.facings(),
+            scales: scales.map(|scale| Some(scale?.as_dvec3())),
             jump,
         },
     }
