@@ -3,7 +3,7 @@
 use crate::dynamics::guide::Guide;
 use crate::dynamics::law::{DragLaw, Function, Law, Recipe, SpringForce, Stop, Table};
 use crate::element::*;
-use crate::input::check::{Fault, MOST, Parameters, direction, finite, number};
+use crate::input::check::{Fault, MOST, Names, Parameters, direction, finite, number};
 use crate::input::lists::with_companions;
 use crate::input::parts::PartsItem;
 use crate::input::stamps::{Stamps, StampsItem};
@@ -119,12 +119,28 @@ impl BesideItem<'_, '_> {
             };
         }
         p.check_rest(guide)?;
+        self.check_parts(p.ties.names)?;
         let law = if self.is_linear() {
             None
         } else {
             Some(Arc::new(Law::new(self.recipe(p, guide)?)))
         };
         Ok(Companion { law, guide })
+    }
+
+    /// Checks that the element has the part whose law is given.
+    fn check_parts(&self, names: &Names) -> Result<(), Fault> {
+        let own = self.own_spring.map(|_| "CustomSpringLaw");
+        let law = self.spring.map(|_| "SpringLaw").or(own);
+        if let Some(law) = law.filter(|_| names.stiffness.is_empty()) {
+            return Err(Fault::new(law, "stands on a damper without a spring"));
+        }
+        let own = self.own_damping.map(|_| "CustomDampingLaw");
+        let law = self.damping.map(|_| "DampingLaw").or(own);
+        if let Some(law) = law.filter(|_| names.damping.is_empty()) {
+            return Err(Fault::new(law, "stands on a spring without a damper"));
+        }
+        Ok(())
     }
 
     /// Whether the companions leave the law linear: nothing but an axis counts.
@@ -171,14 +187,6 @@ impl BesideItem<'_, '_> {
             pull: coefficients,
             push: coefficients,
         };
-        if p.ties.names.stiffness.is_empty() {
-            const REASON: &str = "stands on a damper without a spring";
-            return match (self.spring, self.own_spring) {
-                (None, None) => Ok(both([0.0; 3])),
-                (None, Some(_)) => Err(Fault::new("CustomSpringLaw", REASON)),
-                (Some(_), _) => Err(Fault::new("SpringLaw", REASON)),
-            };
-        }
         let stiffness = f64::from(p.numbers.stiffness);
         match (self.spring, self.own_spring) {
             (Some(_), Some(_)) => Err(Fault::new("SpringLaw", ALIKE)),
@@ -197,14 +205,6 @@ impl BesideItem<'_, '_> {
     }
 
     fn drag(&self, p: &Parameters) -> Result<DragLaw, Fault> {
-        if p.ties.names.damping.is_empty() {
-            const REASON: &str = "stands on a spring without a damper";
-            return match (self.damping, self.own_damping) {
-                (None, None) => Ok(DragLaw::Linear(0.0)),
-                (None, Some(_)) => Err(Fault::new("CustomDampingLaw", REASON)),
-                (Some(_), _) => Err(Fault::new("DampingLaw", REASON)),
-            };
-        }
         match (self.damping, self.own_damping) {
             (Some(_), Some(_)) => Err(Fault::new(
                 "DampingLaw",

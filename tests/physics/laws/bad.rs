@@ -88,6 +88,8 @@ fn companions_of_an_element_that_has_nothing_for_them() {
     let damper = |a, b| Damper::new(a, b).with_damping(5.0);
     let table = || SpringLaw::table([(-1.0, -50.0), (1.0, 50.0)]);
     out_of_place(|a, b| (damper(a, b), table()), "SpringLaw", NO_SPRING);
+    let linear = SpringLaw::Linear;
+    out_of_place(|a, b| (damper(a, b), linear), "SpringLaw", NO_SPRING);
     let tuning = SpringTuning::frequency(1.0, 0.5);
     out_of_place(|a, b| (damper(a, b), tuning), "SpringTuning", NO_SPRING);
     let twist = |a, b| TorsionDamper::new(a, b, Vec3::X).with_damping(5.0);
@@ -97,6 +99,8 @@ fn companions_of_an_element_that_has_nothing_for_them() {
     let spring = |a, b| Spring::new(a, b).with_stiffness(50.0);
     let sided = DampingLaw::sided(5.0, 5.0);
     out_of_place(|a, b| (spring(a, b), sided), "DampingLaw", NO_DAMPER);
+    let linear = DampingLaw::Linear;
+    out_of_place(|a, b| (spring(a, b), linear), "DampingLaw", NO_DAMPER);
     let own = CustomDampingLaw::new(|v| 5.0 * v);
     out_of_place(|a, b| (spring(a, b), own), "CustomDampingLaw", NO_DAMPER);
 }
