@@ -83,6 +83,11 @@ impl Companions<'_, '_> {
         preload.map_or(0.0, |preload| f64::from(preload.0))
     }
 
+    /// Returns the [`Preload`] beside an element, N, whoever wrote it.
+    pub(crate) fn written_preload(&self, entity: Entity) -> Option<f32> {
+        self.all.get(entity).ok()?.preload.map(|preload| preload.0)
+    }
+
     /// Returns the [`HoldPose`] of an element that still has to find its preload.
     pub(crate) fn pose(&self, entity: Entity) -> Option<HoldPose> {
         self.all.get(entity).ok()?.pose.copied()

@@ -317,7 +317,10 @@ impl ElementRow {
             let (held, preload) =
                 companions.hold(entity, pose, &self.parameters(), &stance, finder)?;
             companion = held;
-            commands.entity(entity).try_insert(Preload(preload));
+            // A component that is written counts as changed, and what changed is read anew in the next tick.
+            if companions.written_preload(entity) != Some(preload) {
+                commands.entity(entity).try_insert(Preload(preload));
+            }
             self.flags.insert(ElementFlags::POSED);
         }
         self.change(|row| row.set_companion(companion));
