@@ -1,5 +1,6 @@
 //! Companions, the components beside an element that change its law: read, checked and combined into one law.
 
+use crate::backend::Allowance;
 use crate::dynamics::guide::Guide;
 use crate::dynamics::law::{DragLaw, Function, Law, Recipe, SpringForce, Stop, Table};
 use crate::element::*;
@@ -75,12 +76,16 @@ impl Companions<'_, '_> {
         self.all.get(entity).ok()?.tuning.copied()
     }
 
-    /// Returns the constant tension of an element's spring, N; 0 if a [`HoldPose`] will replace it.
-    pub(crate) fn preload(&self, entity: Entity) -> f64 {
+    /// Returns what the companions of an element make of its tension. A preload that a [`HoldPose`] will replace does not count.
+    pub(crate) fn allowance(&self, entity: Entity) -> Allowance {
         let beside = self.all.get(entity).ok();
+        let limits = beside.as_ref().and_then(|beside| beside.limits().ok());
         let beside = beside.filter(|beside| beside.pose.is_none());
         let preload = beside.and_then(|beside| beside.preload);
-        preload.map_or(0.0, |preload| f64::from(preload.0))
+        Allowance {
+            preload: preload.map_or(0.0, |preload| f64::from(preload.0)),
+            limits: limits.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]),
+        }
     }
 
     /// Returns the [`Preload`] beside an element, N, whoever wrote it.
@@ -161,15 +166,6 @@ impl BesideItem<'_, '_> {
     }
 
     pub(crate) fn recipe(&self, p: &Parameters, guide: Guide) -> Result<Recipe, Fault> {
-        let most = self
-            .max_force
-            .map_or(Ok(f64::INFINITY), |most| check_most(*most))?;
-        let mut limits = [-most, most];
-        match self.action {
-            None | Some(SpringAction::Both) => {}
-            Some(SpringAction::Pull) => limits[0] = 0.0,
-            Some(SpringAction::Push) => limits[1] = 0.0,
-        }
         let (travel, stop) = match self.travel {
             Some(travel) => check_travel(travel, guide)?,
             None => ([f64::NEG_INFINITY, f64::INFINITY], Stop::default()),
@@ -179,10 +175,26 @@ impl BesideItem<'_, '_> {
             spring: self.spring_force(p)?,
             drag: self.drag(p)?,
             preload: finite(preload, "Preload")?,
-            limits,
-            most,
+            limits: self.limits()?,
+            most: self.most()?,
             travel,
             stop,
+        })
+    }
+
+    /// Greatest magnitude of the force of spring and damper together, N.
+    fn most(&self) -> Result<f64, Fault> {
+        self.max_force
+            .map_or(Ok(f64::INFINITY), |most| check_most(*most))
+    }
+
+    /// Least and greatest tension of the spring, N.
+    fn limits(&self) -> Result<[f64; 2], Fault> {
+        let most = self.most()?;
+        Ok(match self.action {
+            None | Some(SpringAction::Both) => [-most, most],
+            Some(SpringAction::Pull) => [0.0, most],
+            Some(SpringAction::Push) => [-most, 0.0],
         })
     }
 

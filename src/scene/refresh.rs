@@ -209,8 +209,8 @@ fn judge(
         angle: row.rare.angle,
     };
     if let Some(tuning) = companions.tuning(entity) {
-        let preload = companions.preload(entity);
-        finder.tune(tuning, &stance, preload, &mut parameters)?;
+        let allowed = companions.allowance(entity);
+        finder.tune(tuning, &stance, allowed, &mut parameters)?;
         parameters.check()?;
     }
     let preload = match companions.pose(entity) {

@@ -338,8 +338,8 @@ impl ElementRow {
         finder: &impl Finder,
     ) -> Result<Companion, Fault> {
         let mut tuned = self.parameters();
-        let preload = companions.preload(self.entity);
-        let can_touch = finder.tune(tuning, stance, preload, &mut tuned)?;
+        let allowed = companions.allowance(self.entity);
+        let can_touch = finder.tune(tuning, stance, allowed, &mut tuned)?;
         tuned.check()?;
         let companion = companions.of(self.entity, &tuned)?;
         self.change(|row| row.set_parameters(tuned));
