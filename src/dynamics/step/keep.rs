@@ -74,10 +74,16 @@ impl Component {
     }
 
     /// Removes gained energy from the motion. If there is not enough motion for that, the step is repeated: with finer
-    /// micro-steps, or else by the method that only loses energy.
+    /// micro-steps, or else by the method that only loses energy. If there is no energy at all, because a law gave no number,
+    /// the step is repeated without its element.
     pub(super) fn keep_bound(&mut self, time: f64, accuracy: Accuracy, outcome: &mut Outcome) {
         let mut bound = std::mem::take(&mut self.memory.bound);
-        let kept = bound.hold(&self.elements, &mut self.bodies, time);
+        let mut kept = bound.hold(&self.elements, &mut self.bodies, time);
+        let count = outcome.microsteps.max(1);
+        while kept.is_none() && !self.has_energy() && self.leave_out_unsound(time, count) {
+            outcome.microsteps += count;
+            kept = bound.hold(&self.elements, &mut self.bodies, time);
+        }
         let kept = kept.or_else(|| self.retake(time, accuracy, outcome, &mut bound));
         let energy = kept.unwrap_or_else(|| {
             self.load(0);
