@@ -192,7 +192,9 @@ mod tests {
             }
             let mut at = app.world_mut().get_mut::<Transform>(load);
             at.as_mut().expect("a place").translation.y = -0.5;
-            assert!(renews(&mut app), "the load is elsewhere");
+            // The engine may learn of it one tick later.
+            let renewed = (0..2).any(|_| renews(&mut app));
+            assert!(renewed, "the load is elsewhere");
         }
     }
 }
