@@ -39,6 +39,23 @@ pub(crate) struct Stance<'a> {
     pub angle: f64,
 }
 
+/// What the companions of an element make of its tension.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Allowance {
+    /// Constant tension, N.
+    pub preload: f64,
+    /// Least and greatest tension of spring and preload together, N.
+    pub limits: [f64; 2],
+}
+
+impl Allowance {
+    /// By how much a tension is beyond the limits, N; not above zero if it is within.
+    pub(crate) fn beyond(&self, tension: f64) -> f64 {
+        let [least, greatest] = self.limits;
+        (least - tension).max(tension - greatest)
+    }
+}
+
 /// Data about a body that elements can move.
 #[derive(Clone, Copy)]
 pub(crate) struct Movable {
@@ -71,13 +88,13 @@ pub(crate) trait Finder {
         modified: &EntityHashSet,
     ) -> Result<Found, Fault>;
 
-    /// Writes the coefficients that `tuning` asks for into `parameters`. `preload` is a tension that the spring has anyway, N.
-    /// Returns whether contacts may hold the ends.
+    /// Writes the coefficients that `tuning` asks for into `parameters`. `allowed` is what the spring's companions allow. Returns
+    /// whether contacts may hold the ends.
     fn tune(
         &self,
         tuning: SpringTuning,
         stance: &Stance,
-        preload: f64,
+        allowed: Allowance,
         parameters: &mut Parameters,
     ) -> Result<bool, Fault>;
 

@@ -7,7 +7,7 @@
 mod ends;
 pub(crate) mod rapier;
 
-pub(crate) use ends::{Finder, Found, Movable, Place, Stance};
+pub(crate) use ends::{Allowance, Finder, Found, Movable, Place, Stance};
 
 use crate::dynamics::body::Body;
 use crate::dynamics::delivery::{Schedule, TurnRule};

@@ -158,38 +158,25 @@ impl Bound {
         if energy.motion <= room || energy.motion <= 0.0 {
             return;
         }
-        let held = elements
-            .iter()
-            .flat_map(|element| element.ends)
-            .any(|end| matches!(end, End::Path(_)));
-        let (mass, momentum) = bodies.iter().fold((DVec3::ZERO, DVec3::ZERO), |sum, body| {
-            (sum.0 + body.mass(), sum.1 + body.mass() * body.velocity)
-        });
-        let common = if held || mass.min_element() <= 0.0 {
-            DVec3::ZERO
-        } else {
-            momentum / mass
-        };
-        let carried = 0.5 * (mass * common).dot(common);
+        let Common {
+            velocity: common,
+            energy: carried,
+        } = Common::of(elements, bodies);
         let share = ((room - carried).max(0.0) / (energy.motion - carried).max(f64::MIN_POSITIVE))
             .min(1.0)
             .sqrt();
         for body in bodies {
-            // A body has no share in the motion along an axis that it cannot move along.
-            let free = body.inverse_mass.cmpgt(DVec3::ZERO);
-            let common = DVec3::select(free, common, DVec3::ZERO);
-            let mut slowed = *body;
-            slowed.velocity -= common;
-            body.slow_to(&slowed, share);
-            body.velocity += common;
+            let moved = *body;
+            slow_beside(common, body, &moved, share);
         }
     }
 
-    /// Whether the energy without motion is within the bound.
+    /// Whether the energy without motion against the common centre of mass is within the bound.
     pub(crate) fn allows(&self, elements: &[Element], bodies: &[Body], time: f64) -> bool {
         let energy = Energy::of(elements, bodies);
+        let least = energy.stored + energy.place + Common::of(elements, bodies).energy;
         self.most(energy.stored, time)
-            .is_none_or(|most| energy.stored + energy.place <= most)
+            .is_none_or(|most| least <= most)
     }
 
     /// Ends a step of `bodies` with an energy.
@@ -211,6 +198,45 @@ impl Bound {
             *given += time * self.work;
         }
     }
+}
+
+/// Motion of the common centre of mass of a network, which its elements cannot change. It is zero if an end with prescribed
+/// motion holds the network.
+pub(super) struct Common {
+    /// Velocity, m/s.
+    pub velocity: DVec3,
+    /// Kinetic energy, J.
+    pub energy: f64,
+}
+
+impl Common {
+    pub(super) fn of(elements: &[Element], bodies: &[Body]) -> Self {
+        let held = elements
+            .iter()
+            .flat_map(|element| element.ends)
+            .any(|end| matches!(end, End::Path(_)));
+        let (mass, momentum) = bodies.iter().fold((DVec3::ZERO, DVec3::ZERO), |sum, body| {
+            (sum.0 + body.mass(), sum.1 + body.mass() * body.velocity)
+        });
+        let velocity = if held || mass.min_element() <= 0.0 {
+            DVec3::ZERO
+        } else {
+            momentum / mass
+        };
+        let energy = 0.5 * (mass * velocity).dot(velocity);
+        Self { velocity, energy }
+    }
+}
+
+/// Gives a body `share` of the motion that `moved` has beside the `common` velocity, which stays.
+pub(super) fn slow_beside(common: DVec3, body: &mut Body, moved: &Body, share: f64) {
+    // A body has no share in the motion along an axis that it cannot move along.
+    let free = body.inverse_mass.cmpgt(DVec3::ZERO);
+    let common = DVec3::select(free, common, DVec3::ZERO);
+    let mut beside = *moved;
+    beside.velocity -= common;
+    body.slow_to(&beside, share);
+    body.velocity += common;
 }
 
 /// Returns the energy, and the energy that rounding a step's positions and velocities to f32 can add, J.

@@ -6,7 +6,7 @@
 const TOLERANCE: f64 = 1e-10;
 
 /// Factor by which rᵀ P r may exceed its value at [`TOLERANCE`] when the iterations run out. Up to this factor the residual
-/// counts as rounding, and the solve as converged.
+/// counts as rounding, and the solve as converged. Pinned by `conjugate::tests`.
 const ROUNDING: f64 = 1e4;
 
 /// A linear system with matrix A, and the vectors of its iterative solution: the approximate solution x, the residual r, and
@@ -85,6 +85,28 @@ mod tests {
                 self.search[at] = self.residual[at] + keep * self.search[at];
             }
         }
+    }
+
+    /// A system whose iterations end at a residual.
+    struct Stuck(f64);
+
+    impl Iterated for Stuck {
+        fn apply(&mut self) -> f64 {
+            1.0
+        }
+
+        fn advance(&mut self, _: f64) -> f64 {
+            self.0 * self.0
+        }
+
+        fn turn(&mut self, _: f64) {}
+    }
+
+    #[test]
+    fn what_is_left_counts_as_rounding_if_it_is_well_below_that_of_the_engine() {
+        let rounding = f64::from(f32::EPSILON) / 2.0;
+        assert!(solve(&mut Stuck(rounding / 12.0), 1.0, 1.0, 9));
+        assert!(!solve(&mut Stuck(rounding), 1.0, 1.0, 9));
     }
 
     #[test]

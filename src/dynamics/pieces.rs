@@ -12,7 +12,7 @@ use super::soft::Tangent;
 pub(crate) const MOST: usize = 7;
 
 /// Length of the interval beside a kink or limit over which a slope is taken if the element has not got there yet, as a
-/// share of [`Outreach::change`].
+/// share of [`Outreach::change`]. It must be small beside the lengths over which a law hardens. Pinned by `pieces::tests`.
 const BESIDE: f64 = 0.01;
 
 /// Increase of a spring's slope beyond the predicted lengths, as a share of the slope, above which the increase becomes a

@@ -21,6 +21,7 @@ mod keep;
 mod kinks;
 mod remember;
 mod retake;
+mod unsound;
 mod warm_start;
 
 use kinks::Kinks;
@@ -39,6 +40,8 @@ pub(crate) struct Component {
     pub farthest_move: Option<f64>,
     /// Whether it is a network of points that continues from the last step. Then `bodies` and `elements` are out of date.
     pub is_warm: bool,
+    /// Indices of the elements that the last step left out, because their law gave no number.
+    pub unsound: Vec<usize>,
     pub(super) memory: Memory,
 }
 
@@ -77,6 +80,7 @@ impl Component {
     pub(crate) fn advance(&mut self, time: f64, accuracy: Accuracy) -> Outcome {
         self.memory.max_iterations = accuracy.max_iterations.max(1);
         self.memory.carriable = None;
+        self.unsound.clear();
         let alone = self.is_alone();
         let mut controller = std::mem::take(&mut self.memory.controller);
         let apart = match self.elements.as_slice() {
@@ -208,23 +212,23 @@ impl Component {
     fn run_network(&mut self, step: f64, count: u32) {
         for _ in 0..count {
             self.drift(step / 2.0);
-            let Memory {
-                network,
-                max_iterations,
-                kinks,
-                ..
-            } = &mut self.memory;
-            let kinks = kinks.keep_energy();
-            network.get_or_insert_default().kick(
-                &mut self.elements,
-                &mut self.bodies,
-                step,
-                *max_iterations,
-                kinks,
-            );
+            self.kick_network(step);
             self.drift(step / 2.0);
             self.aim(step);
         }
+    }
+
+    fn kick_network(&mut self, step: f64) {
+        let Memory {
+            network,
+            max_iterations,
+            kinks,
+            ..
+        } = &mut self.memory;
+        let kinks = kinks.keep_energy();
+        let network = network.get_or_insert_default();
+        let (elements, bodies) = (&mut self.elements, &mut self.bodies);
+        network.kick(elements, bodies, step, *max_iterations, kinks);
     }
 
     /// Whether the closed form applies: there is one linear element on its own bodies, and it acts along one direction.

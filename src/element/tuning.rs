@@ -20,14 +20,16 @@ use std::f32::consts::TAU;
 /// them may ignore them or give them another meaning.
 ///
 /// A sag also sets the rest length if the element has none, so that the load stays where it was spawned, also beside a
-/// [`Preload`](crate::Preload). A rest length that you give is kept, and the load sags from there. If both ends move,
+/// [`Preload`](crate::Preload). That is so where the element alone can hold the load: straight above or below it, or on a
+/// guide or a hinge. A free load on a slanted element swings. A rest length that you give is kept, and the load sags from there. If both ends move,
 /// and neither stands on the ground after the first step, it is not known which end is the load. The rest length is
 /// then the length in the first step; put a [`HoldPose`](crate::HoldPose) beside it. For several springs under one load,
 /// use [`SpringTuning::coefficients`] with each spring's share of the mass, and
 /// [`HoldPose::share`](crate::HoldPose::share).
 ///
-/// On a damper without a spring, with a number that is not valid, or where both ends cannot move or coincide, the element
-/// gets a [`SpringFault`](crate::SpringFault) and does not act.
+/// On a damper without a spring, with a number that is not valid, where both ends cannot move or coincide, or with a sag
+/// that needs a tension which a [`SpringAction`](crate::SpringAction) or [`MaxForce`](crate::MaxForce) does not allow, the
+/// element gets a [`SpringFault`](crate::SpringFault) and does not act.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
 #[type_path = "bevy_coilover"]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]

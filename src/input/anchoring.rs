@@ -12,7 +12,7 @@ pub(crate) fn anchor(
         Query<(Parts, &WorldAnchors), (Acts, With<Anchors>)>,
         Query<&mut Anchors>,
     )>,
-    transforms: TransformHelper,
+    transforms: Query<&Transform>,
     parents: Query<&ChildOf>,
     mut commands: Commands,
 ) {
@@ -23,7 +23,11 @@ pub(crate) fn anchor(
             if parents.iter_ancestors(end).nth(MOST_LEVELS).is_some() {
                 return None;
             }
-            let global = transforms.compute_global_transform(end).ok()?;
+            let own = GlobalTransform::from(*transforms.get(end).ok()?);
+            // A parent without a place is the root, as for the search for ends.
+            let above = parents.iter_ancestors(end);
+            let above = above.map_while(|parent| transforms.get(parent).ok());
+            let global = above.fold(own, |below, parent| *parent * below);
             Some(global.affine().inverse().transform_point3(point))
         };
         let [a, b] = parts.parameters().ok()?.ties.ends;

@@ -1,9 +1,10 @@
 //! Companions, the components beside an element that change its law: read, checked and combined into one law.
 
+use crate::backend::Allowance;
 use crate::dynamics::guide::Guide;
 use crate::dynamics::law::{DragLaw, Function, Law, Recipe, SpringForce, Stop, Table};
 use crate::element::*;
-use crate::input::check::{Fault, MOST, Parameters, direction, finite, number};
+use crate::input::check::{Fault, MOST, Names, Parameters, direction, finite, number};
 use crate::input::lists::with_companions;
 use crate::input::parts::PartsItem;
 use crate::input::stamps::{Stamps, StampsItem};
@@ -75,12 +76,21 @@ impl Companions<'_, '_> {
         self.all.get(entity).ok()?.tuning.copied()
     }
 
-    /// Returns the constant tension of an element's spring, N; 0 if a [`HoldPose`] will replace it.
-    pub(crate) fn preload(&self, entity: Entity) -> f64 {
+    /// Returns what the companions of an element make of its tension. A preload that a [`HoldPose`] will replace does not count.
+    pub(crate) fn allowance(&self, entity: Entity) -> Allowance {
         let beside = self.all.get(entity).ok();
+        let limits = beside.as_ref().and_then(|beside| beside.limits().ok());
         let beside = beside.filter(|beside| beside.pose.is_none());
         let preload = beside.and_then(|beside| beside.preload);
-        preload.map_or(0.0, |preload| f64::from(preload.0))
+        Allowance {
+            preload: preload.map_or(0.0, |preload| f64::from(preload.0)),
+            limits: limits.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]),
+        }
+    }
+
+    /// Returns the [`Preload`] beside an element, N, whoever wrote it.
+    pub(crate) fn written_preload(&self, entity: Entity) -> Option<f32> {
+        self.all.get(entity).ok()?.preload.map(|preload| preload.0)
     }
 
     /// Returns the [`HoldPose`] of an element that still has to find its preload.
@@ -119,12 +129,28 @@ impl BesideItem<'_, '_> {
             };
         }
         p.check_rest(guide)?;
+        self.check_parts(p.ties.names)?;
         let law = if self.is_linear() {
             None
         } else {
             Some(Arc::new(Law::new(self.recipe(p, guide)?)))
         };
         Ok(Companion { law, guide })
+    }
+
+    /// Checks that the element has the part whose law is given.
+    fn check_parts(&self, names: &Names) -> Result<(), Fault> {
+        let own = self.own_spring.map(|_| "CustomSpringLaw");
+        let law = self.spring.map(|_| "SpringLaw").or(own);
+        if let Some(law) = law.filter(|_| names.stiffness.is_empty()) {
+            return Err(Fault::new(law, "stands on a damper without a spring"));
+        }
+        let own = self.own_damping.map(|_| "CustomDampingLaw");
+        let law = self.damping.map(|_| "DampingLaw").or(own);
+        if let Some(law) = law.filter(|_| names.damping.is_empty()) {
+            return Err(Fault::new(law, "stands on a spring without a damper"));
+        }
+        Ok(())
     }
 
     /// Whether the companions leave the law linear: nothing but an axis counts.
@@ -140,15 +166,6 @@ impl BesideItem<'_, '_> {
     }
 
     pub(crate) fn recipe(&self, p: &Parameters, guide: Guide) -> Result<Recipe, Fault> {
-        let most = self
-            .max_force
-            .map_or(Ok(f64::INFINITY), |most| check_most(*most))?;
-        let mut limits = [-most, most];
-        match self.action {
-            None | Some(SpringAction::Both) => {}
-            Some(SpringAction::Pull) => limits[0] = 0.0,
-            Some(SpringAction::Push) => limits[1] = 0.0,
-        }
         let (travel, stop) = match self.travel {
             Some(travel) => check_travel(travel, guide)?,
             None => ([f64::NEG_INFINITY, f64::INFINITY], Stop::default()),
@@ -158,10 +175,26 @@ impl BesideItem<'_, '_> {
             spring: self.spring_force(p)?,
             drag: self.drag(p)?,
             preload: finite(preload, "Preload")?,
-            limits,
-            most,
+            limits: self.limits()?,
+            most: self.most()?,
             travel,
             stop,
+        })
+    }
+
+    /// Greatest magnitude of the force of spring and damper together, N.
+    fn most(&self) -> Result<f64, Fault> {
+        self.max_force
+            .map_or(Ok(f64::INFINITY), |most| check_most(*most))
+    }
+
+    /// Least and greatest tension of the spring, N.
+    fn limits(&self) -> Result<[f64; 2], Fault> {
+        let most = self.most()?;
+        Ok(match self.action {
+            None | Some(SpringAction::Both) => [-most, most],
+            Some(SpringAction::Pull) => [0.0, most],
+            Some(SpringAction::Push) => [-most, 0.0],
         })
     }
 
@@ -171,14 +204,6 @@ impl BesideItem<'_, '_> {
             pull: coefficients,
             push: coefficients,
         };
-        if p.ties.names.stiffness.is_empty() {
-            const REASON: &str = "stands on a damper without a spring";
-            return match (self.spring, self.own_spring) {
-                (None, None) => Ok(both([0.0; 3])),
-                (None, Some(_)) => Err(Fault::new("CustomSpringLaw", REASON)),
-                (Some(_), _) => Err(Fault::new("SpringLaw", REASON)),
-            };
-        }
         let stiffness = f64::from(p.numbers.stiffness);
         match (self.spring, self.own_spring) {
             (Some(_), Some(_)) => Err(Fault::new("SpringLaw", ALIKE)),
@@ -197,14 +222,6 @@ impl BesideItem<'_, '_> {
     }
 
     fn drag(&self, p: &Parameters) -> Result<DragLaw, Fault> {
-        if p.ties.names.damping.is_empty() {
-            const REASON: &str = "stands on a spring without a damper";
-            return match (self.damping, self.own_damping) {
-                (None, None) => Ok(DragLaw::Linear(0.0)),
-                (None, Some(_)) => Err(Fault::new("CustomDampingLaw", REASON)),
-                (Some(_), _) => Err(Fault::new("DampingLaw", REASON)),
-            };
-        }
         match (self.damping, self.own_damping) {
             (Some(_), Some(_)) => Err(Fault::new(
                 "DampingLaw",

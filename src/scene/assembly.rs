@@ -4,6 +4,7 @@ use crate::backend::{Engine, Push, Sight};
 use crate::dynamics::body::Body;
 use crate::dynamics::step::{Component, Copies};
 use crate::dynamics::tolerance::{Accuracy, Outcome};
+use crate::input::check::Fault;
 use crate::scene::element::element;
 use crate::scene::push::Manner;
 use crate::scene::rows::{
@@ -274,13 +275,19 @@ impl Assembly {
             row.give(order.unwrap_or(&nothing), step.tick, engine);
             step.delivered.store(true, Ordering::Relaxed);
         }
-        let mut solved = self.component.elements.iter();
+        let mut solved = self.component.elements.iter().enumerate();
         for e in members.elements {
             let row = &mut elements[*e as usize];
             row.solved = Solved::default();
             if row.trouble.passing().is_none()
-                && let Some(element) = solved.next().filter(|_| ready)
+                && let Some((index, element)) = solved.next().filter(|_| ready)
             {
+                if self.component.unsound.contains(&index) {
+                    row.trouble.set_passing(Some(Fault::UNSOUND_LAW));
+                    // If it acts in the next step, it brings its energy with it.
+                    row.flags.insert(ElementFlags::INERT);
+                    continue;
+                }
                 row.set_direction(element.direction);
                 row.rare.angle = element.angle;
                 row.ledger.dissipated += element.heat;

@@ -158,24 +158,49 @@ pub(crate) fn still_faulty(
     if row.trouble.lasting().is_none() || row.rare.ties.ends == Ties::NONE.ends {
         return true;
     }
-    match judge(row, companions, finder, modified) {
+    let parameters = row.parameters();
+    match judge(row, parameters, companions, finder, modified) {
         Err(fault) => {
             row.trouble.set_lasting(Some(fault));
             report(row, commands);
             true
         }
-        Ok(()) => false,
+        Ok(_) => false,
     }
 }
 
-/// Checks an element that has a fault as if it were new. Returns an error if it still has a fault.
-fn judge(
+/// Whether the numbers that were computed for the coming step of an element are still those that its ends give.
+pub(crate) fn still_computed(
     row: &mut ElementRow,
+    elements: &Query<Parts, Acts>,
     companions: &Companions,
     finder: &mut impl Finder,
     modified: &EntityHashSet,
-) -> Result<(), Fault> {
-    let (entity, mut parameters) = (row.entity, row.parameters());
+) -> bool {
+    if row.trouble.lasting().is_some() {
+        return true;
+    }
+    let parts = elements.get(row.entity).ok();
+    let Some(given) = parts.and_then(|parts| parts.parameters().ok()) else {
+        return false;
+    };
+    let written = companions.written_preload(row.entity);
+    let computed = judge(row, given, companions, finder, modified);
+    computed.is_ok_and(|(parameters, preload)| {
+        parameters == row.parameters() && (preload.is_none() || preload == written)
+    })
+}
+
+/// Checks an element with the given parameters as if it were new. Returns the parameters that its [`SpringTuning`] makes of
+/// them, and the preload of its [`HoldPose`], N.
+fn judge(
+    row: &mut ElementRow,
+    mut parameters: Parameters,
+    companions: &Companions,
+    finder: &mut impl Finder,
+    modified: &EntityHashSet,
+) -> Result<(Parameters, Option<f32>), Fault> {
+    let entity = row.entity;
     let guide = companions.of(entity, &parameters)?.guide;
     let found = finder.find(&parameters, guide, &mut row.rare.scales, modified)?;
     let stance = Stance {
@@ -184,12 +209,17 @@ fn judge(
         angle: row.rare.angle,
     };
     if let Some(tuning) = companions.tuning(entity) {
-        let preload = companions.preload(entity);
-        finder.tune(tuning, &stance, preload, &mut parameters)?;
+        let allowed = companions.allowance(entity);
+        finder.tune(tuning, &stance, allowed, &mut parameters)?;
         parameters.check()?;
     }
-    if let Some(pose) = companions.pose(entity) {
-        companions.hold(entity, pose, &parameters, &stance, finder)?;
-    }
-    Ok(())
+    let preload = match companions.pose(entity) {
+        Some(pose) => Some(
+            companions
+                .hold(entity, pose, &parameters, &stance, finder)?
+                .1,
+        ),
+        None => None,
+    };
+    Ok((parameters, preload))
 }

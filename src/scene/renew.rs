@@ -328,7 +328,10 @@ impl ElementRow {
             let (held, preload) =
                 companions.hold(entity, pose, &self.parameters(), &stance, finder)?;
             companion = held;
-            commands.entity(entity).try_insert(Preload(preload));
+            // A component that is written counts as changed, and what changed is read anew in the next tick.
+            if companions.written_preload(entity) != Some(preload) {
+                commands.entity(entity).try_insert(Preload(preload));
+            }
             self.flags.insert(ElementFlags::POSED);
         }
         self.change(|row| row.set_companion(companion));
@@ -346,8 +349,8 @@ impl ElementRow {
         finder: &impl Finder,
     ) -> Result<Companion, Fault> {
         let mut tuned = self.parameters();
-        let preload = companions.preload(self.entity);
-        let can_touch = finder.tune(tuning, stance, preload, &mut tuned)?;
+        let allowed = companions.allowance(self.entity);
+        let can_touch = finder.tune(tuning, stance, allowed, &mut tuned)?;
         tuned.check()?;
         let companion = companions.of(self.entity, &tuned)?;
         self.change(|row| row.set_parameters(tuned));

@@ -28,7 +28,7 @@ const CREEP: f32 = 1e-2;
 const QUIET: f32 = 2.0;
 
 /// Change of a position that counts as rounding and not as motion, in units of the last place. A stiff spring answers a rounding
-/// error with a speed of ω times the error.
+/// error with a speed of ω times the error. Pinned by `sleep::tests`.
 const ROUNDING: f32 = 4.0;
 
 /// Whether a body is so slow that it may rest. `rest` is the speed that counts as rest, `size` the radius (m) with which its
@@ -216,5 +216,42 @@ pub(crate) fn rouse(rows: &[BodyRow], members: &[u32], engine: &mut impl Engine)
             engine.wake(body);
         }
         engine.keep_awake(body);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bevy::math::{DVec3, Quat, Vec3};
+
+    /// Whether a body 1024 m from the origin, on a spring of 60 rad/s, may rest while it swings with an amplitude in units of the
+    /// last place of its position.
+    fn may_rest(amplitude: f32) -> bool {
+        const OMEGA: f32 = 60.0;
+        let unit = 1024.0_f32.next_up() - 1024.0;
+        let body = Seen {
+            origin: Vec3::X * 1024.0,
+            rotation: Quat::IDENTITY,
+            local_center: Vec3::ZERO,
+            velocity: Vec3::X * OMEGA * amplitude * unit,
+            spin: Vec3::ZERO,
+            inverse_mass: 1.0,
+            gravity: DVec3::ZERO,
+            more_substeps: 0,
+            is_movable: true,
+            is_asleep: false,
+            is_locked: false,
+            can_touch: false,
+            turns_fast: false,
+            is_gyroscopic: false,
+        };
+        is_slow(&body, REST, 1.0, OMEGA, 1.0)
+    }
+
+    #[test]
+    fn a_stiff_spring_far_away_may_rest_while_only_rounding_moves_it() {
+        // Half a unit along each of three axes, at each of two ends.
+        assert!(may_rest(3.0_f32.sqrt()));
+        assert!(!may_rest(10.0), "a swing");
     }
 }

@@ -67,8 +67,8 @@ pub struct Scene {
     pub(crate) immovable: bool,
     /// Whether the readouts are in another order than the rows even if the rows are new.
     pub(crate) unordered: bool,
-    /// Whether numbers were computed for the next step of some element. Until that step they are computed anew in every tick,
-    /// because its ends may still be put elsewhere.
+    /// Whether numbers were computed for the next step of some element. Until that step they are checked in every tick, because
+    /// its ends may still be put elsewhere.
     pub(crate) awaited: bool,
     /// Whether the rows were made anew in this tick, or in earlier ticks without a step in between.
     pub(crate) renewed: bool,
@@ -109,7 +109,8 @@ impl Scene {
 
     /// Whether numbers were computed for a step that is still to come.
     pub(crate) fn awaits_step(&mut self) -> bool {
-        std::mem::take(&mut self.awaited) && self.elements.iter().any(ElementRow::awaits_step)
+        self.awaited = self.awaited && self.elements.iter().any(ElementRow::awaits_step);
+        self.awaited
     }
 
     /// Resets what belongs to the last step only, and counts the tick.

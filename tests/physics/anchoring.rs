@@ -57,6 +57,22 @@ fn points_of_the_world_can_be_given_again() {
 }
 
 #[test]
+fn an_end_below_an_entity_without_a_place_has_its_own_place_in_the_world() {
+    let mut lab = Lab::weightless();
+    let folder = lab.spawn(Name::new("Hooks"));
+    let hook = lab.spawn((Transform::from_xyz(0.0, 3.0, 0.0), ChildOf(folder)));
+    let load = lab.body(1.0, Vec3::Y);
+    let points = WorldAnchors::new(Vec3::new(0.5, 3.0, 0.0), Vec3::new(0.5, 1.0, 0.0));
+    let element = lab.spawn((Spring::new(hook, load), points));
+    lab.tick();
+    assert!(lab.app.world().get::<WorldAnchors>(element).is_none());
+    let anchors = *lab.get::<Anchors>(element);
+    assert!(anchors.a.distance(Vec3::X * 0.5) < 1e-6, "{anchors:?}");
+    let length = lab.readout(element).length;
+    assert!((length - 2.0).abs() < 1e-5, "{length} m");
+}
+
+#[test]
 fn an_end_that_is_scaled_to_nothing_is_told_as_a_bad_anchor() {
     let mut lab = Lab::weightless();
     let hook = lab.spawn(Transform::from_scale(Vec3::ZERO));

@@ -60,19 +60,56 @@ fn a_single_iteration_is_given_back() {
             .with_stiffness(40.0)
             .with_rest_length(1.0),
     );
-    let extra = |lab: &mut Lab| {
-        let mut sets = lab.app.world_mut().query::<&RapierRigidBodySet>();
-        let set = sets.single(lab.app.world()).expect("one context");
-        set.bodies
-            .get(set.entity2body()[&body])
-            .expect("the body")
-            .additional_solver_iterations()
-    };
     lab.tick();
-    assert_eq!(extra(&mut lab), 1);
+    assert_eq!(iterations(&mut lab, body), 1);
     lab.app.world_mut().despawn(element);
     lab.tick();
-    assert_eq!(extra(&mut lab), 0);
+    assert_eq!(iterations(&mut lab, body), 0);
+}
+
+/// Additional solver iterations of a body in the engine.
+fn iterations(lab: &mut Lab, body: Entity) -> usize {
+    let mut sets = lab.app.world_mut().query::<&RapierRigidBodySet>();
+    let set = sets.single(lab.app.world()).expect("one context");
+    let body = set.bodies.get(set.entity2body()[&body]);
+    body.expect("the body").additional_solver_iterations()
+}
+
+#[test]
+fn iterations_that_the_game_sets_stay_even_if_the_spring_had_asked_for_as_many() {
+    for held in [false, true] {
+        let mut lab = Lab::with(
+            CoiloverPlugin::default(),
+            Engine {
+                iterations: if held { 4 } else { 1 },
+                ..default()
+            },
+        );
+        let body = lab.body(1.0, Vec3::Y * 0.1);
+        if held {
+            let ground = Collider::halfspace(Vec3::Y).expect("up");
+            lab.spawn((ground, Transform::default()));
+            lab.app
+                .world_mut()
+                .entity_mut(body)
+                .insert(Collider::ball(0.1));
+        }
+        let hook = lab.point(Vec3::Y);
+        let element = lab.spawn(Spring::new(hook, body).with_stiffness(40.0));
+        for _ in 0..3 {
+            lab.tick();
+        }
+        let asked = iterations(&mut lab, body);
+        assert!(asked > 0, "held: {held}");
+        let set = AdditionalSolverIterations(asked);
+        lab.app.world_mut().entity_mut(body).insert(set);
+        lab.tick();
+        lab.app.world_mut().despawn(element);
+        for _ in 0..3 {
+            lab.tick();
+        }
+        assert_eq!(iterations(&mut lab, body), asked, "held: {held}");
+    }
 }
 
 #[test]

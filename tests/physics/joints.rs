@@ -266,3 +266,27 @@ fn beside_links_a_spring_is_as_true_whatever_sleeps_far_from_it() {
     });
     assert!(places[0].distance(places[1]) < 1e-5, "{places:?}");
 }
+
+#[test]
+fn a_spring_feels_all_bodies_of_a_car() {
+    // A chassis, and an arm, a hub and a wheel at each corner: as many bodies in a row, on joints that lock all axes.
+    const BODIES: usize = 1 + 3 * 4;
+    let mut lab = Lab::weightless();
+    let first = lab.body(1.0, Vec3::ZERO);
+    let mut last = first;
+    for i in 1..BODIES {
+        let joint = FixedJointBuilder::new()
+            .local_anchor1(Vec3::X * 0.5)
+            .local_anchor2(Vec3::NEG_X * 0.5);
+        let next = body(1.0, Vec3::X * i as f32);
+        last = lab.spawn((next, ImpulseJoint::new(last, joint)));
+    }
+    let hook = lab.point(Vec3::NEG_X);
+    let spring = Spring::new(hook, first)
+        .with_stiffness(10.0)
+        .with_rest_length(1.0);
+    let spring = lab.spawn(spring);
+    lab.run(0.1);
+    let mass = lab.readout(spring).effective_mass;
+    assert!((mass / BODIES as f32 - 1.0).abs() < 1e-3, "{mass} kg");
+}

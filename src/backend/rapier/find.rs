@@ -2,7 +2,7 @@
 
 use super::body::{handle, is_movable};
 use super::ends::Ends;
-use crate::backend::{Finder, Found, Movable, Place, SAME_PLACE, Stance};
+use crate::backend::{Allowance, Finder, Found, Movable, Place, SAME_PLACE, Stance};
 use crate::dynamics::guide::Guide;
 use crate::element::{HoldPose, SpringTuning};
 use crate::input::check::{Fault, Parameters};
@@ -96,10 +96,10 @@ impl Finder for RapierFinder<'_, '_> {
         &self,
         tuning: SpringTuning,
         stance: &Stance,
-        preload: f64,
+        allowed: Allowance,
         parameters: &mut Parameters,
     ) -> Result<bool, Fault> {
-        self.tuned(tuning, stance, preload, parameters)
+        self.tuned(tuning, stance, allowed, parameters)
     }
 
     fn pose(&self, pose: HoldPose, stance: &Stance) -> Result<[f64; 2], Fault> {

@@ -53,6 +53,10 @@ pub(crate) type ChangedLoads<'w, 's> = Query<
     (Changed<ExternalForce>, Allow<Disabled>),
 >;
 
+/// Numbers of solver iterations that the user has given to bodies.
+pub(crate) type Iterations<'w, 's> =
+    Query<'w, 's, (Entity, Ref<'static, AdditionalSolverIterations>)>;
+
 /// One item of [`Loads`].
 type LoadsItem<'a> = (Entity, Mut<'a, SpringLoad>, Option<Mut<'a, ExternalForce>>);
 
@@ -154,6 +158,21 @@ pub(crate) fn read_users(scene: &mut Scene, mut changed: ChangedLoads) {
                 row.flags.insert(BodyFlags::DISTURBED);
             }
             row.set_user(wrench(&load.user));
+        }
+    }
+}
+
+/// Reads the numbers of solver iterations that the user has set since the last step. One that the crate had already set is
+/// the user's now, and is not taken away later.
+pub(crate) fn read_iterations(scene: &mut Scene, users: &Iterations, loads: &mut Loads) {
+    for (entity, number) in users.iter().filter(|(_, number)| number.is_changed()) {
+        let Ok((_, mut load, _)) = loads.get_mut(entity) else {
+            continue;
+        };
+        let load = load.bypass_change_detection();
+        load.raised_iterations &= number.0 != 1;
+        if let Some(row) = scene.body(load.slot, entity) {
+            row.rare.raised.leave_substeps(number.0);
         }
     }
 }

@@ -8,7 +8,7 @@ use crate::backend::rapier::setup::Timesteps;
 use crate::backend::rapier::watch::Watch;
 use crate::input::companions::Companions;
 use crate::input::parts::{Acts, ChangedParts, Parts};
-use crate::scene::refresh::{refresh, still_faulty};
+use crate::scene::refresh::{refresh, still_computed, still_faulty};
 use crate::scene::state::Scene;
 use bevy::ecs::bundle::NoBundleEffect;
 use bevy::prelude::*;
@@ -33,7 +33,6 @@ pub(crate) fn prepare(
     let scene = &mut *scene;
     let mut same = !watch.saw_change(scene);
     same &= !std::mem::take(&mut scene.stale);
-    same &= !scene.awaits_step();
     companions.look(scene.since.take(), scene.touched.drain(..));
     // `Watch` sees entities that appear and disappear. The count covers other ways in which elements may disappear.
     same &= elements.iter().len() == scene.elements.len();
@@ -44,6 +43,7 @@ pub(crate) fn prepare(
     let changed = changed.iter().filter(is_new);
     same = same && refresh(scene, &elements, changed, &companions, &finder);
     let modified = &watch.mass_modified;
+    let awaits_step = scene.awaits_step();
     let Scene {
         elements: rows,
         faulty,
@@ -54,6 +54,11 @@ pub(crate) fn prepare(
             let row = &mut rows[*index as usize];
             still_faulty(row, &companions, &mut finder, modified, &mut commands)
         });
+    if same && awaits_step {
+        let mut awaiting = rows.iter_mut().filter(|row| row.awaits_step());
+        same =
+            awaiting.all(|row| still_computed(row, &elements, &companions, &mut finder, modified));
+    }
     scene.renewed = !same || (scene.renewed && scene.time <= 0.0);
     if same {
         return;
@@ -121,5 +126,75 @@ fn insert_all<B: Bundle<Effect: NoBundleEffect>>(all: Vec<(Entity, B)>, commands
             // Entities that no longer exist need none.
             _ = world.try_insert_batch(all);
         });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{CoiloverPlugin, HoldPose, SpringDamper, SpringTuning};
+    use bevy::time::TimeUpdateStrategy;
+    use std::time::Duration;
+
+    /// A world that is not stepped, and in it a load of 1 kg one metre below a hook, with an element between them.
+    fn paused<B: Bundle>(element: impl FnOnce(SpringDamper) -> B) -> (App, Entity) {
+        let tick = Duration::from_secs_f32(1.0 / 60.0);
+        let mut app = App::new();
+        app.add_plugins((
+            MinimalPlugins,
+            TransformPlugin,
+            RapierPhysicsPlugin::<NoUserData>::default().in_fixed_schedule(),
+            CoiloverPlugin::default(),
+        ))
+        .insert_resource(TimestepMode::Fixed {
+            dt: tick.as_secs_f32(),
+            substeps: 1,
+        })
+        .insert_resource(Time::<Fixed>::from_duration(tick))
+        .insert_resource(TimeUpdateStrategy::ManualDuration(tick));
+        app.finish();
+        app.cleanup();
+        app.update();
+        let world = app.world_mut();
+        let mut engines = world.query::<&mut RapierConfiguration>();
+        for mut engine in engines.iter_mut(world) {
+            engine.physics_pipeline_active = false;
+        }
+        let hook = world.spawn(Transform::from_xyz(0.0, 1.0, 0.0)).id();
+        let mass = AdditionalMassProperties::Mass(1.0);
+        let load = (RigidBody::Dynamic, Transform::default(), mass);
+        let load = world.spawn(load).id();
+        let element = element(SpringDamper::new(hook, load));
+        world.spawn(element);
+        (app, load)
+    }
+
+    /// Runs a tick. Returns whether it made the rows anew: then they forget how they were solved.
+    fn renews(app: &mut App) -> bool {
+        const MARK: u32 = 7;
+        let mut scene = app.world_mut().resource_mut::<Scene>();
+        scene.elements[0].solved.microsteps = MARK;
+        app.update();
+        let scene = app.world().resource::<Scene>();
+        scene.elements[0].solved.microsteps != MARK
+    }
+
+    #[test]
+    fn numbers_that_wait_for_a_step_make_the_rows_anew_only_if_the_load_is_put_elsewhere() {
+        let sag = |pair: SpringDamper| (pair, SpringTuning::sag(0.1, 0.3));
+        let pose = |pair: SpringDamper| (pair.with_rest_length(0.9), HoldPose::new());
+        for (mut app, load) in [paused(sag), paused(pose)] {
+            for _ in 0..4 {
+                app.update();
+            }
+            for _ in 0..3 {
+                assert!(!renews(&mut app), "nothing has changed");
+            }
+            let mut at = app.world_mut().get_mut::<Transform>(load);
+            at.as_mut().expect("a place").translation.y = -0.5;
+            // The engine may learn of it one tick later.
+            let renewed = (0..2).any(|_| renews(&mut app));
+            assert!(renewed, "the load is elsewhere");
+        }
     }
 }

@@ -3,7 +3,7 @@
 use super::body::{Bodies, handle, id, led};
 use super::timestep;
 use crate::backend::StepPlan;
-use crate::backend::rapier::forces::{self, ChangedLoads, Handles, Loads};
+use crate::backend::rapier::forces::{self, ChangedLoads, Handles, Iterations, Loads};
 use crate::backend::rapier::held::{EngineParts, Solver, View, give_back, remove};
 use crate::scene::free;
 use crate::scene::state::Scene;
@@ -41,7 +41,7 @@ pub(crate) fn solve(
     mut sets: Query<&mut RapierRigidBodySet>,
     mut loads: ParamSet<(ChangedLoads, Loads)>,
     handles: Handles,
-    users: Query<&AdditionalSolverIterations>,
+    users: Iterations,
     entities: &Entities,
     mut spare: Local<Spare>,
     mut commands: Commands,
@@ -49,6 +49,7 @@ pub(crate) fn solve(
     let scene = &mut *scene;
     forces::read_users(scene, loads.p0());
     let mut loads = loads.p1();
+    forces::read_iterations(scene, &users, &mut loads);
     if scene.renewed {
         forces::release(scene, &mut loads, &handles, &mut sets, &mut commands);
     }
@@ -81,7 +82,7 @@ pub(crate) fn solve(
             gravity: configuration.gravity,
         };
         scene.take_out_what_is_left(context, &mut engine);
-        let finest = users.iter().map(|users| users.0).max().unwrap_or(0);
+        let finest = users.iter().map(|(_, number)| number.0).max().unwrap_or(0);
         let spare = &mut *spare;
         let view = View {
             context,

@@ -3,7 +3,7 @@
 use super::body::{handle, is_movable, point_of, read, turning_of};
 use super::find::RapierFinder;
 use crate::backend::rapier::held::{Holding, inverse_mass};
-use crate::backend::{Place, Stance, Wrench};
+use crate::backend::{Allowance, Place, Stance, Wrench};
 use crate::dynamics::body::Body;
 use crate::dynamics::element::{Element, End, Path};
 use crate::dynamics::guide::Guide;
@@ -46,12 +46,12 @@ impl Lever {
 
 impl RapierFinder<'_, '_> {
     /// Writes the coefficients that `tuning` asks for into `parameters`. A sag also sets the rest length if there is none, so that
-    /// the stretch gives what the `preload` (N) does not give of the tension. Returns whether contacts may hold the ends.
+    /// the stretch gives what the preload does not give of the tension. Returns whether contacts may hold the ends.
     pub(crate) fn tuned(
         &self,
         tuning: SpringTuning,
         stance: &Stance,
-        preload: f64,
+        allowed: Allowance,
         parameters: &mut Parameters,
     ) -> Result<bool, Fault> {
         let guide = stance.guide;
@@ -80,12 +80,16 @@ impl RapierFinder<'_, '_> {
             SpringTuning::Frequency { .. } => (0.0, None),
             SpringTuning::Sag { .. } => self.load_of(&lever, left, guide)?,
         };
+        let beyond = carried.map_or(0.0, |tension| allowed.beyond(tension));
+        if beyond * left > LOADED * gravity {
+            return fault("needs a tension that SpringAction or MaxForce does not allow");
+        }
         let (stiffness, damping) = tuning.coefficients(left.recip() as f32, gravity as f32);
         parameters.numbers.stiffness = stiffness;
         if !parameters.ties.names.damping.is_empty() {
             parameters.numbers.damping = damping;
         }
-        let stretch = carried.map(|tension| (tension - preload) / f64::from(stiffness));
+        let stretch = carried.map(|tension| (tension - allowed.preload) / f64::from(stiffness));
         if let Some(stretch) = stretch.filter(|stretch| stretch.is_finite())
             && parameters.numbers.rest_length.is_none()
         {

@@ -217,3 +217,17 @@ fn a_rope_gives_all_the_force_that_it_can_reach_in_the_step() {
     let wanted = STIFFNESS * (0.1 + reach.change) + 6.0 * reach.speed;
     assert!((tension - wanted).abs() < 1e-9, "{tension}");
 }
+
+#[test]
+fn a_slack_rope_that_hardens_is_as_soft_as_it_will_be_when_it_becomes_taut() {
+    let mut recipe = recipe([0.0, f64::INFINITY]);
+    let hardens = [100.0, 0.0, 1e4];
+    recipe.spring = SpringForce::Polynomial {
+        pull: hardens,
+        push: hardens,
+    };
+    // Over the whole change of length, 0.3 m, its mean slope is ten times as much.
+    let mut pieces = Pieces::of(&Law::new(recipe), 1.0, reach([0.8, 0.8], 0.0));
+    let slope = pieces.spring().stiffness;
+    assert!((slope / 100.0 - 1.0).abs() < 0.01, "{slope} N/m");
+}

@@ -59,10 +59,11 @@ pub(crate) struct Leeway {
     pub age: u32,
 }
 
-/// Number of steps after which a [`Leeway`] is computed again in any case, because joints and contacts of an element shift.
+/// Number of steps after which a [`Leeway`] is computed again in any case, because joints and contacts of an element shift: about
+/// a second. Pinned by `held::tests`.
 const OLD: u32 = 64;
-/// Least number of steps before a [`Leeway`] is computed again after a joint or contact let go. A
-/// drumming foot lets go in every other step.
+/// Least number of steps before a [`Leeway`] is computed again after a joint or contact let go. A drumming foot lets go in every
+/// other step. Pinned by `held::tests`.
 const YOUNG: u32 = 8;
 
 impl Default for Leeway {
@@ -139,3 +140,6 @@ impl Inside {
         (by != DVec3::ZERO).then_some(by)
     }
 }
+
+#[cfg(test)]
+mod tests;

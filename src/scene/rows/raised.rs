@@ -64,6 +64,12 @@ impl Raised {
         Replaced::order(&mut self.substeps, short(now), short(wanted)) as usize
     }
 
+    /// Takes note that the user has set a number of extra substeps. It may be the number that the crate has set before, and
+    /// then it is the user's from now on.
+    pub(crate) fn leave_substeps(&mut self, number: usize) {
+        self.substeps = self.substeps.filter(|known| known.ours != number);
+    }
+
     /// Returns the contact prediction distance to set for a body, m: `wanted`, or the user's if that is
     /// greater. `now` is the present distance.
     pub(crate) fn order_prediction(&mut self, now: f32, wanted: f32) -> f32 {

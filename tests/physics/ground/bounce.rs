@@ -151,3 +151,27 @@ fn a_ball_that_passes_the_ground_slowly_stays_free() {
     let gap = scene.lab.position(ball).y - 0.1;
     assert!((0.01..0.02).contains(&gap), "{gap}");
 }
+
+#[test]
+fn what_a_spring_along_an_axis_drives_into_the_ground_is_held_before_it_lands() {
+    for axis in [SpringAxis::World(Vec3::NEG_Y), SpringAxis::BodyA(Vec3::X)] {
+        let mut scene = Stand::new(CoiloverPlugin::default(), Engine::weightless());
+        scene.ground();
+        // Its x-axis points down.
+        let facing = Quat::from_rotation_z(-std::f32::consts::FRAC_PI_2);
+        let hook = Transform::from_xyz(0.8, 0.8, 0.0).with_rotation(facing);
+        let hook = scene.lab.spawn((RigidBody::Fixed, hook));
+        let ball = scene.body(
+            Transform::from_xyz(0.0, 0.2, 0.0),
+            (Collider::ball(0.1), ColliderMassProperties::Mass(1.0)),
+        );
+        // At ω·dt = 1 and compressed by 0.4 m along the axis, it moves the free ball by 0.4 m · (1 − cos 1) = 0.18 m in a step;
+        // the ground is 0.1 m below. The straight line between the ends has the rest length.
+        let element = scene.coil([hook, ball], [Vec3::ZERO; 2], [3600.0, 0.0], Some(1.0));
+        scene.lab.app.world_mut().entity_mut(element).insert(axis);
+        scene.lab.tick();
+        let method = scene.lab.readout(element).method;
+        println!("{axis:?}: {method:?}");
+        assert_eq!(method, SpringMethod::Engine, "{axis:?}");
+    }
+}

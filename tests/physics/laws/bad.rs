@@ -88,6 +88,8 @@ fn companions_of_an_element_that_has_nothing_for_them() {
     let damper = |a, b| Damper::new(a, b).with_damping(5.0);
     let table = || SpringLaw::table([(-1.0, -50.0), (1.0, 50.0)]);
     out_of_place(|a, b| (damper(a, b), table()), "SpringLaw", NO_SPRING);
+    let linear = SpringLaw::Linear;
+    out_of_place(|a, b| (damper(a, b), linear), "SpringLaw", NO_SPRING);
     let tuning = SpringTuning::frequency(1.0, 0.5);
     out_of_place(|a, b| (damper(a, b), tuning), "SpringTuning", NO_SPRING);
     let twist = |a, b| TorsionDamper::new(a, b, Vec3::X).with_damping(5.0);
@@ -97,6 +99,8 @@ fn companions_of_an_element_that_has_nothing_for_them() {
     let spring = |a, b| Spring::new(a, b).with_stiffness(50.0);
     let sided = DampingLaw::sided(5.0, 5.0);
     out_of_place(|a, b| (spring(a, b), sided), "DampingLaw", NO_DAMPER);
+    let linear = DampingLaw::Linear;
+    out_of_place(|a, b| (spring(a, b), linear), "DampingLaw", NO_DAMPER);
     let own = CustomDampingLaw::new(|v| 5.0 * v);
     out_of_place(|a, b| (spring(a, b), own), "CustomDampingLaw", NO_DAMPER);
 }
@@ -169,6 +173,34 @@ fn a_function_of_ones_own_that_gives_nan() {
         if x < 0.2 { f64::NAN } else { 100.0 * x }
     }));
     assert_eq!(said, 1, "{fault:?}");
+}
+
+#[test]
+fn a_function_that_gives_nan_where_a_network_takes_it_is_told_and_lets_go() {
+    let mut lab = Lab::weightless();
+    let hook = lab.point(Vec3::ZERO);
+    let [near, far] = [1.0, 2.0].map(|x| lab.body(1.0, Vec3::X * x));
+    lab.get_mut::<Velocity>(far).linear = Vec3::X * 3.0;
+    let spring = |a, b| {
+        Spring::new(a, b)
+            .with_stiffness(100.0)
+            .with_rest_length(1.0)
+    };
+    let good = lab.spawn(spring(hook, near));
+    let law = CustomSpringLaw::new(|x: f64| if x > 0.2 { f64::NAN } else { 10.0 * x });
+    let bad = lab.spawn((spring(near, far), law));
+    lab.run(0.5);
+    let fault = lab.get::<SpringFault>(bad);
+    assert_eq!(fault.field, "ForceLaw", "{fault}");
+    assert!(lab.app.world().get::<SpringFault>(good).is_none());
+    // Up to a stretch of 0.2 m, in 0.067 s, the spring takes 0.067 m/s from the far body and gives them to the near one. Then the
+    // far one flies on at 2.93 m/s.
+    let gone = lab.position(far).x - 2.0;
+    assert!((1.4..1.5).contains(&gone), "{gone} m");
+    // The near one swings on with 2.2 mJ.
+    let stored = lab.readout(good).stored_energy;
+    let energy = stored + 0.5 * lab.velocity(near).length_squared();
+    assert!((1e-3..4e-3).contains(&energy), "{energy} J");
 }
 
 #[test]

@@ -210,6 +210,31 @@ fn a_sag_where_no_weight_loads_the_element_is_a_fault() {
     }
 }
 
+/// The fault of a spring tuned to a sag between a hook and a load of 3 kg, whose weight is 29.4 N, `above` the hook by 1 m or
+/// below it. The force is limited to `most`.
+fn limited(above: bool, action: SpringAction, most: f32) -> Option<SpringFault> {
+    let mut lab = Lab::new();
+    let hook = lab.point(Vec3::Y * 5.0);
+    let load = lab.body(3.0, Vec3::Y * if above { 6.0 } else { 4.0 });
+    let pair = SpringDamper::new(hook, load);
+    let element = lab.spawn((pair, SpringTuning::sag(0.1, 0.3), action, MaxForce(most)));
+    lab.run(0.1);
+    lab.app.world().get::<SpringFault>(element).cloned()
+}
+
+#[test]
+fn a_sag_that_the_spring_is_not_allowed_to_carry_is_a_fault() {
+    use SpringAction::{Both, Pull, Push};
+    for (above, action, most) in [(false, Push, 1e3), (true, Pull, 1e3), (false, Both, 20.0)] {
+        let fault = limited(above, action, most).expect("a fault");
+        assert_eq!(fault.field, "SpringTuning");
+        assert!(fault.reason.contains("does not allow"), "{fault}");
+    }
+    for (above, action, most) in [(false, Pull, 1e3), (true, Push, 1e3), (false, Both, 40.0)] {
+        assert_eq!(limited(above, action, most), None, "{action:?}");
+    }
+}
+
 #[test]
 fn over_a_wheel_on_the_ground_it_is_the_load_that_swings() {
     for others in 0..3 {

@@ -4,6 +4,7 @@ use crate::scene::rows::ElementRow;
 use bevy::math::DVec3;
 
 /// Share of the energy owed to the bodies that is kept from step to step. Lost energy is given back only soon after the loss.
+/// Pinned by `arrive::tests`.
 const KEPT: f64 = 0.8;
 
 impl ElementRow {
@@ -47,5 +48,34 @@ impl ElementRow {
             inside.rates = Some([rate, last]);
         }
         (length, rate)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::held::Inside;
+    use bevy::prelude::Entity;
+
+    /// What is left of a debt (J) after a number of steps in which the element neither wins nor loses.
+    fn left(debt: f64, steps: u32) -> f64 {
+        let mut row = ElementRow::new(Entity::PLACEHOLDER);
+        let inside = Inside {
+            debt,
+            ..Inside::default()
+        };
+        row.inside = Some(Box::new(inside));
+        for _ in 0..steps {
+            row.arrive_inside(0.0, [None; 2], 1.0 / 60.0);
+        }
+        row.inside.map_or(0.0, |inside| inside.debt)
+    }
+
+    #[test]
+    fn lost_energy_is_given_back_in_a_third_of_a_second_or_never_and_won_energy_is_always_taken_back()
+     {
+        assert!(left(-1.0, 1) < -0.5, "most of it waits for the next step");
+        assert!(left(-1.0, 20) > -0.02, "it is forgotten");
+        assert_eq!(left(1.0, 20), 1.0);
     }
 }

@@ -12,7 +12,7 @@ use bevy_rapier3d::rapier::dynamics::{GenericJoint, JointAxesMask, RigidBodyHand
 use bevy_rapier3d::rapier::geometry::{ColliderSet, ContactPair, NarrowPhase};
 
 /// Greatest number of linked bodies that are considered; bodies beyond them count as fixed. It is enough for the chassis of a
-/// car with wheels, hubs and suspension arms.
+/// car with wheels, hubs and suspension arms; more only cost time. Pinned by `joints::a_spring_feels_all_bodies_of_a_car`.
 const MOST: usize = 16;
 
 /// Greatest number of contact points that are considered per contact manifold. Three points already fix a body to a plane.

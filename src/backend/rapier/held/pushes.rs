@@ -2,8 +2,10 @@
 
 use crate::backend::Sight;
 use crate::backend::rapier::held::write::Solver;
+use crate::dynamics::guide::Guide;
 use crate::scene::rows::{BodyRow, ElementRow, Held, Members};
 use crate::scene::step::Step;
+use bevy::math::{DQuat, DVec3};
 
 impl Solver {
     /// Computes into `pushes` the speed that springs can add to each body of a component in a step, m/s.
@@ -22,13 +24,13 @@ impl Solver {
             if row.numbers.rest_length.is_none() {
                 continue;
             }
-            let [a, b] = [0, 1].map(|end| match row.rare.held[end] {
+            let ends = [0, 1].map(|end| match row.rare.held[end] {
                 Held::Body { body, local, .. } if row.movable(end).is_some() => {
                     sight.see(body).map_or(local, |body| body.point(local).0)
                 }
                 ref held => step.path(held, sight)[0],
             });
-            let force = row.elastic(a.distance(b)).force.abs();
+            let force = row.elastic(length(row, ends, sight)).force.abs();
             for body in row.all_movable() {
                 let of = &bodies[body];
                 if let Some(body) = sight.see(of.id) {
@@ -37,6 +39,21 @@ impl Solver {
                         (force * inverse_mass * step.plan.time) as f32;
                 }
             }
+        }
+    }
+}
+
+/// Length of an element whose ends are at two points, m: along its axis if it has one.
+fn length(row: &ElementRow, [a, b]: [DVec3; 2], sight: &impl Sight) -> f64 {
+    match row.rare.guide {
+        Guide::Centres | Guide::Twist(_) => a.distance(b),
+        Guide::World(axis) => (b - a).dot(axis),
+        Guide::OfA(axis) => {
+            let facing = match row.rare.held[0] {
+                Held::Body { body, .. } => sight.see(body).map(|body| body.facing()),
+                Held::Path { .. } => None,
+            };
+            (b - a).dot(facing.unwrap_or(DQuat::IDENTITY) * axis)
         }
     }
 }
