@@ -67,7 +67,7 @@ impl Raised {
     /// Takes note that the user has set a number of extra substeps. It may be the number that the crate has set before, and
     /// then it is the user's from now on.
     pub(crate) fn leave_substeps(&mut self, number: usize) {
-        self.substeps = self.substeps.filter(|known| known.ours != number);
+        self.substeps = self.substeps.filter(|known| known.ours != short(number));
     }
 
     /// Returns the contact prediction distance to set for a body, m: `wanted`, or the user's if that is
