@@ -10,7 +10,7 @@ use super::free::Spare;
 use super::show::{Readouts, Springs};
 use super::state::Scene;
 use super::step::Step;
-use crate::backend::{BodyId, Finder, Found, Movable, Place, Stance, Wrench};
+use crate::backend::{Allowance, BodyId, Finder, Found, Movable, Place, Stance, Wrench};
 use crate::dynamics::guide::Guide;
 use crate::element::{Anchors, HoldPose, Spring, SpringDamper, SpringTuning};
 use crate::input::check::{Fault, Parameters};
@@ -81,7 +81,13 @@ impl Finder for Ends<'_, '_> {
         Ok(Found { places, movable })
     }
 
-    fn tune(&self, _: SpringTuning, _: &Stance, _: f64, _: &mut Parameters) -> Result<bool, Fault> {
+    fn tune(
+        &self,
+        _: SpringTuning,
+        _: &Stance,
+        _: Allowance,
+        _: &mut Parameters,
+    ) -> Result<bool, Fault> {
         Err(Fault::new("SpringTuning", "is not known here"))
     }
 
