@@ -75,7 +75,8 @@ pub enum SpringMethod {
     None,
     /// Alone on its bodies: solved in closed form.
     ClosedForm,
-    /// In a network: solved by one matrix factorisation for all elements.
+    /// In a network, or alone with a companion such as [`Preload`](crate::Preload) on a body that it turns: solved by one
+    /// matrix factorisation for all elements.
     Direct,
     /// In a large or soft network: solved by conjugate gradients.
     Iterative,
