@@ -12,14 +12,11 @@ const ROUNDING: f64 = 1e4;
 /// A linear system with matrix A, and the vectors of its iterative solution: the approximate solution x, the residual r, and
 /// the search direction p. P is the preconditioner.
 pub(super) trait Iterated {
-    /// Computes A p. Returns pᵀ A p.
-    fn apply(&mut self) -> f64;
+    /// p = P r + keep·p, then computes A p. Returns pᵀ A p.
+    fn apply(&mut self, keep: f64) -> f64;
 
     /// x += by·p and r −= by·A p. Returns rᵀ P r.
     fn advance(&mut self, by: f64) -> f64;
-
-    /// p = P r + keep·p.
-    fn turn(&mut self, keep: f64);
 }
 
 /// Iterates at most `budget` times. `right` is bᵀ P b of the right side b, and `residual` is rᵀ P r of the first guess.
@@ -33,12 +30,11 @@ pub(super) fn solve(
     // If the right side is zero, so is the solution. Then the residual is compared with that of the first guess.
     let against = if right > 0.0 { right } else { residual };
     let target = TOLERANCE * TOLERANCE * against;
-    system.turn(0.0);
-    let mut iterations = 0;
+    let (mut iterations, mut keep) = (0, 0.0);
     while residual > target && iterations < budget {
-        let by = residual / system.apply();
+        let by = residual / system.apply(keep);
         let next = system.advance(by);
-        system.turn(next / residual);
+        keep = next / residual;
         residual = next;
         iterations += 1;
     }
@@ -67,8 +63,11 @@ mod tests {
     }
 
     impl Iterated for Diagonal {
-        fn apply(&mut self) -> f64 {
+        fn apply(&mut self, keep: f64) -> f64 {
             self.applied += 1;
+            for at in 0..3 {
+                self.search[at] = self.residual[at] + keep * self.search[at];
+            }
             (0..3).map(|at| self.search[at] * self.image(at)).sum()
         }
 
@@ -78,12 +77,6 @@ mod tests {
                 self.residual[at] -= by * self.image(at);
             }
             self.residual.iter().map(|r| r * r).sum()
-        }
-
-        fn turn(&mut self, keep: f64) {
-            for at in 0..3 {
-                self.search[at] = self.residual[at] + keep * self.search[at];
-            }
         }
     }
 

@@ -16,6 +16,7 @@ pub(crate) struct Memo {
     z: f64,
     /// γh of these coefficients; NaN before the first ones.
     g: f64,
+    /// Coefficients that nothing has asked for yet are NaN.
     poles: Poles,
 }
 
@@ -31,21 +32,51 @@ impl Default for Memo {
 
 impl Memo {
     /// Returns the poles for z = (ω h)² and g = γh.
+    #[inline]
     pub(crate) fn poles(&mut self, z: f64, g: f64) -> Poles {
-        if self.z != z || self.g != g {
+        let known = self.z == z && self.g == g;
+        if !known || self.poles.restoring.is_nan() || self.poles.speed.is_nan() {
             let poles = Poles::new(z, g);
             *self = Self { z, g, poles };
         }
         self.poles
     }
+
+    /// Returns `restoring` and `loss` of the poles. Where the length changes z, the other two would be of no use.
+    pub(crate) fn of_kick(&mut self, z: f64, g: f64) -> [f64; 2] {
+        self.turn_to(z, g);
+        let poles = &mut self.poles;
+        if poles.restoring.is_nan() {
+            [poles.restoring, poles.loss] = Poles::of_kick(z, g);
+        }
+        [poles.restoring, poles.loss]
+    }
+
+    /// Returns `speed` and `skew` of the poles.
+    pub(crate) fn of_map(&mut self, z: f64, g: f64) -> [f64; 2] {
+        self.turn_to(z, g);
+        let poles = &mut self.poles;
+        if poles.speed.is_nan() {
+            [poles.speed, poles.skew] = Poles::of_map(z, g);
+        }
+        [poles.speed, poles.skew]
+    }
+
+    /// Forgets the coefficients if they are those of other numbers.
+    fn turn_to(&mut self, z: f64, g: f64) {
+        if self.z != z || self.g != g {
+            let poles = Poles::UNKNOWN;
+            *self = Self { z, g, poles };
+        }
+    }
 }
 
-/// Returns the poles of an element on a line for a step.
-fn poles_of(element: &Element, line: &Line, step: f64, memo: &mut Memo) -> Poles {
-    memo.poles(
+/// (ω h)² and γh of an element on a line for a step.
+fn numbers(element: &Element, line: &Line, step: f64) -> [f64; 2] {
+    [
         element.stiffness * line.inverse_mass * step * step,
         element.damping * line.inverse_mass * step / 2.0,
-    )
+    ]
 }
 
 /// ω²·stretch − a_out at a length, m/s². `outside` is a_out.
@@ -58,7 +89,8 @@ pub(crate) fn kick(element: &Element, bodies: &mut [Body], step: f64, memo: &mut
     let Some(line) = element.line(bodies) else {
         return external(bodies, step);
     };
-    let poles = poles_of(element, &line, step, memo);
+    let [z, g] = numbers(element, &line, step);
+    let [restoring, loss] = memo.of_kick(z, g);
     let before = line.motion(element, bodies, step);
     let rate = line.backward_rate(&before, step);
     let impulse = |outside: f64, drifted: f64| {
@@ -69,13 +101,12 @@ pub(crate) fn kick(element: &Element, bodies: &mut [Body], step: f64, memo: &mut
             let stretch = line.length - drifted - element.rest_length;
             return -step * (element.stiffness * stretch + element.damping * rate);
         }
-        let total = -poles.restoring * residual_acceleration - poles.loss / step * rate;
+        let total = -restoring * residual_acceleration - loss / step * rate;
         step * (total - outside) / line.inverse_mass
     };
-    let z = element.stiffness * line.inverse_mass * step * step;
     if swings_across(&line, bodies) && !is_resolved(z) {
         // The line turns too fast to separate axial from lateral motion, so both lose the same share.
-        line.push_across(bodies, -poles.loss * before.lateral);
+        line.push_across(bodies, -loss * before.lateral);
     }
     // a_out depends on the lateral speed, which the kick changes. The mean of before and after makes the step time-symmetric,
     // so that its error has only even powers of the step.
@@ -132,18 +163,19 @@ pub(crate) fn map_velocity(
     if line.inverse_mass <= 0.0 {
         return;
     }
-    let coefficients = poles_of(element, &line, step, memo);
+    let [z, g] = numbers(element, &line, step);
+    let [speed, skew] = memo.of_map(z, g);
     let motion = line.motion(element, bodies, step);
     let residual_acceleration =
         residual_acceleration(element, &line, line.length, motion.outside());
-    let offset = coefficients.skew * step * residual_acceleration;
+    let offset = skew * step * residual_acceleration;
     let mapped = match map {
-        Map::ToStepped => (motion.axial - offset) / coefficients.speed,
-        Map::ToTrue => coefficients.speed * motion.axial + offset,
+        Map::ToStepped => (motion.axial - offset) / speed,
+        Map::ToTrue => speed * motion.axial + offset,
     };
     line.push(bodies, (mapped - motion.axial) / line.inverse_mass);
     if swings_across(&line, bodies) {
-        map_lateral(element, bodies, &line, &motion, step, map, &coefficients);
+        map_lateral(bodies, &line, &motion, map, z, &memo.poles(z, g));
     }
 }
 
@@ -153,16 +185,15 @@ fn swings_across(line: &Line, bodies: &[Body]) -> bool {
     line.isotropic && bodies.iter().all(|body| body.spin == Spin::Ignored)
 }
 
+/// Maps the velocity across the line. `z` is (ω h)².
 fn map_lateral(
-    element: &Element,
     bodies: &mut [Body],
     line: &Line,
     motion: &Motion,
-    step: f64,
     map: Map,
+    z: f64,
     coefficients: &Poles,
 ) {
-    let z = element.stiffness * line.inverse_mass * step * step;
     let speed = if is_resolved(z) {
         coefficients.speed_across(z)
     } else {

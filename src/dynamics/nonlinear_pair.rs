@@ -14,8 +14,8 @@ pub(crate) use pair_view::PairView;
 use super::kick::Memo;
 use super::law::Law;
 use super::network::{damper_placement, steep};
-use super::pair::{Line, Pair, Separation};
-use super::poles::{Poles, RESOLVED_PHASE, UNRESOLVED_DECAY, decay_ratio};
+use super::pair::{Pair, Separation};
+use super::poles::{RESOLVED_PHASE, UNRESOLVED_DECAY, decay_ratio};
 use bevy::math::DVec3;
 
 /// (ω h)² up to which the kick is used for a law without kinks.
@@ -116,10 +116,9 @@ impl<'a> NonlinearPair<'a> {
             + 0.5 * self.state.v.length_squared() / pair.inverse_mass;
         let pushed = pair.outside.length() / pair.inverse_mass;
         let mut reach = (length - rest).abs().max(step * self.state.v.length());
-        let mut stiffest = 0.0;
+        let mut ends = [rest; 2];
         for _ in 0..REACHES {
-            let ends = [rest - reach, rest + reach];
-            stiffest = law.stiffest(ends, rest);
+            ends = [rest - reach, rest + reach];
             let most = energy + pushed * reach;
             let stored = ends.map(|length| law.elastic(length, rest).energy);
             let stored = stored[0].min(stored[1]);
@@ -131,7 +130,7 @@ impl<'a> NonlinearPair<'a> {
             reach *= (most / stored).sqrt().sqrt();
         }
         let limit = if law.is_bent() { BENT } else { SMOOTH };
-        stiffest * weight < limit
+        law.stiffest(ends, rest) * weight < limit
     }
 
     /// Advances by `time` seconds in the greatest number of energy-conserving steps.
@@ -204,12 +203,11 @@ impl<'a> NonlinearPair<'a> {
         let drag = self.law.drag(length, rest, rate);
         let weight = pair.inverse_mass * step;
         let damped = drag.slope * weight;
-        let poles = self
-            .memo
-            .poles(elastic.stiffness * weight * step, damped / 2.0);
+        let z = elastic.stiffness * weight * step;
+        let [restoring, _] = self.memo.of_kick(z, damped / 2.0);
         // A damper alone is solved exactly for its present slope: x(1 − e^(−s))/s for a force x of slope s.
         let braked = drag.force * pair.inverse_mass * decay_ratio(damped);
-        let total = -poles.restoring * (elastic.force * pair.inverse_mass - outside) - braked;
+        let total = -restoring * (elastic.force * pair.inverse_mass - outside) - braked;
         self.state.v += step * (total - outside) * line.direction + step * pair.outside;
     }
 
@@ -218,24 +216,15 @@ impl<'a> NonlinearPair<'a> {
         let Some(line) = self.pair.line(&self.state) else {
             return;
         };
-        // Only linear damping, because a slope that depends on speed would differ before and after the map.
-        let poles = self.poles_at(&line, step, damping);
-        let outside = line.pushed + line.turning(line.lateral_square, step);
-        let elastic = self.law.elastic(line.length, self.rest_length());
-        let residual_acceleration = elastic.force * self.pair.inverse_mass - outside;
-        let axial = to(
-            line.axial,
-            poles.skew * step * residual_acceleration,
-            poles.speed,
-        );
-        self.state.v += (axial - line.axial) * line.direction;
-    }
-
-    fn poles_at(&mut self, line: &Line, step: f64, damping: f64) -> Poles {
         let weight = self.pair.inverse_mass * step;
         let elastic = self.law.elastic(line.length, self.rest_length());
-        self.memo
-            .poles(elastic.stiffness * weight * step, damping * weight / 2.0)
+        let z = elastic.stiffness * weight * step;
+        // Only linear damping, because a slope that depends on speed would differ before and after the map.
+        let [speed, skew] = self.memo.of_map(z, damping * weight / 2.0);
+        let outside = line.pushed + line.turning(line.lateral_square, step);
+        let residual_acceleration = elastic.force * self.pair.inverse_mass - outside;
+        let axial = to(line.axial, skew * step * residual_acceleration, speed);
+        self.state.v += (axial - line.axial) * line.direction;
     }
 
     /// Takes one step whose mean force does the work of the law's energy.

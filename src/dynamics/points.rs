@@ -1,9 +1,10 @@
 //! Solves networks in which no body turns: cloths, lattices, chains.
 //!
 //! The result equals that of [`super::network`] except for rounding. Here a body is a point mass, so that thousands of
-//! them fit into the processor's cache. [`kick`] contains the step, [`solve`] its linear system, [`parts`] the division
-//! among threads, [`free_points`] the transition from one step to the next, and [`survey`] the energy.
+//! them fit into the processor's cache. [`kick`] contains the step of its elements ([`mod@bar`]), [`solve`] its linear system,
+//! [`parts`] the division among threads, [`free_points`] the transition from one step to the next, and [`survey`] the energy.
 
+mod bar;
 mod free_points;
 mod kick;
 mod parts;
@@ -17,9 +18,9 @@ use super::guide::Guide;
 use super::resolution::{EXTRAPOLATION_LIMIT, network_steps};
 use super::tolerance::{Least, Motion, velocity_counts};
 use crate::threads::{copy, each};
+use bar::{Bar, Load};
 use bevy::math::DVec3;
 pub(crate) use free_points::{Flight, FreePoint};
-use kick::Bar;
 use parts::Parts;
 use solve::Solver;
 use survey::Survey;
@@ -84,6 +85,7 @@ pub(crate) struct Points {
     pub(super) stiffest: f64,
     parts: Parts,
     bars: Vec<Bar>,
+    loads: Vec<Load>,
     impulses: Vec<DVec3>,
     solver: Solver,
     budget: u32,

@@ -39,33 +39,62 @@ pub(crate) fn decay_ratio(x: f64) -> f64 {
     if x < 1e-12 { 1.0 } else { -exp_m1(-x) / x }
 }
 
+/// The decay exponent of a step: γh, and a little more where the phase is far from resolved.
+fn decay(z: f64, g: f64) -> f64 {
+    let unresolved = (1.0 - RESOLVED_PHASE * RESOLVED_PHASE / z).max(0.0);
+    g.max(UNRESOLVED_DECAY * unresolved)
+}
+
 impl Poles {
+    pub(crate) const UNKNOWN: Self = Self {
+        restoring: f64::NAN,
+        loss: f64::NAN,
+        speed: f64::NAN,
+        skew: f64::NAN,
+    };
+
     /// `z` = k h²/m, `g` = c h/(2 m); both finite and not negative.
     pub(crate) fn new(z: f64, g: f64) -> Self {
-        let unresolved = (1.0 - RESOLVED_PHASE * RESOLVED_PHASE / z).max(0.0);
-        let g = g.max(UNRESOLVED_DECAY * unresolved);
+        let [restoring, loss] = Self::of_kick(z, g);
+        let [speed, skew] = Self::of_map(z, g);
+        Self {
+            restoring,
+            loss,
+            speed,
+            skew,
+        }
+    }
+
+    /// `restoring` and `loss`, which the kick needs.
+    pub(crate) fn of_kick(z: f64, g: f64) -> [f64; 2] {
+        let g = decay(z, g);
         let discriminant = z - g * g;
-        let (restoring, slow) = if discriminant > 0.0 {
+        let restoring = if discriminant > 0.0 {
             let phase = discriminant.sqrt().min(RESOLVED_PHASE);
             let half = sin(phase / 2.0);
             let settle = -exp_m1(-g);
-            ((settle * settle + 4.0 * exp(-g) * half * half) / z, g)
+            (settle * settle + 4.0 * exp(-g) * half * half) / z
         } else {
-            let fast = g + (-discriminant).sqrt();
-            let slow = if fast > 0.0 { z / fast } else { 0.0 };
-            (decay_ratio(fast) * decay_ratio(slow), slow)
+            let [slow, fast] = overdamped(z, g, discriminant);
+            decay_ratio(fast) * decay_ratio(slow)
+        };
+        [restoring, -exp_m1(-2.0 * g)]
+    }
+
+    /// `speed` and `skew`, which the velocity map needs.
+    pub(crate) fn of_map(z: f64, g: f64) -> [f64; 2] {
+        let g = decay(z, g);
+        let discriminant = z - g * g;
+        let slow = if discriminant > 0.0 {
+            g
+        } else {
+            overdamped(z, g, discriminant)[0]
         };
         // If the motion decays within the step, this map does not matter and is badly conditioned.
-        let (speed, skew) = if slow < RESOLVED_DECAY {
+        if slow < RESOLVED_DECAY {
             velocity_map(z, g)
         } else {
-            (1.0, 0.0)
-        };
-        Self {
-            restoring,
-            loss: -exp_m1(-2.0 * g),
-            speed,
-            skew,
+            [1.0, 0.0]
         }
     }
 
@@ -79,9 +108,16 @@ impl Poles {
     }
 }
 
+/// The exponents of slow and fast decay of an overdamped step.
+fn overdamped(z: f64, g: f64, discriminant: f64) -> [f64; 2] {
+    let fast = g + (-discriminant).sqrt();
+    let slow = if fast > 0.0 { z / fast } else { 0.0 };
+    [slow, fast]
+}
+
 /// Returns `speed` and `skew`. They solve E P = P M for P = [[1, 0], [p, speed]] with p = skew·z/h, where E is the exact
 /// flow and M the drift–kick–drift step.
-fn velocity_map(z: f64, g: f64) -> (f64, f64) {
+fn velocity_map(z: f64, g: f64) -> [f64; 2] {
     let square = g * g - z;
     // e^(−g)·φ and e^(−g)·C, where φ = sin σ/σ (or sinh r/r) and C = cos σ (or cosh r).
     let (sine, cosine) = if square < 0.0 {
@@ -122,7 +158,7 @@ fn velocity_map(z: f64, g: f64) -> (f64, f64) {
     } else {
         ((1.0 - exp(-2.0 * g)) / (2.0 * sine) - g) / z
     };
-    (speed, skew)
+    [speed, skew]
 }
 
 #[cfg(test)]

@@ -52,8 +52,14 @@ struct Running<'a> {
 }
 
 impl Iterated for Running<'_> {
-    fn apply(&mut self) -> f64 {
-        let Vectors { search, image, .. } = &mut self.vectors;
+    fn apply(&mut self, keep: f64) -> f64 {
+        let Vectors {
+            preconditioned,
+            search,
+            image,
+            ..
+        } = &mut self.vectors;
+        search.combine(keep, preconditioned, 1.0);
         self.system.apply(search, image);
         search.dot(image)
     }
@@ -69,15 +75,6 @@ impl Iterated for Running<'_> {
         residual.combine(1.0, image, -by);
         self.system.precondition(residual, preconditioned);
         residual.dot(preconditioned)
-    }
-
-    fn turn(&mut self, keep: f64) {
-        let Vectors {
-            preconditioned,
-            search,
-            ..
-        } = &mut self.vectors;
-        search.combine(keep, preconditioned, 1.0);
     }
 }
 

@@ -1,101 +1,154 @@
 //! Solves the linear system of point masses and bars by matrix-free conjugate gradients. The preconditioner is the
 //! inverse of each point's diagonal block. Iterations start from the last solution.
+//!
+//! A large system does not fit into the processor's cache, so that each list that is read costs time. What is done with a
+//! body or an element is done in one pass where that is possible.
 
-use super::Point;
-use super::kick::Bar;
-use super::parts::Parts;
+use super::bar::{Bar, add};
+use super::parts::{Parts, Run, places};
 use crate::dynamics::conjugate::{self, Iterated};
 use crate::threads::{PIECE, each, share};
 use bevy::math::{DMat3, DVec3};
 
+/// A symmetric matrix.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Block {
+    diagonal: DVec3,
+    /// Entries of x and y, of x and z, and of y and z.
+    beside: DVec3,
+}
+
+/// The system, and the vectors of its iterative solution. Vectors have an entry for each body.
 #[derive(Clone, Default)]
 pub(super) struct Solver {
     /// Accelerations of all points, m/s²; zero for points that elements cannot move.
     pub solution: Vec<DVec3>,
-    masses: Vec<f64>,
-    /// Inverse of each point's diagonal block.
-    blocks: Vec<DMat3>,
+    pub masses: Vec<f64>,
+    /// Each body's diagonal block, and later its inverse.
+    pub blocks: Vec<Block>,
+    /// The right side.
+    pub right: Vec<DVec3>,
+    /// The product of the matrix with the solution, and during iterations with the search direction.
+    pub image: Vec<DVec3>,
     residual: Vec<DVec3>,
     preconditioned: Vec<DVec3>,
     search: Vec<DVec3>,
-    image: Vec<DVec3>,
-    /// Partial sums, one for each piece of points.
+    /// Partial sums.
     sums: Vec<f64>,
+    starts: Vec<[f64; 2]>,
 }
 
-fn outer(u: DVec3) -> DMat3 {
-    DMat3::from_cols(u * u.x, u * u.y, u * u.z)
+impl Block {
+    pub(super) fn of_mass(mass: f64) -> Self {
+        Self {
+            diagonal: DVec3::splat(mass),
+            beside: DVec3::ZERO,
+        }
+    }
+
+    /// What an element adds to the block of each of its ends.
+    #[inline(always)]
+    pub(super) fn of_bar(bar: &Bar) -> Self {
+        let (u, more) = (bar.direction, bar.along - bar.across);
+        Self {
+            diagonal: bar.across + u * u * more,
+            beside: DVec3::new(u.x * u.y, u.x * u.z, u.y * u.z) * more,
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn add(&mut self, other: &Self) {
+        self.diagonal += other.diagonal;
+        self.beside += other.beside;
+    }
+
+    fn inverse(&self) -> Self {
+        let (d, b) = (self.diagonal, self.beside);
+        let inverse = DMat3::from_cols(
+            DVec3::new(d.x, b.x, b.y),
+            DVec3::new(b.x, d.y, b.z),
+            DVec3::new(b.y, b.z, d.z),
+        )
+        .inverse();
+        let (x, y, z) = (inverse.x_axis, inverse.y_axis, inverse.z_axis);
+        Self {
+            diagonal: DVec3::new(x.x, y.y, z.z),
+            beside: DVec3::new(x.y, x.z, y.z),
+        }
+    }
+
+    #[inline(always)]
+    fn times(&self, r: DVec3) -> DVec3 {
+        let (d, b) = (self.diagonal, self.beside);
+        DVec3::new(d.x, b.x, b.y) * r.x
+            + DVec3::new(b.x, d.y, b.z) * r.y
+            + DVec3::new(b.y, b.z, d.z) * r.z
+    }
 }
 
 impl Solver {
-    /// Sets up the system for the movable points and bars in their present state.
-    pub(super) fn begin(&mut self, points: &[Point], bars: &[Bar], parts: &Parts) {
-        self.masses.resize(points.len(), 0.0);
-        each(&mut self.masses, |at, mass| {
-            *mass = points[at].inverse_mass.recip();
-        });
-        let masses = &self.masses;
-        self.blocks.resize(points.len(), DMat3::ZERO);
-        each(&mut self.blocks, |at, block| {
-            *block = DMat3::IDENTITY * masses[at];
-        });
-        parts.scatter(bars, &mut self.blocks, |bar, blocks| {
-            let across = DMat3::from_diagonal(DVec3::splat(bar.across));
-            let own = across + outer(bar.direction) * (bar.along - bar.across);
-            for end in bar.ends {
-                if let Some(block) = blocks.of(end) {
-                    *block += own;
-                }
-            }
-        });
-        each(&mut self.blocks, |_, block| *block = block.inverse());
-        self.sums.resize(points.len().div_ceil(PIECE), 0.0);
-    }
-
-    /// Solves for `right`, which has an entry for every point. Returns whether the iterations converged.
-    pub(super) fn solve(
-        &mut self,
-        right: &mut [DVec3],
-        bars: &[Bar],
-        parts: &Parts,
-        budget: u32,
-    ) -> bool {
-        let (all, movable) = (right.len(), self.masses.len());
-        right[movable..].fill(DVec3::ZERO);
+    /// Makes room for a number of bodies, and a solution for a number of points.
+    pub(super) fn resize(&mut self, bodies: usize, points: usize) {
+        self.solution.resize(points, DVec3::ZERO);
+        self.solution[bodies..].fill(DVec3::ZERO);
+        self.masses.resize(bodies, 0.0);
+        self.blocks.resize(bodies, Block::default());
         for vector in [
-            &mut self.solution,
+            &mut self.right,
+            &mut self.image,
             &mut self.residual,
             &mut self.preconditioned,
             &mut self.search,
-            &mut self.image,
         ] {
-            vector.resize(all, DVec3::ZERO);
-            vector[movable..].fill(DVec3::ZERO);
+            vector.resize(bodies, DVec3::ZERO);
         }
-        let weight = self.weigh(right);
-        let (masses, sums) = (&self.masses, &mut self.sums);
-        apply(masses, bars, parts, &self.solution, &mut self.image, sums);
-        let (image, right) = (&self.image, &*right);
-        each(&mut self.residual, |at, r| *r = right[at] - image[at]);
-        // The last search direction may not be finite, so it must not get into this solve.
-        each(&mut self.search, |_, p| *p = DVec3::ZERO);
+        self.sums.resize(bodies.div_ceil(PIECE), 0.0);
+    }
+
+    pub(super) fn invert_blocks(&mut self) {
+        each(&mut self.blocks, |_, block| *block = block.inverse());
+    }
+
+    /// Solves for the right side. `image` must be the product of the matrix with the last solution. Returns whether the
+    /// iterations converged.
+    pub(super) fn solve(&mut self, bars: &[Bar], parts: &Parts, budget: u32) -> bool {
+        let [weight, residual] = self.start();
         let mut running = Running {
             solver: self,
             bars,
             parts,
         };
-        let residual = running.advance(0.0);
         conjugate::solve(&mut running, weight, residual, budget)
     }
 
-    /// rᵀ P r of a vector.
-    fn weigh(&mut self, r: &[DVec3]) -> f64 {
-        let pieces = self.sums.iter_mut().zip(self.blocks.chunks(PIECE));
-        share(pieces.zip(r.chunks(PIECE)), |((sum, blocks), r)| {
-            let weighed = blocks.iter().zip(r).map(|(block, r)| r.dot(*block * *r));
-            *sum = weighed.sum();
-        });
-        self.sums.iter().sum()
+    /// Computes the residual. Returns bᵀ P b of the right side b and rᵀ P r of the residual.
+    fn start(&mut self) -> [f64; 2] {
+        let pieces = self.blocks.len().div_ceil(PIECE);
+        self.starts.clear();
+        self.starts.resize(pieces, [0.0; 2]);
+        let sides = self.right.chunks(PIECE).zip(self.image.chunks(PIECE));
+        let vectors = self.residual.chunks_mut(PIECE);
+        let vectors = vectors.zip(self.preconditioned.chunks_mut(PIECE));
+        let vectors = vectors.zip(self.search.chunks_mut(PIECE));
+        let pieces = self.starts.iter_mut().zip(self.blocks.chunks(PIECE));
+        let pieces = pieces.zip(sides).zip(vectors);
+        share(
+            pieces,
+            |(((sums, blocks), (right, image)), ((residual, preconditioned), search))| {
+                // The last search direction may not be finite, so it must not get into this solve.
+                search.fill(DVec3::ZERO);
+                for (i, block) in blocks.iter().enumerate() {
+                    let (b, r) = (right[i], right[i] - image[i]);
+                    let z = block.times(r);
+                    sums[0] += b.dot(block.times(b));
+                    sums[1] += r.dot(z);
+                    residual[i] = r;
+                    preconditioned[i] = z;
+                }
+            },
+        );
+        let sum = |of: usize| self.starts.iter().map(|sums| sums[of]).sum();
+        [sum(0), sum(1)]
     }
 }
 
@@ -107,31 +160,53 @@ struct Running<'a> {
 }
 
 impl Iterated for Running<'_> {
-    fn apply(&mut self) -> f64 {
+    fn apply(&mut self, keep: f64) -> f64 {
         let Solver {
             masses,
+            preconditioned,
             search,
             image,
             sums,
             ..
         } = &mut *self.solver;
-        apply(masses, self.bars, self.parts, search, image, sums)
+        for stage in self.parts.stages() {
+            let known = (&masses[..], &preconditioned[..]);
+            let of_bodies = (known, &mut search[..], &mut image[..]);
+            let parts = self.parts;
+            parts.pass_with(*stage, self.bars, of_bodies, sums, |run, sum| {
+                let Run {
+                    elements: bars,
+                    bodies: ((masses, z), x, y),
+                    first,
+                } = run;
+                if stage.is_first() {
+                    for (((x, y), z), mass) in x.iter_mut().zip(&mut *y).zip(z).zip(masses) {
+                        *x = keep * *x + *z;
+                        *y = *mass * *x;
+                    }
+                }
+                for bar in bars {
+                    let places = places(bar.ends, first);
+                    let [a, b] = places.map(|at| x.get(at).copied().unwrap_or(DVec3::ZERO));
+                    add(y, places, bar.answer(b - a));
+                }
+                if stage.is_last() {
+                    *sum = x.iter().zip(y).map(|(x, y)| x.dot(*y)).sum();
+                }
+            });
+        }
+        sums.iter().sum()
     }
 
     fn advance(&mut self, by: f64) -> f64 {
-        let state = self.solver.solution.chunks_mut(PIECE);
-        let state = state.zip(self.solver.residual.chunks_mut(PIECE));
-        let state = state.zip(self.solver.preconditioned.chunks_mut(PIECE));
-        let way = self
-            .solver
-            .search
-            .chunks(PIECE)
-            .zip(self.solver.image.chunks(PIECE));
-        let pieces = self
-            .solver
-            .sums
-            .iter_mut()
-            .zip(self.solver.blocks.chunks(PIECE));
+        let solver = &mut *self.solver;
+        let pieces = solver.blocks.len().div_ceil(PIECE);
+        solver.sums.resize(pieces, 0.0);
+        let state = solver.solution.chunks_mut(PIECE);
+        let state = state.zip(solver.residual.chunks_mut(PIECE));
+        let state = state.zip(solver.preconditioned.chunks_mut(PIECE));
+        let way = solver.search.chunks(PIECE).zip(solver.image.chunks(PIECE));
+        let pieces = solver.sums.iter_mut().zip(solver.blocks.chunks(PIECE));
         let pieces = pieces.zip(state.zip(way));
         share(
             pieces,
@@ -140,49 +215,13 @@ impl Iterated for Running<'_> {
                 for (i, block) in blocks.iter().enumerate() {
                     solution[i] += by * search[i];
                     let r = residual[i] - by * image[i];
-                    let z = *block * r;
+                    let z = block.times(r);
                     *sum += r.dot(z);
                     residual[i] = r;
                     preconditioned[i] = z;
                 }
             },
         );
-        self.solver.sums.iter().sum()
+        solver.sums.iter().sum()
     }
-
-    fn turn(&mut self, keep: f64) {
-        let search = self.solver.search.chunks_mut(PIECE);
-        share(
-            search.zip(self.solver.preconditioned.chunks(PIECE)),
-            |(search, preconditioned)| {
-                for (p, z) in search.iter_mut().zip(preconditioned) {
-                    *p = keep * *p + *z;
-                }
-            },
-        );
-    }
-}
-
-/// Computes y = A x for movable points; other entries of y stay zero. Returns xᵀ A x. `sums` is a buffer for partial
-/// sums.
-fn apply(
-    masses: &[f64],
-    bars: &[Bar],
-    parts: &Parts,
-    x: &[DVec3],
-    y: &mut [DVec3],
-    sums: &mut [f64],
-) -> f64 {
-    let pieces = y.chunks_mut(PIECE).zip(x.chunks(PIECE));
-    share(pieces.zip(masses.chunks(PIECE)), |((y, x), masses)| {
-        for ((y, x), mass) in y.iter_mut().zip(x).zip(masses) {
-            *y = *mass * *x;
-        }
-    });
-    parts.scatter(bars, y, |bar, y| bar.add(y, bar.answer(bar.relative(x))));
-    let pieces = sums.iter_mut().zip(y.chunks(PIECE).zip(x.chunks(PIECE)));
-    share(pieces, |(sum, (y, x))| {
-        *sum = x.iter().zip(y).map(|(x, y)| x.dot(*y)).sum();
-    });
-    sums.iter().sum()
 }

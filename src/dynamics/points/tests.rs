@@ -1,5 +1,6 @@
 //! Compares point masses with rigid bodies that do not turn. Both must take the same step except for rounding.
 
+use super::parts::places;
 use super::*;
 use crate::dynamics::element::Path;
 use crate::dynamics::energy::Energy;
@@ -173,11 +174,20 @@ fn parts_that_go_at_one_time_share_no_body() {
     // Each element adds one to both of its ends, which counts the elements of each body.
     let count = |parts: &Parts| {
         let mut count = vec![0_u32; net.bodies.len()];
-        parts.scatter(&points.bars, &mut count, |bar, count| {
-            for end in bar.ends {
-                *count.of(end).expect("the end is in its part's window") += 1;
-            }
-        });
+        let mut begun = vec![0_u32; net.bodies.len()];
+        for stage in parts.stages() {
+            let of_bodies = (&mut count[..], &mut begun[..]);
+            parts.pass(*stage, &points.bars[..], of_bodies, |run| {
+                let (count, begun) = run.bodies;
+                for begun in begun.iter_mut().filter(|_| stage.is_first()) {
+                    *begun += 1;
+                }
+                for end in run.elements.iter().flat_map(|bar| bar.ends) {
+                    let [place, _] = places([end; 2], run.first);
+                    count[place] += begun[place];
+                }
+            });
+        }
         count
     };
     let mut whole = Parts::default();
