@@ -84,15 +84,13 @@ mod tests {
     struct Stuck(f64);
 
     impl Iterated for Stuck {
-        fn apply(&mut self) -> f64 {
+        fn apply(&mut self, _: f64) -> f64 {
             1.0
         }
 
         fn advance(&mut self, _: f64) -> f64 {
             self.0 * self.0
         }
-
-        fn turn(&mut self, _: f64) {}
     }
 
     #[test]
