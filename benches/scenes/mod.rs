@@ -164,7 +164,7 @@ impl Scene {
     }
 
     /// Returns the app of [`Self::app`] with a clock around our own systems. Systems run one after the other:
-    /// otherwise the clock would count the waking of threads for each of nine systems, 0.15 ms on two cores. The
+    /// otherwise the clock would count the waking of threads for each system, 0.15 ms on two cores. The
     /// springs themselves use all threads.
     pub fn clocked(self, count: u32, link: Link, microsteps: u32) -> App {
         self.made(count, link, microsteps, true)
@@ -199,10 +199,11 @@ impl Scene {
                 .before(PhysicsSet::StepSimulation),
             stop.after(CoiloverSystems::Readout),
         );
-        app.add_systems(
-            FixedUpdate,
-            (before, after, pull.in_set(CoiloverSystems::Solve)),
-        );
+        app.add_systems(FixedUpdate, (before, after));
+        if let Link::Bare = link {
+            // Elsewhere it would count as ours.
+            app.add_systems(FixedUpdate, pull.in_set(CoiloverSystems::Solve));
+        }
         if clocked {
             app.edit_schedule(FixedUpdate, |schedule| {
                 schedule.set_executor(SingleThreadedExecutor::new());
