@@ -6,6 +6,7 @@ use crate::backend::{BodyId, Place};
 use crate::dynamics::guide::Guide;
 use crate::dynamics::kick::Memo;
 use crate::dynamics::law::Law;
+use crate::dynamics::single;
 use crate::dynamics::tolerance::{Controller, Method, Outcome};
 use crate::input::check::{Numbers, Parameters, Ties, Trouble};
 use crate::input::companions::Companion;
@@ -72,9 +73,11 @@ pub(crate) struct Solved {
 
 impl From<Outcome> for Solved {
     fn from(outcome: Outcome) -> Self {
+        // What is not even a number is no small error.
+        let number = |error: f64| if error.is_nan() { f64::MAX } else { error };
         Self {
             microsteps: outcome.microsteps,
-            error: outcome.error.unwrap_or(0.0) as f32,
+            error: single(outcome.error.map_or(0.0, number)),
             method: outcome.method,
             capped: outcome.capped,
             unresolved: outcome.unresolved,
@@ -379,6 +382,17 @@ impl ElementRow {
 mod tests {
     use super::*;
     use crate::scene::rows::body::{BodyRow, RareBody};
+
+    #[test]
+    fn an_error_beyond_all_numbers_is_told_as_the_greatest_number() {
+        for error in [1e39, f64::INFINITY, f64::NAN] {
+            let outcome = Outcome {
+                error: Some(error),
+                ..Outcome::default()
+            };
+            assert_eq!(Solved::from(outcome).error, f32::MAX);
+        }
+    }
 
     #[test]
     fn a_row_is_what_a_step_reads_of_it() {
