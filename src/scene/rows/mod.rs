@@ -19,3 +19,6 @@ pub(crate) struct Members<'a> {
     pub elements: &'a [u32],
     pub bodies: &'a [u32],
 }
+
+#[cfg(test)]
+mod tests;
