@@ -21,10 +21,10 @@ use std::f32::consts::TAU;
 ///
 /// A sag also sets the rest length if the element has none, so that the load stays where it was spawned, also beside a
 /// [`Preload`](crate::Preload). That is so where the element alone can hold the load: straight above or below it, or on a
-/// guide or a hinge. A free load on a slanted element swings. A rest length that you give is kept, and the load sags from there. If both ends move,
-/// and neither stands on the ground after the first step, it is not known which end is the load. The rest length is
-/// then the length in the first step; put a [`HoldPose`](crate::HoldPose) beside it. For several springs under one load,
-/// use [`SpringTuning::coefficients`] with each spring's share of the mass, and
+/// guide or a hinge. A free load on a slanted element swings. A rest length that you give is kept, and the load sags from
+/// there. If both ends move, and neither stands on the ground after the first step, it is not known which end is the load. The
+/// rest length is then the length in the first step; put a [`HoldPose`](crate::HoldPose) beside it. For several springs under one
+/// load, use [`SpringTuning::coefficients`] with each spring's share of the mass, and
 /// [`HoldPose::share`](crate::HoldPose::share).
 ///
 /// On a damper without a spring, with a number that is not valid, where both ends cannot move or coincide, or with a sag

@@ -257,6 +257,17 @@ fn springs_that_swing_alike_share_their_meshes_and_keep_few() {
     assert!((2..=270).contains(&meshes), "{meshes} meshes");
 }
 
+/// Checks that a spiral about the origin has the radius for a door of this size, m.
+fn check_size(lab: &Lab, element: Entity, size: f32) {
+    let far = |at: &GlobalTransform| at.translation().length();
+    // The pin is at the outer end. Sizes are rounded to a power of 1.1, so that meshes are shared.
+    let radius = parts(lab, element).iter().map(far).fold(0.0, f32::max);
+    assert!(
+        (radius / (0.25 * size) - 1.0).abs() < 0.05,
+        "{radius} for {size}"
+    );
+}
+
 #[test]
 fn it_is_a_quarter_as_large_as_what_it_turns() {
     for (place, collider, size) in [
@@ -276,13 +287,7 @@ fn it_is_a_quarter_as_large_as_what_it_turns() {
             TorsionCoil::default(),
         ));
         lab.run(0.1);
-        let far = |at: &GlobalTransform| at.translation().length();
-        let radius = parts(&lab, element).iter().map(far).fold(0.0, f32::max);
-        // The pin is at the outer end. Sizes are rounded to a power of 1.1, so that meshes are shared.
-        assert!(
-            (radius / (0.25 * size) - 1.0).abs() < 0.05,
-            "{radius} for {size}"
-        );
+        check_size(&lab, element, size);
     }
 }
 
@@ -314,12 +319,7 @@ fn it_fits_a_scaled_door_before_the_first_tick_as_after_it() {
                 TorsionCoil::default(),
             ));
             lab.app.world_mut().run_schedule(PostUpdate);
-            let far = |at: &GlobalTransform| at.translation().length();
-            let radius = parts(&lab, element).iter().map(far).fold(0.0, f32::max);
-            assert!(
-                (radius / (0.25 * size) - 1.0).abs() < 0.05,
-                "{radius} for {size}"
-            );
+            check_size(&lab, element, size);
         }
     }
 }
@@ -336,9 +336,7 @@ fn a_spiral_whose_center_was_wrong_fits_once_it_is_mended() {
     assert!(parts(&lab, element).is_empty());
     lab.get_mut::<TorsionCoil>(element).center = Vec3::ZERO;
     lab.run(0.1);
-    let far = |at: &GlobalTransform| at.translation().length();
-    let radius = parts(&lab, element).iter().map(far).fold(0.0, f32::max);
-    assert!((radius / 0.5 - 1.0).abs() < 0.05, "{radius}");
+    check_size(&lab, element, 2.0);
 }
 
 #[test]
