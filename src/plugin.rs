@@ -9,6 +9,7 @@ use crate::mouse_spring::{self, Grip, MouseSpring};
 use crate::readout::SpringReadout;
 use crate::scene::state::Scene;
 use crate::settings::CoiloverSettings;
+use bevy::ecs::query::ArchetypeFilter;
 use bevy::ecs::schedule::ScheduleLabel;
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::{PhysicsSet, TimestepMode};
@@ -169,12 +170,11 @@ impl Plugin for CoiloverPlugin {
             schedule,
             crate::input::strays::tell_strays.run_if(crate::input::strays::any_strays),
         );
-        let any_held = any_with_component::<MouseSpring>.or_else(any_with_component::<Grip>);
         app.add_observer(mouse_spring::forget);
         app.add_systems(
             schedule,
             mouse_spring::hold
-                .run_if(any_held)
+                .run_if(any::<Or<(With<MouseSpring>, With<Grip>)>>)
                 .after(PhysicsSet::SyncBackend)
                 .before(CoiloverSystems::Prepare),
         );
@@ -192,27 +192,30 @@ impl Plugin for CoiloverPlugin {
             schedule,
             (
                 (
+                    // Both apply their commands themselves: a sync point would run in every tick.
                     crate::input::named_ends::find_named_ends
-                        .run_if(any_with_component::<AwaitsEnds>),
-                    crate::input::anchoring::anchor.run_if(any_with_component::<WorldAnchors>),
-                    crate::backend::rapier::prepare::prepare,
-                )
-                    .chain_ignore_deferred()
-                    .in_set(CoiloverSystems::Prepare),
-                crate::backend::rapier::solve::solve.in_set(CoiloverSystems::Solve),
-                (
-                    crate::backend::rapier::measure::measure,
-                    crate::scene::breaking::break_overloaded
-                        .run_if(any_with_component::<Breakable>),
+                        .pipe(crate::input::anchoring::anchor)
+                        .run_if(any::<Or<(With<AwaitsEnds>, With<WorldAnchors>)>>),
+                    crate::backend::rapier::prepare::prepare
+                        .run_if(crate::backend::rapier::watch::any_news),
                 )
                     .chain()
+                    .in_set(CoiloverSystems::Prepare),
+                crate::backend::rapier::solve::solve.in_set(CoiloverSystems::Solve),
+                // One system, because a system of its own costs more than a look at no `Breakable`.
+                crate::backend::rapier::measure::measure
+                    .pipe(crate::scene::breaking::break_overloaded)
                     .in_set(CoiloverSystems::Readout),
             )
                 // Without Rapier there is nothing to do. `check_schedule` has logged that.
-                .run_if(resource_exists::<TimestepMode>)
                 .run_if(crate::backend::rapier::setup::in_place),
         );
     }
+}
+
+/// Run condition: some entity passes the filter.
+fn any<F: ArchetypeFilter + 'static>(entities: Query<(), F>) -> bool {
+    !entities.is_empty()
 }
 
 /// Registers the types that a designer writes in scenes: elements and their companions.

@@ -100,10 +100,8 @@ impl Envelope {
             let own = self.row(row);
             let value = x[row] / own[row - first];
             x[row] = value;
-            let mut k = 0;
-            while k < row - first {
-                x[first + k] -= own[k] * value;
-                k += 1;
+            for (x, own) in x[first..row].iter_mut().zip(own) {
+                *x -= own * value;
             }
         }
     }

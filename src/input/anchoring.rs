@@ -3,11 +3,34 @@
 use crate::element::{Anchors, WorldAnchors};
 use crate::input::named_ends::MOST_LEVELS;
 use crate::input::parts::{Acts, Parts, PartsItem};
+use bevy::ecs::system::SystemState;
 use bevy::prelude::*;
+
+/// What is read and written to convert anchors.
+type Sources<'w, 's> = (
+    ParamSet<
+        'w,
+        's,
+        (
+            Query<'w, 's, (Parts, &'static WorldAnchors), (Acts, With<Anchors>)>,
+            Query<'w, 's, &'static mut Anchors>,
+        ),
+    >,
+    Query<'w, 's, &'static Transform>,
+    Query<'w, 's, &'static ChildOf>,
+    Commands<'w, 's>,
+);
 
 /// Converts [`WorldAnchors`] into [`Anchors`]. If an end does not exist yet, the component waits, and the element
 /// itself reports the missing end. It also waits for named ends, because the present ends may be those of earlier names.
-pub(crate) fn anchor(
+pub(crate) fn anchor(world: &mut World, sources: &mut SystemState<Sources>) {
+    if let Ok((elements, transforms, parents, commands)) = sources.get_mut(world) {
+        convert(elements, transforms, parents, commands);
+    }
+    sources.apply(world);
+}
+
+fn convert(
     mut elements: ParamSet<(
         Query<(Parts, &WorldAnchors), (Acts, With<Anchors>)>,
         Query<&mut Anchors>,

@@ -26,7 +26,8 @@ macro_rules! beside {
 
         type AnyBeside = Or<($(With<$kind>,)* $(With<$other_kind>,)*)>;
 
-        type ChangedBeside = Or<($(Changed<$kind>,)* $(Changed<$other_kind>,)*)>;
+        /// Filter: some component beside the element changed.
+        pub(crate) type ChangedBeside = Or<($(Changed<$kind>,)* $(Changed<$other_kind>,)*)>;
     };
 }
 with_companions!(beside);

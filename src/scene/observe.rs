@@ -12,7 +12,7 @@ use bevy::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Number of rows from which on several threads are worth their start-up time. Pinned by the benchmark `own/isolated`.
-const WORTH_SHARING: usize = 2048;
+pub(crate) const WORTH_SHARING: usize = 2048;
 
 /// Read access to the bodies after the step.
 struct Eyes<'a, W: Worlds> {
@@ -44,13 +44,13 @@ impl Scene {
             stale: AtomicBool::new(false),
         };
         if self.noting {
-            let each = share_of(self.bodies.len());
+            let each = share_of(self.bodies.len(), WORTH_SHARING);
             threads::share(self.bodies.chunks_mut(each), |rows| {
                 rows.iter_mut().for_each(|row| eyes.note(row));
             });
         }
         let (bodies, stepped) = (&self.bodies, &self.stepped);
-        let each = share_of(self.elements.len());
+        let each = share_of(self.elements.len(), WORTH_SHARING);
         threads::share(self.elements.chunks_mut(each), |rows| {
             for row in rows.iter_mut().filter(|row| row.is_seen(bodies, stepped)) {
                 row.observe(bodies, &eyes);
@@ -60,9 +60,9 @@ impl Scene {
     }
 }
 
-/// Number of rows in each piece of work, of `rows` in all.
-pub(crate) fn share_of(rows: usize) -> usize {
-    if rows < WORTH_SHARING {
+/// Number of rows in each piece of work, of `rows` in all. Several threads share the work from `worth` rows on.
+pub(crate) fn share_of(rows: usize, worth: usize) -> usize {
+    if rows < worth {
         return rows.max(1);
     }
     match threads::count() {

@@ -6,7 +6,7 @@ use crate::element::{
 };
 use crate::input::parts::{Acts, IsElement};
 use crate::readout::SpringReadout;
-use crate::scene::observe::share_of;
+use crate::scene::observe::{WORTH_SHARING, share_of};
 use crate::scene::report::{report, report_unresolved};
 use crate::scene::rows::{ElementFlags, ElementRow, take};
 use crate::scene::state::Scene;
@@ -89,7 +89,7 @@ impl Scene {
             rest = others;
             let (readouts, mut ticks) = ContiguousMut::bypass_change_detection_split(readouts);
             let (now, ticks) = (ticks.this_run(), ticks.changed_mut());
-            let each = share_of(count);
+            let each = share_of(count, WORTH_SHARING);
             let shown = readouts.chunks_mut(each).zip(ticks.chunks_mut(each));
             let pieces = rows.chunks(each).zip(entities.chunks(each)).zip(shown);
             threads::share(pieces, |((rows, entities), (readouts, ticks))| {

@@ -11,6 +11,7 @@ use crate::scene::still::{Stepped, Still};
 use bevy::ecs::change_detection::Tick;
 use bevy::ecs::entity::{EntityHashMap, EntityHashSet};
 use bevy::prelude::*;
+use std::sync::atomic::AtomicBool;
 
 /// The scene as the engine's step sees it. Each field is data that one stage of a step leaves for another. A stage
 /// borrows only the fields that it needs.
@@ -82,6 +83,8 @@ pub struct Scene {
     pub(crate) since: Option<Tick>,
     /// Whether Rapier's snapshot was restored since the last step, but the springs' snapshot not yet.
     pub(crate) engine_went_back: bool,
+    /// Whether there are changes that the scene has not been prepared for yet.
+    pub(crate) news: AtomicBool,
     /// Whether `disturbed` only tells what restoring Rapier's snapshot did, which the springs' snapshot takes into account.
     pub(crate) undisturbed: bool,
 }
@@ -111,6 +114,21 @@ impl Scene {
     pub(crate) fn awaits_step(&mut self) -> bool {
         self.awaited = self.awaited && self.elements.iter().any(ElementRow::awaits_step);
         self.awaited
+    }
+
+    /// Whether the rows need no preparation as long as nothing outside of the scene changes.
+    pub(crate) fn is_settled(&self) -> bool {
+        let unsettled = self.disturbed
+            || self.stale
+            || self.awaited
+            || self.renewed
+            || self.shifted
+            || self.since.is_some();
+        !unsettled
+            && self.touched.is_empty()
+            && self.changed.is_empty()
+            && self.followed.is_empty()
+            && self.faulty.is_empty()
     }
 
     /// Resets what belongs to the last step only, and counts the tick.

@@ -14,20 +14,23 @@ use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
 use bevy_rapier3d::rapier::dynamics::RigidBody as RapierBody;
 
+/// The components of Rapier's contexts that are needed to find ends.
+pub(crate) type Contexts<'w, 's> = Query<
+    'w,
+    's,
+    (
+        &'static mut RapierRigidBodySet,
+        &'static RapierContextColliders,
+        &'static RapierContextJoints,
+        &'static RapierContextSimulation,
+    ),
+>;
+
 /// Finds the ends of elements and checks them.
 #[derive(SystemParam)]
 pub(crate) struct RapierFinder<'w, 's> {
     pub(crate) ends: Ends<'w, 's>,
-    pub(crate) sets: Query<
-        'w,
-        's,
-        (
-            &'static mut RapierRigidBodySet,
-            &'static RapierContextColliders,
-            &'static RapierContextJoints,
-            &'static RapierContextSimulation,
-        ),
-    >,
+    pub(crate) sets: Contexts<'w, 's>,
     pub(crate) configurations: Query<'w, 's, &'static RapierConfiguration>,
 }
 

@@ -1,10 +1,13 @@
 //! Each body has one `ExternalForce` with two owners: the user and the elements. This file keeps their shares apart.
 
 use super::body;
+use super::find::Contexts;
 use crate::backend::{Push, Wrench};
-use crate::scene::rows::BodyFlags;
+use crate::scene::observe::share_of;
+use crate::scene::rows::{BodyFlags, BodyRow};
 use crate::scene::state::Scene;
 use crate::threads;
+use bevy::ecs::change_detection::ContiguousMut;
 use bevy::ecs::entity_disabling::Disabled;
 use bevy::ecs::query::Allow;
 use bevy::prelude::*;
@@ -33,6 +36,9 @@ pub struct SpringLoad {
     raised_iterations: bool,
 }
 
+/// Filter: disabled entities count too. Unlike `Allow`, it lets a query give whole tables.
+type WithDisabled = Or<(With<Disabled>, Without<Disabled>)>;
+
 /// Loads of bodies, including disabled bodies, whose share must be removed too.
 pub(crate) type Loads<'w, 's> = Query<
     'w,
@@ -42,23 +48,12 @@ pub(crate) type Loads<'w, 's> = Query<
         &'static mut SpringLoad,
         Option<&'static mut ExternalForce>,
     ),
-    Allow<Disabled>,
->;
-
-/// Loads of bodies whose `ExternalForce` changed since the last tick.
-pub(crate) type ChangedLoads<'w, 's> = Query<
-    'w,
-    's,
-    (Entity, &'static mut SpringLoad, &'static ExternalForce),
-    (Changed<ExternalForce>, Allow<Disabled>),
+    WithDisabled,
 >;
 
 /// Numbers of solver iterations that the user has given to bodies.
 pub(crate) type Iterations<'w, 's> =
     Query<'w, 's, (Entity, Ref<'static, AdditionalSolverIterations>)>;
-
-/// One item of [`Loads`].
-type LoadsItem<'a> = (Entity, Mut<'a, SpringLoad>, Option<Mut<'a, ExternalForce>>);
 
 /// Engine handles of bodies, including disabled bodies.
 pub(crate) type Handles<'w, 's> = Query<
@@ -137,27 +132,50 @@ impl SpringLoad {
 
     /// Writes the elements' share, and the sum of both shares to the component. The component is not marked as changed, because
     /// bevy_rapier would then write it to the engine again and keep the body awake for ever.
-    fn show(&mut self, elements: ExternalForce, component: Option<&mut Mut<ExternalForce>>) {
+    fn show(&mut self, elements: ExternalForce, component: Option<&mut ExternalForce>) {
         self.elements = elements;
         if let Some(component) = component {
-            *component.bypass_change_detection() = sum(&elements, &self.user);
+            *component = sum(&elements, &self.user);
+        }
+    }
+
+    /// Writes the share that elements gave to the body in the tick with this number, if they did.
+    #[inline(always)]
+    fn show_of(
+        &mut self,
+        entity: Entity,
+        bodies: &[BodyRow],
+        tick: u32,
+        component: Option<&mut ExternalForce>,
+    ) {
+        let row = bodies.get(self.slot).filter(|row| row.entity == entity);
+        if let Some((row, share)) = row.and_then(|row| Some((row, row.share(tick)?))) {
+            self.show(external(share), component);
+            self.raised_iterations |= row.has(BodyFlags::SECOND_SUBSTEP);
         }
     }
 }
 
 /// Reads what the user wrote since the last step. The engine wakes a body whose `ExternalForce` changes. The crate marks a body
 /// whose user's share changed as disturbed, so that its component wakes.
-pub(crate) fn read_users(scene: &mut Scene, mut changed: ChangedLoads) {
+pub(crate) fn read_users(scene: &mut Scene, loads: &mut Loads) {
     scene.loaded = false;
-    for (entity, mut load, component) in &mut changed {
-        let load = load.bypass_change_detection();
-        let new = load.read_user(component);
-        scene.loaded |= new;
-        if let Some(row) = scene.body(load.slot, entity) {
-            if new {
-                row.flags.insert(BodyFlags::DISTURBED);
+    for (entities, loads, components) in loads.contiguous_iter_mut().into_iter().flatten() {
+        let Some(components) = components else {
+            continue;
+        };
+        let (loads, _) = ContiguousMut::bypass_change_detection_split(loads);
+        let (components, ticks) = ContiguousMut::bypass_change_detection_split(components);
+        for (at, _) in ticks.is_changed_iter().enumerate().filter(|(_, new)| *new) {
+            let load = &mut loads[at];
+            let new = load.read_user(&components[at]);
+            scene.loaded |= new;
+            if let Some(row) = scene.body(load.slot, entities[at]) {
+                if new {
+                    row.flags.insert(BodyFlags::DISTURBED);
+                }
+                row.set_user(wrench(&load.user));
             }
-            row.set_user(wrench(&load.user));
         }
     }
 }
@@ -182,18 +200,26 @@ pub(crate) fn show(scene: &Scene, loads: &mut Loads) {
     if !scene.delivered {
         return;
     }
-    let (bodies, tick) = (&scene.bodies, scene.tick);
-    let show = |(entity, mut load, mut component): LoadsItem| {
-        let row = bodies.get(load.slot).filter(|row| row.entity == entity);
-        if let Some((row, share)) = row.and_then(|row| Some((row, row.share(tick)?))) {
-            load.show(external(share), component.as_mut());
-            load.raised_iterations |= row.has(BodyFlags::SECOND_SUBSTEP);
-        }
-    };
-    if bodies.len() >= WORTH_SHARING && threads::count() > 1 {
-        loads.par_iter_mut().for_each(show);
-    } else {
-        loads.iter_mut().for_each(show);
+    let (bodies, tick) = (&scene.bodies[..], scene.tick);
+    for (entities, loads, components) in loads.contiguous_iter_mut().into_iter().flatten() {
+        let (loads, _) = ContiguousMut::bypass_change_detection_split(loads);
+        let each = share_of(loads.len(), WORTH_SHARING);
+        let pieces = entities.chunks(each).zip(loads.chunks_mut(each));
+        let Some(components) = components else {
+            threads::share(pieces, |(entities, loads)| {
+                for (entity, load) in entities.iter().zip(loads) {
+                    load.show_of(*entity, bodies, tick, None);
+                }
+            });
+            continue;
+        };
+        let (components, _) = ContiguousMut::bypass_change_detection_split(components);
+        let pieces = pieces.zip(components.chunks_mut(each));
+        threads::share(pieces, |((entities, loads), components)| {
+            for ((entity, load), component) in entities.iter().zip(loads).zip(components) {
+                load.show_of(*entity, bodies, tick, Some(component));
+            }
+        });
     }
 }
 
@@ -211,7 +237,7 @@ pub(crate) fn release(
     scene: &mut Scene,
     loads: &mut Loads,
     handles: &Handles,
-    sets: &mut Query<&mut RapierRigidBodySet>,
+    contexts: &mut Contexts,
     commands: &mut Commands,
 ) {
     for (entity, mut load, mut component) in loads {
@@ -219,12 +245,13 @@ pub(crate) fn release(
             continue;
         }
         if let Ok((handle, link)) = handles.get(entity)
-            && let Ok(mut set) = sets.get_mut(link.0)
+            && let Ok((mut set, ..)) = contexts.get_mut(link.0)
             && let Some(body) = set.bodies.get_mut(handle.0)
         {
             let nothing = ExternalForce::default();
             body::give(body, &Push::default(), &wrench(&load.user));
-            load.show(nothing, component.as_mut());
+            let component = component.as_mut().map(Mut::bypass_change_detection);
+            load.show(nothing, component);
             if load.raised_iterations && body.additional_solver_iterations() == 1 {
                 body.set_additional_solver_iterations(0);
             }

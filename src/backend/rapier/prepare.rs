@@ -3,34 +3,55 @@
 
 use crate::backend::rapier::body::handle;
 use crate::backend::rapier::find::RapierFinder;
-use crate::backend::rapier::forces::{SpringLoad, wrench};
-use crate::backend::rapier::setup::Timesteps;
+use crate::backend::rapier::forces::{self, Handles, Loads, SpringLoad, wrench};
 use crate::backend::rapier::watch::Watch;
 use crate::input::companions::Companions;
 use crate::input::parts::{Acts, ChangedParts, Parts};
 use crate::scene::refresh::{refresh, still_computed, still_faulty};
 use crate::scene::state::Scene;
 use bevy::ecs::bundle::NoBundleEffect;
+use bevy::ecs::system::SystemState;
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
 
+/// What is read and written to prepare a step.
+type Sources<'w, 's> = (
+    ResMut<'w, Scene>,
+    Query<'w, 's, Parts, Acts>,
+    Query<'w, 's, Entity, ChangedParts>,
+    RapierFinder<'w, 's>,
+    ParamSet<'w, 's, (Entering<'w, 's>, Loads<'w, 's>)>,
+    Handles<'w, 's>,
+    Watch<'w, 's>,
+    Companions<'w, 's>,
+    Commands<'w, 's>,
+);
+
 /// Finds elements, their ends, and the bodies on which they act.
-pub(crate) fn prepare(
+pub(crate) fn prepare(world: &mut World, sources: &mut SystemState<Sources>) {
+    if let Ok((scene, elements, changed, finder, loads, handles, watch, companions, commands)) =
+        sources.get_mut(world)
+    {
+        look(
+            scene, elements, changed, finder, loads, handles, watch, companions, commands,
+        );
+    }
+    sources.apply(world);
+}
+
+fn look(
     mut scene: ResMut<Scene>,
     elements: Query<Parts, Acts>,
     changed: Query<Entity, ChangedParts>,
     mut finder: RapierFinder,
-    mut loads: Query<
-        (Option<&mut SpringLoad>, Option<&ExternalForce>),
-        With<RapierRigidBodyHandle>,
-    >,
+    mut loads: ParamSet<(Entering, Loads)>,
+    handles: Handles,
     mut watch: Watch,
-    mut timesteps: Timesteps,
     mut companions: Companions,
     mut commands: Commands,
 ) {
-    timesteps.check();
     let scene = &mut *scene;
+    *scene.news.get_mut() = false;
     let mut same = !watch.saw_change(scene);
     same &= !std::mem::take(&mut scene.stale);
     companions.look(scene.since.take(), scene.touched.drain(..));
@@ -60,20 +81,33 @@ pub(crate) fn prepare(
             awaiting.all(|row| still_computed(row, &elements, &companions, &mut finder, modified));
     }
     scene.renewed = !same || (scene.renewed && scene.time <= 0.0);
-    if same {
-        return;
+    if !same {
+        scene.renew(&elements, &companions, &mut finder, modified, &mut commands);
+        enter_loads(scene, &mut loads.p0(), &finder, &mut commands);
     }
-    scene.renew(&elements, &companions, &mut finder, modified, &mut commands);
-    enter_loads(scene, &mut loads, &finder, &mut commands);
+    if scene.renewed {
+        let mut loads = loads.p1();
+        forces::read_users(scene, &mut loads);
+        let sets = &mut finder.sets;
+        forces::release(scene, &mut loads, &handles, sets, &mut commands);
+    }
 }
+
+/// Loads and forces of bodies in the engine.
+type Entering<'w, 's> = Query<
+    'w,
+    's,
+    (
+        Option<&'static mut SpringLoad>,
+        Option<&'static ExternalForce>,
+    ),
+    With<RapierRigidBodyHandle>,
+>;
 
 /// Gives each body on which elements act its `SpringLoad` and `ExternalForce`, and reads the user's share of the force.
 fn enter_loads(
     scene: &mut Scene,
-    loads: &mut Query<
-        (Option<&mut SpringLoad>, Option<&ExternalForce>),
-        With<RapierRigidBodyHandle>,
-    >,
+    loads: &mut Entering,
     finder: &RapierFinder,
     commands: &mut Commands,
 ) {

@@ -1,20 +1,19 @@
 //! Checks the set-up of plugins, schedule and timestep. For each mistake it logs one message that says what to change.
 
 use crate::settings::CoiloverSettings;
-use bevy::ecs::schedule::{ScheduleLabel, Schedules};
+use bevy::ecs::schedule::Schedules;
 use bevy::ecs::system::SystemParam;
 use bevy::prelude::*;
 use bevy_rapier3d::plugin::systems;
 use bevy_rapier3d::prelude::*;
+use std::any::Any;
 
-/// Mistakes that have been found and reported.
+/// The mistake in the set-up that [`check_schedule`] has found and reported.
 #[derive(Resource, Default)]
 pub(crate) struct Watched {
     /// Whether the engine is missing or does not step in the crate's schedule. Then the crate must do nothing, because impulses
     /// would accumulate without a step.
     misplaced: bool,
-    variable: bool,
-    mismatch: bool,
 }
 
 /// Checks that Rapier is present and steps in the crate's schedule.
@@ -54,40 +53,47 @@ pub(crate) fn check_schedule(
 }
 
 /// Whether Rapier is present and steps in the crate's schedule, according to [`check_schedule`].
-pub(crate) fn in_place(watched: Res<Watched>) -> bool {
-    !watched.misplaced
+pub(crate) fn in_place(watched: Res<Watched>, mode: Option<Res<TimestepMode>>) -> bool {
+    !watched.misplaced && mode.is_some()
+}
+
+/// Mistakes in the timesteps that have been reported.
+#[derive(Default)]
+pub(crate) struct Told {
+    variable: bool,
+    mismatch: bool,
 }
 
 /// The timesteps of the engine and of the schedule.
 #[derive(SystemParam)]
-pub(crate) struct Timesteps<'w> {
-    mode: Res<'w, TimestepMode>,
-    settings: Res<'w, CoiloverSettings>,
+pub(crate) struct Timesteps<'w, 's> {
+    pub(crate) mode: Res<'w, TimestepMode>,
+    pub(crate) settings: Res<'w, CoiloverSettings>,
     fixed: Option<Res<'w, Time<Fixed>>>,
-    watched: ResMut<'w, Watched>,
+    told: Local<'s, Told>,
 }
 
-impl Timesteps<'_> {
+impl Timesteps<'_, '_> {
     /// Warns once if the engine's timestep does not fit the schedule's.
     pub(crate) fn check(&mut self) {
+        // Compared by type, because to intern a label takes longer than all else here.
+        let schedule: &dyn Any = &*self.settings.schedule;
         let fixed = self.fixed.as_ref();
-        let Some(fixed) = fixed.filter(|_| self.settings.schedule == FixedUpdate.intern()) else {
+        let Some(fixed) = fixed.filter(|_| schedule.is::<FixedUpdate>()) else {
             return;
         };
         let tick = fixed.timestep().as_secs_f32();
-        let watched = &mut self.watched;
+        let told = &mut self.told;
         match *self.mode {
-            TimestepMode::Variable { .. } if !watched.variable => {
-                watched.variable = true;
+            TimestepMode::Variable { .. } if !told.variable => {
+                told.variable = true;
                 log::warn!(
                     "bevy_coilover: TimestepMode::Variable in FixedUpdate ties the physics to max_dt; \
                  insert TimestepMode::Fixed {{ dt: {tick}, substeps: 1 }} instead"
                 );
             }
-            TimestepMode::Fixed { dt, .. }
-                if !watched.mismatch && (dt - tick).abs() > 1e-3 * tick =>
-            {
-                watched.mismatch = true;
+            TimestepMode::Fixed { dt, .. } if !told.mismatch && (dt - tick).abs() > 1e-3 * tick => {
+                told.mismatch = true;
                 log::warn!(
                     "bevy_coilover: TimestepMode::Fixed steps {dt} s while FixedUpdate ticks every \
                  {tick} s, so physics runs {:.2} times as fast as time; set both alike, for \

@@ -1,14 +1,14 @@
 //! The system that computes all elements before the engine's step: held components first, then free ones.
 
 use super::body::{Bodies, handle, id, led};
+use super::setup::Timesteps;
 use super::timestep;
 use crate::backend::StepPlan;
-use crate::backend::rapier::forces::{self, ChangedLoads, Handles, Iterations, Loads};
+use crate::backend::rapier::forces::{self, Iterations, Loads};
 use crate::backend::rapier::held::{EngineParts, Solver, View, give_back, remove};
 use crate::scene::free;
 use crate::scene::state::Scene;
 use crate::scene::step::Step;
-use crate::settings::CoiloverSettings;
 use bevy::ecs::entity::Entities;
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
@@ -17,6 +17,7 @@ use bevy_rapier3d::rapier::dynamics::IntegrationParameters;
 /// The components of a Rapier context that the step needs.
 type ContextParts<'a> = (
     Entity,
+    Option<&'a mut RapierRigidBodySet>,
     &'a mut RapierContextSimulation,
     &'a mut RapierContextColliders,
     &'a mut RapierContextJoints,
@@ -34,30 +35,25 @@ pub(crate) struct Spare {
 /// Computes the forces of all elements for the coming engine step and gives them to the engine.
 pub(crate) fn solve(
     mut scene: ResMut<Scene>,
-    settings: Res<CoiloverSettings>,
-    mode: Res<TimestepMode>,
+    mut timesteps: Timesteps,
     time: Res<Time>,
     mut contexts: Query<ContextParts>,
-    mut sets: Query<&mut RapierRigidBodySet>,
-    mut loads: ParamSet<(ChangedLoads, Loads)>,
-    handles: Handles,
+    mut loads: Loads,
     users: Iterations,
     entities: &Entities,
     mut spare: Local<Spare>,
-    mut commands: Commands,
 ) {
+    timesteps.check();
     let scene = &mut *scene;
-    forces::read_users(scene, loads.p0());
-    let mut loads = loads.p1();
+    forces::read_users(scene, &mut loads);
     forces::read_iterations(scene, &users, &mut loads);
-    if scene.renewed {
-        forces::release(scene, &mut loads, &handles, &mut sets, &mut commands);
-    }
     scene.begin();
     scene.forget_worlds(|context| entities.contains(context));
-    for (context, mut simulation, mut colliders, mut joints, configuration, lag) in &mut contexts {
+    for (context, set, mut simulation, mut colliders, mut joints, configuration, lag) in
+        &mut contexts
+    {
         let parameters = &simulation.integration_parameters;
-        let plan = timestep::plan(*mode, time.delta_secs(), lag.diff, parameters);
+        let plan = timestep::plan(*timesteps.mode, time.delta_secs(), lag.diff, parameters);
         if plan.time <= 0.0 || !configuration.physics_pipeline_active {
             // Bodies may move while the context is not stepped, so its state is not known afterwards.
             scene.still.note(context, false);
@@ -65,15 +61,13 @@ pub(crate) fn solve(
             continue;
         }
         scene.note_step(context, plan.time);
-        let Ok(mut set) = sets.get_mut(context) else {
-            continue;
-        };
+        let Some(mut set) = set else { continue };
         scene.note_led(context, &plan, &set);
         let Some(quiet) = scene.is_to_step(context, &simulation, &set) else {
             continue;
         };
         let simulation = &mut *simulation;
-        let mut step = Step::new(plan, &settings, quiet, scene.tick);
+        let mut step = Step::new(plan, &timesteps.settings, quiet, scene.tick);
         let mut engine = EngineParts {
             bodies: &mut set.bodies,
             joints: &mut joints,

@@ -1,12 +1,15 @@
 //! Detects changes of the scene other than changed parameters: bodies that appear, disappear or change their kind, and removed
 //! components.
 //!
-//! Observers detect what appears and disappears, so a tick without such changes costs nothing.
+//! Observers detect what appears and disappears, so a tick without such changes costs nothing. The rest is looked at by
+//! [`any_news`], so that a tick without news skips the preparation.
 
 use crate::backend::rapier::forces::SpringLoad;
 use crate::compat::{Inserted, Removed};
 use crate::element::*;
+use crate::input::companions::ChangedBeside;
 use crate::input::lists::{with_companions, with_elements};
+use crate::input::parts::{Acts, ChangedParts};
 use crate::scene::state::Scene;
 use bevy::ecs::entity::EntityHashSet;
 use bevy::ecs::entity_disabling::Disabled;
@@ -15,6 +18,7 @@ use bevy::ecs::query::Allow;
 use bevy::ecs::system::SystemParam;
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
+use std::sync::atomic::Ordering;
 
 /// Detects bodies whose kind or mass changed.
 #[derive(SystemParam)]
@@ -34,6 +38,34 @@ impl Watch<'_, '_> {
         changed |= self.mass_modified.iter().any(is_loaded);
         changed | std::mem::take(&mut scene.disturbed)
     }
+}
+
+/// What can tell that [`prepare`](super::prepare::prepare) has something to look at.
+#[derive(SystemParam)]
+pub(crate) struct News<'w, 's> {
+    elements: Query<'w, 's, (), Acts>,
+    parts: Query<'w, 's, (), ChangedParts>,
+    beside: Query<'w, 's, (), ChangedBeside>,
+    bodies: Query<'w, 's, (), (Changed<RigidBody>, Allow<Disabled>)>,
+    /// None without Rapier.
+    masses: Option<MessageReader<'w, 's, MassModifiedEvent>>,
+}
+
+/// Run condition: something has changed since the scene was last prepared, or has to be looked at in every tick. Preparing
+/// would find nothing otherwise.
+pub(crate) fn any_news(scene: Res<Scene>, mut news: News) -> bool {
+    let masses = news.masses.as_mut().map(|masses| masses.read().count());
+    let seen = masses.is_some_and(|count| count > 0)
+        || !scene.is_settled()
+        || news.elements.iter().len() != scene.elements.len()
+        || !news.parts.is_empty()
+        || !news.beside.is_empty()
+        || !news.bodies.is_empty();
+    if seen {
+        // Kept until the scene is prepared, which another condition may prevent in this tick.
+        scene.news.store(true, Ordering::Relaxed);
+    }
+    seen || scene.news.load(Ordering::Relaxed)
 }
 
 /// Adds the observers to an app.

@@ -180,6 +180,13 @@ impl<S: Simd> Vectors<S> {
         self.dot(self).sqrt()
     }
 
+    /// The greatest magnitude of a component.
+    #[inline(always)]
+    fn largest(self) -> Four<S> {
+        let [x, y, z] = self.0;
+        x.abs().max(y.abs()).max(z.abs())
+    }
+
     /// Rounded to single precision.
     #[inline(always)]
     pub(super) fn rounded(self) -> Self {
@@ -195,10 +202,6 @@ impl<S: Simd> Vectors<S> {
 /// Distance up to which two points count as coincident, m; see [`crate::dynamics::element::rounding`].
 #[inline(always)]
 pub(super) fn rounding<S: Simd>(simd: S, a: Vectors<S>, b: Vectors<S>) -> Four<S> {
-    let largest = |v: Vectors<S>| {
-        let [x, y, z] = v.0;
-        x.abs().max(y.abs()).max(z.abs())
-    };
-    let all = |number| Four::all(simd, number);
-    all(1e-9) * largest(a).max(largest(b)).max(all(1e-3))
+    let least = Four::all(simd, 1e-3);
+    Four::all(simd, 1e-9) * a.largest().max(b.largest()).max(least)
 }
