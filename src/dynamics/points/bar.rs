@@ -1,6 +1,6 @@
 //! One element within a kick. The formulas are those of [`crate::dynamics::network`].
 
-use super::{Exchanged, Line, Point, Wire};
+use super::{Exchanged, Line, State, Wire};
 use crate::dynamics::line;
 use crate::dynamics::network::{REVERSES, damper_placement, settling, together};
 use bevy::math::DVec3;
@@ -45,8 +45,8 @@ impl Bar {
     /// Relative acceleration of the ends.
     #[inline(always)]
     pub(super) fn relative(&self, x: &[DVec3]) -> DVec3 {
-        let [a, b] = self.ends.map(|end| x[end as usize]);
-        b - a
+        let [a, b] = self.ends;
+        x[b as usize] - x[a as usize]
     }
 }
 
@@ -97,8 +97,9 @@ impl Load {
         [relative, force]: [DVec3; 2],
         step: f64,
     ) {
-        let moved = led.map(|velocity| velocity.is_some_and(|velocity| velocity != DVec3::ZERO));
-        if self.damping == 0.0 && moved == [false; 2] {
+        let [a, b] = led.each_ref();
+        let is_moved = |velocity: &Option<DVec3>| velocity.is_some_and(|v| v != DVec3::ZERO);
+        if self.damping == 0.0 && !is_moved(a) && !is_moved(b) {
             return;
         }
         let gained = relative.dot(bar.direction);
@@ -116,23 +117,23 @@ impl Wire {
     /// c h/m that places its damper in the step, where its own is `own`. `damping` is that of all elements at each end over its
     /// mass, 1/s.
     #[inline(always)]
-    fn braked(&self, own: f64, ends: [&Point; 2], damping: [f64; 2], step: f64) -> f64 {
+    fn braked(&self, own: f64, inverse_masses: [f64; 2], damping: [f64; 2], step: f64) -> f64 {
         // The sums count the element too. Most are so small that its share in them does not matter.
         if own + step * damping[0].max(damping[1]) <= REVERSES {
             return own;
         }
-        let shares = self.shares(ends);
+        let shares = Self::shares(inverse_masses);
         let others = [0, 1].map(|end| damping[end] - self.damping * shares[end]);
         together(own, step * others[0].max(others[1]).max(0.0))
     }
 
-    /// Its part in a kick. `stiffness` (1/s²) and `damping` (1/s) are those of all elements at each of its two ends, over the
-    /// mass there. An element without a direction adds nothing.
+    /// Its part in a kick. `sums` are stiffness (1/s²) and damping (1/s) of all elements at each of its ends, over the mass there.
+    /// An element without a direction adds nothing.
     #[inline(always)]
     pub(super) fn measure(
         &self,
-        ends: [&Point; 2],
-        [stiffness, damping]: [[f64; 2]; 2],
+        points: &State,
+        sums: [[f64; 2]; 2],
         step: f64,
         theta: f64,
     ) -> (Bar, Load) {
@@ -141,11 +142,12 @@ impl Wire {
             ends: self.ends,
             ..Bar::default()
         };
-        let Some(Line { direction, length }) = self.line(ends) else {
+        let Some(Line { direction, length }) = self.line(points) else {
             return (bar, Load::default());
         };
-        let ([a, b], u, k) = (ends, direction, self.stiffness);
-        let velocity = b.velocity - a.velocity;
+        let (u, k) = (direction, self.stiffness);
+        let [a, b] = self.of(&points.velocities);
+        let velocity = b - a;
         let axial = velocity.dot(u);
         let lateral = velocity - axial * u;
         let lateral_square = lateral.length_squared();
@@ -156,7 +158,8 @@ impl Wire {
             ..Load::default()
         };
         load.turns = load.turning_at(lateral_square, step);
-        let settle = settling(h2 * stiffness[0].max(stiffness[1])) * step;
+        let [[stiffness_a, damping_a], [stiffness_b, damping_b]] = sums;
+        let settle = settling(h2 * stiffness_a.max(stiffness_b)) * step;
         let c = self.damping + settle * k;
         let rate = if c == 0.0 {
             0.0
@@ -167,9 +170,10 @@ impl Wire {
         };
         let elastic = k * (length - self.rest_length);
         let tension = elastic + c * rate;
-        let inverse_mass = a.inverse_mass + b.inverse_mass;
+        let inverse_masses = self.inverse_masses(points);
+        let inverse_mass = inverse_masses[0] + inverse_masses[1];
         let own = c * step * inverse_mass;
-        let braked = self.braked(own, ends, damping, step);
+        let braked = self.braked(own, inverse_masses, [damping_a, damping_b], step);
         load.damping = damper_placement(braked) * step * c;
         let across = if load.isotropic {
             k

@@ -1,7 +1,7 @@
 //! Continues a network of points from one step to the next without loading it again. If only the engine has moved it
 //! since, only the state of its points must be read.
 
-use super::{Exchanged, Point, Points, Wire};
+use super::{Exchanged, Points, State, Wire};
 use crate::dynamics::body::{Body, is_within};
 use crate::dynamics::element::{Element, End};
 use crate::threads::{PIECE, all, copy, each};
@@ -27,19 +27,6 @@ pub(crate) struct Flight {
     pub velocity: DVec3,
 }
 
-impl Point {
-    /// Places a body. Returns whether its mass is unchanged and its state is finite.
-    fn place(&mut self, at: &FreePoint) -> bool {
-        let is_same = self.inverse_mass == at.inverse_mass;
-        *self = Self {
-            acceleration: at.acceleration,
-            inverse_mass: at.inverse_mass,
-            ..Self::prescribed(at.position, at.velocity)
-        };
-        is_same && (at.position + at.velocity + at.acceleration).is_finite()
-    }
-}
-
 impl Points {
     /// Accelerations from which the iterations of the next solve start.
     pub(in crate::dynamics) fn solution(&self) -> &[DVec3] {
@@ -63,7 +50,9 @@ impl Points {
     pub(in crate::dynamics) fn begin(&mut self, budget: u32) {
         self.budget = budget;
         self.converged = true;
-        copy(&mut self.start, &self.points);
+        let [positions, velocities] = &mut self.start;
+        copy(positions, &self.points.positions);
+        copy(velocities, &self.points.velocities);
     }
 
     /// Prepares a network that continues from the last step for its next step.
@@ -77,37 +66,61 @@ impl Points {
     /// Places all bodies where the engine has moved them. Returns whether all masses are unchanged and all states are
     /// finite.
     pub(crate) fn place<'a>(&mut self, at: impl Fn(usize) -> &'a FreePoint + Sync) -> bool {
-        let pieces = self.points[..self.bodies].chunks_mut(PIECE).enumerate();
-        all(pieces, |(piece, points)| {
-            let first = piece * PIECE;
-            let mut places = points.iter_mut().zip(first..);
-            places.all(|(point, body)| point.place(at(body)))
+        let State {
+            bodies,
+            positions,
+            velocities,
+            accelerations,
+            inverse_masses,
+            given,
+        } = &mut self.points;
+        let moving = positions[..*bodies].chunks_mut(PIECE);
+        let moving = moving.zip(velocities[..*bodies].chunks_mut(PIECE));
+        let others = accelerations.chunks_mut(PIECE);
+        let others = others.zip(inverse_masses.chunks_mut(PIECE));
+        let pieces = moving.zip(others).zip(given.chunks_mut(PIECE)).enumerate();
+        all(pieces, |(piece, ((moving, others), given))| {
+            let ((positions, velocities), (accelerations, inverse_masses)) = (moving, others);
+            let mut sound = true;
+            for (i, given) in given.iter_mut().enumerate() {
+                let at = at(piece * PIECE + i);
+                sound &= inverse_masses[i] == at.inverse_mass
+                    && (at.position + at.velocity + at.acceleration).is_finite();
+                positions[i] = at.position;
+                velocities[i] = at.velocity;
+                accelerations[i] = at.acceleration;
+                inverse_masses[i] = at.inverse_mass;
+                *given = DVec3::ZERO;
+            }
+            sound
         })
     }
 
     /// Places an end that elements cannot move. `end` counts these ends in the order of the elements.
     pub(crate) fn place_end(&mut self, end: usize, position: DVec3, velocity: DVec3) {
-        let index = self.bodies + end;
-        self.points[index] = Point::prescribed(position, velocity);
+        let index = self.points.bodies + end;
+        self.points.positions[index] = position;
+        self.points.velocities[index] = velocity;
     }
 
     /// State of a body at the start of the step.
+    #[inline(always)]
     pub(crate) fn origin(&self, body: usize) -> FreePoint {
-        let start = &self.start[body];
+        let [positions, velocities] = &self.start;
         FreePoint {
-            position: start.position,
-            velocity: start.velocity,
-            acceleration: start.acceleration,
-            inverse_mass: start.inverse_mass,
+            position: positions[body],
+            velocity: velocities[body],
+            acceleration: self.points.accelerations[body],
+            inverse_mass: self.points.inverse_masses[body],
         }
     }
 
     /// Motion of a body over the step.
+    #[inline(always)]
     pub(crate) fn flight(&self, body: usize) -> Flight {
-        let (start, end) = (&self.start[body], &self.points[body]);
         Flight {
-            moved: end.position - start.position,
-            velocity: end.velocity,
+            moved: self.points.positions[body] - self.start[0][body],
+            velocity: self.points.velocities[body],
         }
     }
 
@@ -120,27 +133,37 @@ impl Points {
     /// Whether the engine can move all bodies as the step did, if it moves none farther than `farthest` (m) in `time`
     /// seconds.
     pub(in crate::dynamics) fn are_within(&self, farthest: f64, time: f64) -> bool {
-        let bodies = self.points[..self.bodies].chunks(PIECE);
-        all(bodies.zip(self.start.chunks(PIECE)), |(bodies, start)| {
-            bodies.iter().zip(start).all(|(end, start)| {
-                let by = end.position - start.position;
-                is_within(by, end.velocity, farthest / time, time)
+        let (points, bodies) = (&self.points, self.points.bodies);
+        let places = points.positions[..bodies].chunks(PIECE);
+        let places = places.zip(self.start[0].chunks(PIECE));
+        let pieces = places.zip(points.velocities[..bodies].chunks(PIECE));
+        all(pieces, |((positions, start), velocities)| {
+            let mut moves = positions.iter().zip(start).zip(velocities);
+            moves.all(|((position, start), velocity)| {
+                is_within(*position - *start, *velocity, farthest / time, time)
             })
         })
     }
 
     pub(in crate::dynamics) fn are_finite(&self) -> bool {
-        let finite = |point: &Point| (point.position + point.velocity).is_finite();
-        let bodies = self.points[..self.bodies].chunks(PIECE);
-        all(bodies, |bodies| bodies.iter().all(finite))
+        let (points, bodies) = (&self.points, self.points.bodies);
+        let positions = points.positions[..bodies].chunks(PIECE);
+        all(
+            positions.zip(points.velocities[..bodies].chunks(PIECE)),
+            |(positions, velocities)| {
+                let mut states = positions.iter().zip(velocities);
+                states.all(|(position, velocity)| (*position + *velocity).is_finite())
+            },
+        )
     }
 
     /// Resets bodies and elements to the start of the step. Steps on the points alone have left them out of date.
     pub(in crate::dynamics) fn restore(&self, elements: &mut [Element], bodies: &mut [Body]) {
-        for (body, point) in bodies.iter_mut().zip(&self.start) {
-            body.position = point.position;
-            body.velocity = point.velocity;
-            body.acceleration = point.acceleration;
+        for (i, body) in bodies.iter_mut().enumerate() {
+            let start = self.origin(i);
+            body.position = start.position;
+            body.velocity = start.velocity;
+            body.acceleration = start.acceleration;
             body.given = (DVec3::ZERO, DVec3::ZERO);
         }
         for (element, wire) in elements.iter_mut().zip(&self.wires) {
@@ -149,14 +172,15 @@ impl Points {
     }
 
     fn restore_element(&self, element: &mut Element, wire: &Wire) {
+        let [positions, velocities] = &self.start;
         for (end, index) in element.ends.iter_mut().zip(wire.ends) {
             if let End::Path(path) = end {
-                let start = &self.start[index as usize];
-                (path.position, path.velocity) = (start.position, start.velocity);
+                let index = index as usize;
+                (path.position, path.velocity) = (positions[index], velocities[index]);
             }
         }
         // The direction at the start of the step.
-        element.direction = wire.aimed(wire.of(&self.start)).try_normalize();
+        element.direction = wire.aimed(wire.of(positions)).try_normalize();
         (element.heat, element.work) = (0.0, 0.0);
     }
 }

@@ -1,15 +1,15 @@
-//! The kick of a network of points after the first half drift.
+//! The kick of a network of points between two half drifts.
 
 use super::bar::{Bar, Load, add};
 use super::parts::{Run, places};
 use super::solve::{Block, Solver};
-use super::{Point, Points};
+use super::{Points, State};
 use crate::dynamics::network::placement;
-use crate::threads::each;
+use crate::threads::{PIECE, share};
 use bevy::math::DVec3;
 
 impl Points {
-    /// Applies the kick of all elements and external forces together.
+    /// Applies the kick of all elements and external forces together. The second half drift follows at once.
     pub(super) fn kick(&mut self, step: f64) {
         let (z_max, _) = self.bounds(step);
         self.measure(step, placement(z_max));
@@ -19,17 +19,12 @@ impl Points {
         self.turn(step);
         self.solve();
         self.push(step, true);
-        let impulses = &self.impulses;
-        each(&mut self.points[..self.bodies], |at, point| {
-            let impulse = impulses[at];
-            point.given += impulse;
-            point.velocity += point.inverse_mass * impulse + step * point.acceleration;
-        });
+        self.arrive(step);
     }
 
     /// Computes the line of each element, its motion, and the linear system.
     pub(super) fn measure(&mut self, step: f64, theta: f64) {
-        let (points, bodies) = (&self.points[..], self.bodies);
+        let (points, bodies) = (&self.points, self.points.bodies);
         self.bars.resize(self.wires.len(), Bar::default());
         self.loads.resize(self.wires.len(), Load::default());
         self.impulses.resize(points.len(), DVec3::ZERO);
@@ -42,7 +37,7 @@ impl Points {
             image,
             ..
         } = &mut self.solver;
-        let (solution, sums) = (&solution[..], [&self.stiffness, &self.damping]);
+        let (solution, sums) = (&solution[..], &self.sums[..]);
         for stage in self.parts.stages() {
             let elements = (&self.wires[..], &mut self.bars[..], &mut self.loads[..]);
             let sides = (&mut right[..], &mut image[..]);
@@ -54,16 +49,16 @@ impl Points {
                     first,
                 } = run;
                 if stage.is_first() {
-                    for (i, point) in points[first..].iter().take(masses.len()).enumerate() {
-                        masses[i] = point.inverse_mass.recip();
-                        blocks[i] = Block::of_mass(masses[i]);
-                        right[i] = weight(point);
-                        image[i] = masses[i] * solution[first + i];
+                    for (i, mass) in masses.iter_mut().enumerate() {
+                        let body = first + i;
+                        *mass = points.inverse_masses[body].recip();
+                        blocks[i] = Block::of_mass(*mass);
+                        right[i] = weight(points, body);
+                        image[i] = *mass * solution[body];
                     }
                 }
                 for ((wire, bar), load) in wires.iter().zip(bars).zip(loads) {
-                    let sums = sums.map(|of| wire.ends.map(|end| of[end as usize]));
-                    (*bar, *load) = wire.measure(wire.of(points), sums, step, theta);
+                    (*bar, *load) = wire.measure(points, wire.of(sums), step, theta);
                     let (places, block) = (places(bar.ends, first), Block::of_bar(bar));
                     for place in places {
                         if let Some(own) = blocks.get_mut(place) {
@@ -86,12 +81,10 @@ impl Points {
     /// even if the solution is inexact. Angular momentum is too, as far as they act along the lines. For the `last`
     /// solution, also adds up the heat of dampers and the work of moving ends.
     fn push(&mut self, step: f64, last: bool) {
-        let (solution, bodies) = (&self.solver.solution[..], self.bodies);
-        let led = &self.points[bodies..];
-        let led = |end: u32| Some(led.get((end as usize).wrapping_sub(bodies))?.velocity);
+        let (points, solution) = (&self.points, &self.solver.solution[..]);
         for stage in self.parts.stages() {
             let elements = (&self.bars[..], &self.loads[..], &mut self.exchanged[..]);
-            let impulses = &mut self.impulses[..bodies];
+            let impulses = &mut self.impulses[..points.bodies];
             self.parts.pass(*stage, elements, impulses, |run| {
                 let Run {
                     elements: (bars, loads, exchanged),
@@ -106,7 +99,8 @@ impl Points {
                     let force = load.force(bar) + bar.answer(relative);
                     add(impulses, places(bar.ends, first), -step * force);
                     if last {
-                        load.account(bar, exchanged, bar.ends.map(led), [relative, force], step);
+                        let led = [points.led(bar.ends[0]), points.led(bar.ends[1])];
+                        load.account(bar, exchanged, led, [relative, force], step);
                     }
                 }
             });
@@ -116,7 +110,7 @@ impl Points {
     /// Computes how the lines turn with the impulses of the first solution, and the right side for the second one. What is left
     /// in place of the impulses are the velocities after the kick.
     fn turn(&mut self, step: f64) {
-        let (points, bodies) = (&self.points[..], self.bodies);
+        let (points, bodies) = (&self.points, self.points.bodies);
         let Solver {
             solution,
             masses,
@@ -136,29 +130,62 @@ impl Points {
                     first,
                 } = run;
                 if stage.is_first() {
-                    for (i, point) in points[first..].iter().take(masses.len()).enumerate() {
-                        let gained = point.inverse_mass * after[i] + step * point.acceleration;
-                        after[i] = point.velocity + gained;
-                        right[i] = weight(point);
-                        image[i] = masses[i] * solution[first + i];
+                    for (i, mass) in masses.iter().enumerate() {
+                        let body = first + i;
+                        let kicked = points.inverse_masses[body] * after[i];
+                        let pulled = step * points.accelerations[body];
+                        after[i] = points.velocities[body] + kicked + pulled;
+                        right[i] = weight(points, body);
+                        image[i] = *mass * solution[body];
                     }
                 }
                 for (bar, load) in bars.iter().zip(loads) {
                     let places = places(bar.ends, first);
-                    let [a, b] = [0, 1].map(|end| match after.get(places[end]) {
+                    let velocity = |end: usize| match after.get(places[end]) {
                         Some(velocity) => *velocity,
-                        None => points[bar.ends[end] as usize].velocity,
-                    });
-                    load.turn(bar, b - a, step);
+                        None => points.velocities[bar.ends[end] as usize],
+                    };
+                    load.turn(bar, velocity(1) - velocity(0), step);
                     add(right, places, -load.force(bar));
                     add(image, places, bar.answer(bar.relative(solution)));
                 }
             });
         }
     }
+
+    /// Gives the bodies the impulses, and moves all points on by half a step.
+    fn arrive(&mut self, step: f64) {
+        let State {
+            bodies,
+            positions,
+            velocities,
+            accelerations,
+            inverse_masses,
+            given,
+        } = &mut self.points;
+        let (positions, led_positions) = positions.split_at_mut(*bodies);
+        let (velocities, led_velocities) = velocities.split_at_mut(*bodies);
+        let impulses = &self.impulses;
+        let moving = positions
+            .chunks_mut(PIECE)
+            .zip(velocities.chunks_mut(PIECE));
+        let pieces = moving.zip(given.chunks_mut(PIECE)).enumerate();
+        share(pieces, |(piece, ((positions, velocities), given))| {
+            for (i, given) in given.iter_mut().enumerate() {
+                let at = piece * PIECE + i;
+                *given += impulses[at];
+                velocities[i] += inverse_masses[at] * impulses[at] + step * accelerations[at];
+                positions[i] += step / 2.0 * velocities[i];
+            }
+        });
+        for (position, velocity) in led_positions.iter_mut().zip(led_velocities) {
+            *position += step / 2.0 * *velocity;
+        }
+    }
 }
 
 /// External force on a body, N.
-fn weight(point: &Point) -> DVec3 {
-    point.acceleration / point.inverse_mass
+#[inline(always)]
+fn weight(points: &State, body: usize) -> DVec3 {
+    points.accelerations[body] / points.inverse_masses[body]
 }

@@ -65,7 +65,11 @@ pub(super) struct Run<E, B> {
 /// not a body has a place beyond all of them.
 #[inline(always)]
 pub(super) fn places(ends: [u32; 2], first: usize) -> [usize; 2] {
-    ends.map(|end| (end as usize).wrapping_sub(first))
+    let [a, b] = ends;
+    [
+        (a as usize).wrapping_sub(first),
+        (b as usize).wrapping_sub(first),
+    ]
 }
 
 /// Lists that are divided at the same place.

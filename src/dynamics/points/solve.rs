@@ -129,14 +129,11 @@ impl Solver {
         let sides = self.right.chunks(PIECE).zip(self.image.chunks(PIECE));
         let vectors = self.residual.chunks_mut(PIECE);
         let vectors = vectors.zip(self.preconditioned.chunks_mut(PIECE));
-        let vectors = vectors.zip(self.search.chunks_mut(PIECE));
         let pieces = self.starts.iter_mut().zip(self.blocks.chunks(PIECE));
         let pieces = pieces.zip(sides).zip(vectors);
         share(
             pieces,
-            |(((sums, blocks), (right, image)), ((residual, preconditioned), search))| {
-                // The last search direction may not be finite, so it must not get into this solve.
-                search.fill(DVec3::ZERO);
+            |(((sums, blocks), (right, image)), (residual, preconditioned))| {
                 for (i, block) in blocks.iter().enumerate() {
                     let (b, r) = (right[i], right[i] - image[i]);
                     let z = block.times(r);
@@ -179,16 +176,18 @@ impl Iterated for Running<'_> {
                     bodies: ((masses, z), x, y),
                     first,
                 } = run;
+                let y = &mut y[..x.len()];
                 if stage.is_first() {
                     for (((x, y), z), mass) in x.iter_mut().zip(&mut *y).zip(z).zip(masses) {
-                        *x = keep * *x + *z;
+                        // The last direction of an earlier solve may not be finite.
+                        *x = if keep == 0.0 { *z } else { keep * *x + *z };
                         *y = *mass * *x;
                     }
                 }
                 for bar in bars {
                     let places = places(bar.ends, first);
-                    let [a, b] = places.map(|at| x.get(at).copied().unwrap_or(DVec3::ZERO));
-                    add(y, places, bar.answer(b - a));
+                    let value = |at: usize| x.get(at).copied().unwrap_or(DVec3::ZERO);
+                    add(y, places, bar.answer(value(places[1]) - value(places[0])));
                 }
                 if stage.is_last() {
                     *sum = x.iter().zip(y).map(|(x, y)| x.dot(*y)).sum();

@@ -1,9 +1,10 @@
 //! Measures the energy of a network of points for its [bound](crate::dynamics::bound).
 
-use super::{Point, Points, Wire};
+use super::{Line, Points, State, Wire};
 use crate::dynamics::energy::Energy;
 use crate::threads::{PIECE, share};
 use bevy::math::DVec3;
+use std::ops::Range;
 
 /// Relative rounding error of the engine's f32.
 const UNIT: f64 = f32::EPSILON as f64;
@@ -27,18 +28,24 @@ impl Survey {
         self.power += other.power;
     }
 
-    #[inline(always)]
-    fn add_body(&mut self, point: &Point) {
-        let mass = point.inverse_mass.recip();
-        let motion = 0.5 * mass * point.velocity.length_squared();
-        self.energy.motion += motion;
-        self.energy.place -= mass * point.acceleration.dot(point.position);
-        self.rounding += 2.0 * UNIT * motion;
+    /// Adds the bodies in a range of indices.
+    fn add_bodies(&mut self, points: &State, range: Range<usize>) {
+        let moving = points.positions[range.clone()].iter();
+        let moving = moving.zip(&points.velocities[range.clone()]);
+        let pulled = points.accelerations[range.clone()].iter();
+        let pulled = pulled.zip(&points.inverse_masses[range]);
+        for ((position, velocity), (acceleration, inverse_mass)) in moving.zip(pulled) {
+            let mass = inverse_mass.recip();
+            let motion = 0.5 * mass * velocity.length_squared();
+            self.energy.motion += motion;
+            self.energy.place -= mass * acceleration.dot(*position);
+            self.rounding += 2.0 * UNIT * motion;
+        }
     }
 
     #[inline(always)]
-    fn add_wire(&mut self, wire: &Wire, ends: [&Point; 2]) {
-        let Some(line) = wire.line(ends) else {
+    fn add_wire(&mut self, wire: &Wire, points: &State) {
+        let Some(line) = wire.line(points) else {
             // Stored energy at zero length.
             self.energy.stored += 0.5 * wire.stiffness * wire.rest_length.powi(2);
             return;
@@ -46,14 +53,23 @@ impl Survey {
         let stretch = line.length.abs() - wire.rest_length;
         self.energy.stored += 0.5 * wire.stiffness * stretch * stretch;
         // Rounding in four substeps at two ends.
-        let reach = ends[0].position.abs().max(ends[1].position.abs());
-        let off = 8.0 * UNIT * reach.max_element();
+        let [a, b] = wire.of(&points.positions);
+        let off = 8.0 * UNIT * a.abs().max(b.abs()).max_element();
         let force = wire.stiffness * (line.length - wire.rest_length);
         self.rounding += off * (force.abs() + wire.stiffness * off);
-        for end in ends {
-            if end.inverse_mass == 0.0 && end.velocity != DVec3::ZERO {
-                let rate = (ends[1].velocity - ends[0].velocity).dot(line.direction);
-                self.power += wire.tension(line.length, rate).abs() * end.velocity.length();
+        let [a, b] = wire.ends;
+        if points.is_led(a) || points.is_led(b) {
+            self.add_power(wire, &line, points);
+        }
+    }
+
+    #[cold]
+    fn add_power(&mut self, wire: &Wire, line: &Line, points: &State) {
+        let [a, b] = wire.of(&points.velocities);
+        let tension = wire.tension(line.length, (b - a).dot(line.direction));
+        for led in wire.ends.into_iter().filter_map(|end| points.led(end)) {
+            if led != DVec3::ZERO {
+                self.power += tension.abs() * led.length();
             }
         }
     }
@@ -61,23 +77,21 @@ impl Survey {
 
 impl Points {
     pub(in crate::dynamics) fn survey(&mut self) -> Survey {
-        let (points, bodies) = (&self.points, &self.points[..self.bodies]);
-        let (of_bodies, of_wires) = (
-            bodies.len().div_ceil(PIECE),
-            self.wires.len().div_ceil(PIECE),
-        );
+        let points = &self.points;
+        let bodies = points.bodies.div_ceil(PIECE);
+        let pieces = bodies + self.wires.len().div_ceil(PIECE);
         self.surveys.clear();
-        self.surveys.resize(of_bodies + of_wires, Survey::default());
-        let (of_bodies, of_wires) = self.surveys.split_at_mut(of_bodies);
-        share(
-            of_bodies.iter_mut().zip(bodies.chunks(PIECE)),
-            |(survey, bodies)| bodies.iter().for_each(|body| survey.add_body(body)),
-        );
+        self.surveys.resize(pieces, Survey::default());
+        let (of_bodies, of_wires) = self.surveys.split_at_mut(bodies);
+        share(of_bodies.iter_mut().enumerate(), |(piece, survey)| {
+            let first = piece * PIECE;
+            survey.add_bodies(points, first..points.bodies.min(first + PIECE));
+        });
         share(
             of_wires.iter_mut().zip(self.wires.chunks(PIECE)),
             |(survey, wires)| {
                 for wire in wires {
-                    survey.add_wire(wire, wire.of(points));
+                    survey.add_wire(wire, points);
                 }
             },
         );
