@@ -5,6 +5,7 @@
 
 use super::body::Body;
 use super::element::{Element, End};
+use super::line::Line;
 use bevy::math::DVec3;
 
 /// c h/m from which on the energy of an element is checked.
@@ -18,9 +19,14 @@ pub(crate) struct Guard {
 
 impl Guard {
     /// Begins the check if the element is strongly damped, no user's torque acts on its bodies, and no end with prescribed
-    /// motion turns. Torques and turning ends do work that is not accounted for here.
-    pub(crate) fn begin(element: &Element, bodies: &[Body], step: f64) -> Option<Self> {
-        let line = element.line(bodies)?;
+    /// motion turns. Torques and turning ends do work that is not accounted for here. `line` is the element's.
+    pub(crate) fn begin(
+        element: &Element,
+        bodies: &[Body],
+        line: Option<&Line>,
+        step: f64,
+    ) -> Option<Self> {
+        let line = line?;
         let known = bodies.iter().all(|b| b.torque == DVec3::ZERO);
         let turns = |end: &End| matches!(end, End::Path(path) if path.turning != DVec3::ZERO);
         let known = known && !element.ends.iter().any(turns);

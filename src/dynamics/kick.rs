@@ -152,30 +152,27 @@ pub(crate) enum Map {
 /// time-symmetric and has no energy drift.
 pub(crate) fn map_velocity(
     element: &Element,
+    line: &Line,
     bodies: &mut [Body],
     step: f64,
     map: Map,
     memo: &mut Memo,
 ) {
-    let Some(line) = element.line(bodies) else {
-        return;
-    };
     if line.inverse_mass <= 0.0 {
         return;
     }
-    let [z, g] = numbers(element, &line, step);
+    let [z, g] = numbers(element, line, step);
     let [speed, skew] = memo.of_map(z, g);
     let motion = line.motion(element, bodies, step);
-    let residual_acceleration =
-        residual_acceleration(element, &line, line.length, motion.outside());
+    let residual_acceleration = residual_acceleration(element, line, line.length, motion.outside());
     let offset = skew * step * residual_acceleration;
     let mapped = match map {
         Map::ToStepped => (motion.axial - offset) / speed,
         Map::ToTrue => speed * motion.axial + offset,
     };
     line.push(bodies, (mapped - motion.axial) / line.inverse_mass);
-    if swings_across(&line, bodies) {
-        map_lateral(bodies, &line, &motion, map, z, &memo.poles(z, g));
+    if swings_across(line, bodies) {
+        map_lateral(bodies, line, &motion, map, z, &memo.poles(z, g));
     }
 }
 

@@ -8,6 +8,7 @@ use super::excited::spread;
 use super::guard::Guard;
 use super::guide::Guide;
 use super::kick::{self, Map, Memo};
+use super::line::Line;
 use super::network::Network;
 use super::nonlinear_pair::PairView;
 use super::points::Points;
@@ -161,10 +162,12 @@ impl Component {
 
     /// Takes `count` micro-steps of a lone element.
     fn run_alone(&mut self, step: f64, count: u32) {
-        let guard = Guard::begin(&self.elements[0], &self.bodies, step);
+        // The map does not move the ends, so the line is that of the guard.
+        let line = self.elements[0].line(&self.bodies);
+        let guard = Guard::begin(&self.elements[0], &self.bodies, line.as_ref(), step);
         let damped = self.elements[0].damping > 0.0;
         let before = damped.then(|| self.energy_and_work());
-        self.map(step, Map::ToStepped);
+        self.map(line.as_ref(), step, Map::ToStepped);
         for _ in 0..count {
             self.drift(step / 2.0);
             let memo = &mut self.memory.memo;
@@ -172,7 +175,8 @@ impl Component {
             self.drift(step / 2.0);
             self.aim(step);
         }
-        self.map(step, Map::ToTrue);
+        let line = self.elements[0].line(&self.bodies);
+        self.map(line.as_ref(), step, Map::ToTrue);
         if let Some(guard) = guard {
             guard.end(&self.elements[0], &mut self.bodies, step * f64::from(count));
         }
@@ -187,7 +191,8 @@ impl Component {
     fn energy_and_work(&self) -> (f64, f64) {
         let mut work = 0.0;
         let element = &self.elements[0];
-        let line = element.line(&self.bodies);
+        let led = element.ends.iter().any(End::is_path);
+        let line = led.then(|| element.line(&self.bodies)).flatten();
         for (i, end) in element.ends.iter().enumerate() {
             if let (End::Path(path), Some(line)) = (end, &line) {
                 let hold = &line.holds[i];
@@ -203,9 +208,11 @@ impl Component {
         (Energy::of(&self.elements, &self.bodies).sum(), work)
     }
 
-    fn map(&mut self, step: f64, map: Map) {
+    fn map(&mut self, line: Option<&Line>, step: f64, map: Map) {
         let memo = &mut self.memory.memo;
-        kick::map_velocity(&self.elements[0], &mut self.bodies, step, map, memo);
+        if let Some(line) = line {
+            kick::map_velocity(&self.elements[0], line, &mut self.bodies, step, map, memo);
+        }
     }
 
     /// Takes `count` micro-steps of elements that share bodies.
