@@ -6,7 +6,7 @@ use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
 
-const RADIUS: f32 = 0.33;
+pub const RADIUS: f32 = 0.33;
 const REST: f32 = 0.5;
 pub const CHASSIS: f32 = 1200.0;
 pub const WHEEL: f32 = 20.0;
@@ -132,6 +132,24 @@ impl Car {
         f64::from(CHASSIS) * share * GRAVITY / (self.wheels.len() as f64 * f64::from(self.law[0]))
     }
 
+    /// Moves both anchors of the springs at some corners inwards, m.
+    pub fn move_inwards(&mut self, by: f32, whose: impl Fn(Vec3) -> bool) {
+        let inward = |corner: Vec3| {
+            let moved = if whose(corner) { by } else { 0.0 };
+            Vec3::NEG_Z * moved * corner.z.signum()
+        };
+        for coil in &mut self.scene.coils {
+            let step = inward(coil.anchors[0]);
+            coil.anchors = coil.anchors.map(|anchor| anchor + step);
+        }
+        let world = self.scene.lab.app.world_mut();
+        for mut anchors in world.query::<&mut Anchors>().iter_mut(world) {
+            let step = inward(anchors.a);
+            anchors.a += step;
+            anchors.b += step;
+        }
+    }
+
     /// Locks the wheels.
     pub fn brake(&mut self) {
         for wheel in &self.wheels {
@@ -200,16 +218,7 @@ pub const LAW: [f32; 2] = [40e3, 3e3];
 fn a_car_whose_springs_stand_beside_its_wheels_rests_where_statics_say() {
     for kind in ["ball", "cylinder"] {
         let mut car = car(CoiloverPlugin::default(), kind, 0.1, 0.0, LAW);
-        let inward = |anchor: Vec3, corner: Vec3| anchor - Vec3::Z * 0.2 * corner.z.signum();
-        for coil in &mut car.scene.coils {
-            coil.anchors = coil.anchors.map(|anchor| inward(anchor, coil.anchors[0]));
-        }
-        let world = car.scene.lab.app.world_mut();
-        for mut anchors in world.query::<&mut Anchors>().iter_mut(world) {
-            let corner = anchors.a;
-            anchors.a = inward(corner, corner);
-            anchors.b = inward(anchors.b, corner);
-        }
+        car.move_inwards(0.2, |_| true);
         car.brake();
         car.scene.lab.run(20.0);
         let sag = car.sag() / car.theory();

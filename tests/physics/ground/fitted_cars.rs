@@ -1,7 +1,8 @@
-//! Rolling cars whose springs have bump stops, or whose wheels turn on knuckles: their springs carry what those of a plain car
-//! carry.
+//! Cars whose springs have bump stops, or whose wheels turn on knuckles: their springs carry what those of a plain car carry,
+//! and they steer.
 
-use super::drive::{Car, LAW, car};
+use super::drive::{Car, LAW, RADIUS, car};
+use crate::harness::*;
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
@@ -107,4 +108,90 @@ fn a_rolling_car_with_knuckles_stands_as_high_as_the_limits_say() {
             assert!((sag - 1.0).abs() < 0.025, "{kind} {speed}: {sag}");
         }
     }
+}
+
+/// Place of the front axle on the chassis, m.
+const AXLE: f32 = 1.3;
+
+/// The car of the guide: its front wheels point to the left by an `angle` in rad, and its rear wheels drive.
+fn steered(speed: f32, angle: f32) -> Car {
+    const FRONT: usize = 2;
+    let mut car = fitted("ball", speed, LAW, |car, at, spring| {
+        if at < FRONT {
+            put_knuckle(car, at, spring);
+        }
+    });
+    for at in 0..car.wheels.len() {
+        // How hard a motor holds the speed of a wheel, N m s/rad.
+        let (spin, hold) = if at < FRONT {
+            (0.0, 5.0)
+        } else {
+            (-speed / RADIUS, 200.0)
+        };
+        let mut axle = car.scene.lab.get_mut::<ImpulseJoint>(car.wheels[at]);
+        axle.data
+            .as_mut()
+            .set_motor_model(JointAxis::AngZ, MotorModel::ForceBased)
+            .set_motor_velocity(JointAxis::AngZ, spin, hold);
+        if at < FRONT {
+            let knuckle = car.scene.coils[at].ends[1];
+            let mut guide = car.scene.lab.get_mut::<ImpulseJoint>(knuckle);
+            guide
+                .data
+                .as_mut()
+                .set_motor_position(JointAxis::AngY, angle, 2e4, 1e3);
+        }
+    }
+    car
+}
+
+/// Radius of the circle of the rear axle's middle, m: its way over the angle by which the car turns meanwhile.
+fn circle(car: &mut Car) -> f32 {
+    let middle = |car: &Car| {
+        let [left, right] = [2, 3].map(|at| car.scene.lab.position(car.wheels[at]));
+        0.5 * (left + right)
+    };
+    let (mut way, mut turn) = (0.0, 0.0);
+    for _ in 0..car.scene.lab.ticks(6.0) {
+        let last = middle(car);
+        car.scene.lab.tick();
+        way += middle(car).distance(last);
+        turn += DT * car.scene.lab.get::<Velocity>(car.chassis).angular.y;
+    }
+    way / turn
+}
+
+/// Both knuckles turn by the same angle, so only one front wheel can roll without sliding. If it is the inner one, the circle
+/// is wider by half the track.
+#[test]
+fn a_steered_car_turns_in_a_wider_circle_than_its_wheelbase_says() {
+    for angle in [0.3_f32, 0.5] {
+        let mut car = steered(1.5, angle);
+        car.scene.lab.run(3.0);
+        let radius = circle(&mut car);
+        let speed = car.scene.lab.velocity(car.chassis).length();
+        let plain = 2.0 * AXLE / angle.tan();
+        let (ratio, inner) = (radius / plain, (plain + 0.75) / plain);
+        println!(
+            "{angle} rad, {speed:.2} m/s: radius {radius:.2} m, {ratio:.3} × wheelbase/tan, {inner:.3} if the inner wheel rolls"
+        );
+        assert!((ratio - inner).abs() < 0.05, "{angle} rad: {ratio}");
+    }
+}
+
+#[test]
+fn a_steered_car_whose_springs_stand_beside_its_knuckles_drops_in_front() {
+    let front = |angle: f32| {
+        let mut car = steered(0.0, angle);
+        car.move_inwards(0.4, |corner| corner.x > 0.0);
+        car.scene.lab.run(5.0);
+        let chassis = car.scene.lab.get::<Transform>(car.chassis);
+        chassis.transform_point(Vec3::X * AXLE).y
+    };
+    let drop = front(0.0) - front(0.5);
+    println!(
+        "springs 0.4 m beside the steering axes, 0.5 rad: the front axle drops by {drop:.3} m"
+    );
+    // By statics, the springs lean by 0.19 m, and the knuckles give way by 0.03 rad: 0.053 m.
+    assert!((0.04..0.08).contains(&drop), "{drop} m");
 }

@@ -13,6 +13,7 @@ mod ccd;
 mod changes;
 mod cloth;
 mod companions;
+mod crossing;
 mod dampers;
 mod drive;
 mod far;
