@@ -85,7 +85,15 @@ type Index = HashMap<(Option<Entity>, usize), Bearers>;
 type End = Option<Entity>;
 
 /// Looks up ends by name, if something has changed that may resolve one.
-pub(crate) fn find_named_ends(world: &mut World, look: &mut SystemState<Look>) {
+pub(crate) fn find_named_ends(
+    world: &mut World,
+    waiting: &mut QueryState<(), With<AwaitsEnds>>,
+    look: &mut SystemState<Look>,
+) {
+    if waiting.iter(world).next().is_none() {
+        // A look would count as one at changes that later elements wait for.
+        return;
+    }
     let Ok(mut look) = look.get_mut(world) else {
         return;
     };

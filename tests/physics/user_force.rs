@@ -66,19 +66,12 @@ fn act(habit: Habit, tick: usize, lab: &mut Lab, body: Entity) {
     }
 }
 
-/// Path of a body in free space whose force changes by `habit`. With `plugin`, a spring-damper without stiffness
+/// Path of a body in free space whose force changes by `habit`. With an `element`, a spring-damper without stiffness
 /// and damping is attached to it.
-fn path(habit: Habit, plugin: bool) -> Vec<(Vec3, Quat)> {
-    let mut lab = if plugin {
-        Lab::new()
-    } else {
-        let mut lab = Lab::without_plugin(Engine::default());
-        lab.prime();
-        lab
-    };
+fn path(habit: Habit, mut lab: Lab, element: bool) -> Vec<(Vec3, Quat)> {
     let body = lab.body(2.0, Vec3::ZERO);
     lab.get_mut::<Velocity>(body).angular = Vec3::new(0.3, 0.0, 0.1);
-    if plugin {
+    if element {
         let far = lab.point(Vec3::Y * 5.0);
         lab.spawn(
             SpringDamper::new(far, body)
@@ -99,7 +92,9 @@ fn path(habit: Habit, plugin: bool) -> Vec<(Vec3, Quat)> {
 #[test]
 fn a_body_held_by_a_powerless_element_moves_as_without_the_plugin() {
     for habit in HABITS {
-        let (with, without) = (path(habit, true), path(habit, false));
+        let mut bare = Lab::without_plugin(Engine::default());
+        bare.prime();
+        let (with, without) = (path(habit, Lab::new(), true), path(habit, bare, false));
         // With substeps of h, the engine falls g·t·h/2 too far (see free_fall.rs). Constant forces have the same
         // error. A body with elements does not have it. The paths may differ by that error and no more.
         for (tick, ((x, r), (y, s))) in with.iter().zip(&without).enumerate() {
@@ -115,6 +110,24 @@ fn a_body_held_by_a_powerless_element_moves_as_without_the_plugin() {
                 "{habit:?}, tick {tick}: {r} against {s}"
             );
         }
+    }
+}
+
+/// Hides entities. It is not kept in tables.
+#[derive(Component)]
+#[component(storage = "SparseSet")]
+struct Hidden;
+
+#[test]
+fn a_game_may_hide_entities_with_a_component_that_is_not_kept_in_tables() {
+    for habit in HABITS {
+        let mut hiding = Lab::without_plugin(Engine::default());
+        let world = hiding.app.world_mut();
+        world.register_disabling_component::<Hidden>();
+        hiding.app.add_plugins(CoiloverPlugin::default());
+        hiding.prime();
+        let [with, without] = [hiding, Lab::new()].map(|lab| path(habit, lab, true));
+        assert_eq!(with, without, "{habit:?}");
     }
 }
 

@@ -39,7 +39,8 @@ pub struct SpringLoad {
 /// Filter: disabled entities count too. Unlike `Allow`, it lets a query give whole tables.
 type WithDisabled = Or<(With<Disabled>, Without<Disabled>)>;
 
-/// Loads of bodies, including disabled bodies, whose share must be removed too.
+/// Loads of bodies, including disabled bodies, whose share must be removed too. Whole tables cannot be had if the game has
+/// registered a disabling component of sparse storage; then all is done one body at a time.
 pub(crate) type Loads<'w, 's> = Query<
     'w,
     's,
@@ -55,13 +56,14 @@ pub(crate) type Loads<'w, 's> = Query<
 pub(crate) type Iterations<'w, 's> =
     Query<'w, 's, (Entity, Ref<'static, AdditionalSolverIterations>)>;
 
-/// Engine handles of bodies, including disabled bodies.
+/// Engine handles and the user's solver iterations of bodies, including disabled bodies.
 pub(crate) type Handles<'w, 's> = Query<
     'w,
     's,
     (
         &'static RapierRigidBodyHandle,
         &'static RapierContextEntityLink,
+        Option<&'static AdditionalSolverIterations>,
     ),
     Allow<Disabled>,
 >;
@@ -160,21 +162,31 @@ impl SpringLoad {
 /// whose user's share changed as disturbed, so that its component wakes.
 pub(crate) fn read_users(scene: &mut Scene, loads: &mut Loads) {
     scene.loaded = false;
-    for (entities, loads, components) in loads.contiguous_iter_mut().into_iter().flatten() {
-        let Some(components) = components else {
-            continue;
-        };
-        let (loads, _) = ContiguousMut::bypass_change_detection_split(loads);
-        let (components, ticks) = ContiguousMut::bypass_change_detection_split(components);
-        for (at, _) in ticks.is_changed_iter().enumerate().filter(|(_, new)| *new) {
-            let load = &mut loads[at];
-            let new = load.read_user(&components[at]);
-            scene.loaded |= new;
-            if let Some(row) = scene.body(load.slot, entities[at]) {
-                if new {
-                    row.flags.insert(BodyFlags::DISTURBED);
-                }
-                row.set_user(wrench(&load.user));
+    let mut read = |entity: Entity, load: &mut SpringLoad, component: &ExternalForce| {
+        let new = load.read_user(component);
+        scene.loaded |= new;
+        if let Some(row) = scene.body(load.slot, entity) {
+            if new {
+                row.flags.insert(BodyFlags::DISTURBED);
+            }
+            row.set_user(wrench(&load.user));
+        }
+    };
+    if let Ok(tables) = loads.contiguous_iter_mut() {
+        for (entities, loads, components) in tables {
+            let Some(components) = components else {
+                continue;
+            };
+            let (loads, _) = ContiguousMut::bypass_change_detection_split(loads);
+            let (components, ticks) = ContiguousMut::bypass_change_detection_split(components);
+            for (at, _) in ticks.is_changed_iter().enumerate().filter(|(_, new)| *new) {
+                read(entities[at], &mut loads[at], &components[at]);
+            }
+        }
+    } else {
+        for (entity, mut load, component) in loads {
+            if let Some(component) = component.filter(Mut::is_changed) {
+                read(entity, load.bypass_change_detection(), &component);
             }
         }
     }
@@ -201,7 +213,15 @@ pub(crate) fn show(scene: &Scene, loads: &mut Loads) {
         return;
     }
     let (bodies, tick) = (&scene.bodies[..], scene.tick);
-    for (entities, loads, components) in loads.contiguous_iter_mut().into_iter().flatten() {
+    let Ok(tables) = loads.contiguous_iter_mut() else {
+        for (entity, mut load, mut component) in loads {
+            let component = component.as_mut().map(Mut::bypass_change_detection);
+            let load = load.bypass_change_detection();
+            load.show_of(entity, bodies, tick, component);
+        }
+        return;
+    };
+    for (entities, loads, components) in tables {
         let (loads, _) = ContiguousMut::bypass_change_detection_split(loads);
         let each = share_of(loads.len(), WORTH_SHARING);
         let pieces = entities.chunks(each).zip(loads.chunks_mut(each));
@@ -232,7 +252,7 @@ fn take_in(share: &mut Vec3, now: Vec3, left: Vec3) {
     }
 }
 
-/// Removes the elements' share from bodies on which no element acts any more. The user's shares must have been read before.
+/// Removes the elements' share from bodies on which no element acts any more.
 pub(crate) fn release(
     scene: &mut Scene,
     loads: &mut Loads,
@@ -244,21 +264,26 @@ pub(crate) fn release(
         if scene.body(load.slot, entity).is_some() || scene.body_row(entity).is_some() {
             continue;
         }
-        if let Ok((handle, link)) = handles.get(entity)
+        let mut component = component.as_mut().map(Mut::bypass_change_detection);
+        if let Some(component) = &component {
+            // What the user wrote in this tick has not been read yet.
+            load.read_user(component);
+        }
+        if let Ok((handle, link, users)) = handles.get(entity)
             && let Ok((mut set, ..)) = contexts.get_mut(link.0)
             && let Some(body) = set.bodies.get_mut(handle.0)
         {
-            let nothing = ExternalForce::default();
             body::give(body, &Push::default(), &wrench(&load.user));
-            let component = component.as_mut().map(Mut::bypass_change_detection);
-            load.show(nothing, component);
-            if load.raised_iterations && body.additional_solver_iterations() == 1 {
+            load.show(ExternalForce::default(), component);
+            let is_users = users.is_some_and(|number| number.0 == 1);
+            let is_ours = load.raised_iterations && !is_users;
+            if is_ours && body.additional_solver_iterations() == 1 {
                 body.set_additional_solver_iterations(0);
             }
             body.wake_up(true);
         } else if let Some(component) = &mut component {
             // The engine's body is gone. A later body starts from the component.
-            *component.bypass_change_detection() = load.user;
+            **component = load.user;
         }
         commands.entity(entity).try_remove::<SpringLoad>();
     }

@@ -86,10 +86,8 @@ fn look(
         enter_loads(scene, &mut loads.p0(), &finder, &mut commands);
     }
     if scene.renewed {
-        let mut loads = loads.p1();
-        forces::read_users(scene, &mut loads);
         let sets = &mut finder.sets;
-        forces::release(scene, &mut loads, &handles, sets, &mut commands);
+        forces::release(scene, &mut loads.p1(), &handles, sets, &mut commands);
     }
 }
 

@@ -75,7 +75,7 @@ pub(crate) fn solve(
             colliders: &mut colliders.colliders,
             gravity: configuration.gravity,
         };
-        scene.take_out_what_is_left(context, &mut engine);
+        scene.take_out_what_is_left(context, &mut engine, &users);
         let finest = users.iter().map(|(_, number)| number.0).max().unwrap_or(0);
         let spare = &mut *spare;
         let view = View {
@@ -145,7 +145,12 @@ impl Scene {
     }
 
     /// Removes from a context what elements that no longer act have left there, and restores the settings of bodies.
-    fn take_out_what_is_left(&mut self, context: Entity, engine: &mut EngineParts) {
+    fn take_out_what_is_left(
+        &mut self,
+        context: Entity,
+        engine: &mut EngineParts,
+        users: &Iterations,
+    ) {
         self.left.retain_mut(|(of, inside)| {
             let here = *of == context;
             if here {
@@ -157,6 +162,10 @@ impl Scene {
             let here = *of == context;
             // Mutable access marks a body as modified, so not the one that has this handle in another context.
             if here && let Some(body) = engine.bodies.get_mut(handle(*body)) {
+                let entity = Entity::try_from_bits(body.user_data as u64);
+                if let Some(Ok((_, number))) = entity.map(|entity| users.get(entity)) {
+                    raised.leave_substeps(number.0);
+                }
                 give_back(raised, body);
             }
             !here

@@ -83,11 +83,11 @@ fn method(facts: &Facts) -> Option<Sentence> {
         ),
         SpringMethod::Direct => say(
             Tone::Good,
-            format!("In a network: one factorisation for all, {steps} a step."),
+            format!("Solved by one factorisation, {steps} a step."),
         ),
         SpringMethod::Iterative => say(
             Tone::Plain,
-            format!("In a large network: solved by iteration, {steps} a step."),
+            format!("Solved by iteration, as its network is large: {steps} a step."),
         ),
         SpringMethod::Engine => say(
             Tone::Plain,
