@@ -94,9 +94,9 @@ fn cross(scene: &mut Stand, speed: f32) -> f32 {
 fn a_ball_that_rolls_over_a_bridge_pulls_its_ropes_harder_than_a_ball_at_rest() {
     let (empty, loaded) = (at_rest(0.0), at_rest(BALL));
     for (speed, bounds) in [
-        (1.5, loaded..1000.0),
-        (3.0, 850.0..1300.0),
-        (5.0, 1000.0..1700.0),
+        (1.5, loaded..1100.0),
+        (3.0, 1000.0..1400.0),
+        (5.0, 1200.0..1900.0),
     ] {
         let mut scene = level_start();
         let rest = hardest(&mut scene);
