@@ -15,7 +15,7 @@ const OUR_JOINT: u128 = u128::from_be_bytes(*b"bevy_coilover\0\0\0");
 
 /// Kind of the faults that the engine has by itself now and then. It has one name for components and engine, because
 /// the engine's numbers are copied to components.
-const NOT_FINITE: &str = "numbers of a body are not finite";
+pub(crate) const NOT_FINITE: &str = "numbers of a body are not finite";
 
 /// Whether the crate made a joint of the engine.
 pub(crate) fn is_our_joint(joint: &RapierJoint) -> bool {
@@ -87,16 +87,16 @@ fn engine(world: &mut World, met: &mut Met) -> Result<(), Fault> {
         for (handle, joint) in joints.impulse_joints.iter() {
             let ours = is_our_joint(joint);
             met.joints += u64::from(ours);
-            let pushes = joint.impulses.iter().all(|impulse| impulse.is_finite());
-            if pushes && (!ours || is_sound(joint)) {
-                continue;
+            let seen = || format!("{handle:?}: {joint:?}");
+            if ours && !is_sound(joint) {
+                let kind = "numbers of a spring's joint are not finite";
+                return Err(Fault::ours(kind, seen()));
             }
-            let seen = format!("{handle:?}: {joint:?}");
-            return Err(if ours {
-                Fault::ours("numbers of a spring's joint are not finite", seen)
-            } else {
-                Fault::new(NOT_FINITE, seen)
-            });
+            let motors = joint.data.motors.iter().map(|motor| motor.impulse);
+            let mut impulses = joint.impulses.iter().copied().chain(motors);
+            if !impulses.all(f32::is_finite) {
+                return Err(Fault::new(NOT_FINITE, seen()));
+            }
         }
     }
     Ok(())
@@ -125,7 +125,6 @@ fn is_sound(joint: &RapierJoint) -> bool {
             motor.target_vel,
             motor.stiffness,
             motor.damping,
-            motor.impulse,
         ];
         orders.iter().all(|order| order.is_finite()) && !motor.max_force.is_nan()
     });

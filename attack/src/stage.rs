@@ -19,15 +19,30 @@ pub struct Stage {
     pub elements: Vec<Entity>,
     /// Joints that the game itself spawned.
     pub joints: Vec<Entity>,
+    springs: Springs,
 }
 
+/// What elements of a plan become.
+#[derive(Clone, Copy, PartialEq)]
+pub enum Springs {
+    /// Elements of this crate.
+    Ours,
+    /// Joints of the engine with a motor, in as many substeps as this crate may order.
+    Engines,
+    /// Nothing.
+    None,
+}
+
+/// Most solver iterations that the crate adds on its own to the engine's four.
+const MOST_MORE: usize = 60;
+
 impl Stage {
-    /// Builds a scene, with or without springs.
-    pub fn new(plan: &Plan, with_springs: bool) -> Self {
+    /// Builds a scene.
+    pub fn new(plan: &Plan, springs: Springs) -> Self {
         let mut app = App::new();
         app.add_plugins((MinimalPlugins, TransformPlugin))
             .add_plugins(RapierPhysicsPlugin::<NoUserData>::default().in_fixed_schedule());
-        if with_springs {
+        if springs == Springs::Ours {
             app.add_plugins(CoiloverPlugin::default());
         }
         let mut stage = Self {
@@ -35,6 +50,7 @@ impl Stage {
             bodies: Vec::new(),
             elements: Vec::new(),
             joints: Vec::new(),
+            springs,
         };
         stage.rate(1.0 / 60.0, 1);
         stage.app.finish();
@@ -54,7 +70,7 @@ impl Stage {
             stage.body(body);
         }
         for element in &plan.elements {
-            stage.element(element, with_springs);
+            stage.element(element);
         }
         stage
     }
@@ -98,13 +114,18 @@ impl Stage {
         }
     }
 
-    fn element(&mut self, plan: &ElementPlan, with_springs: bool) {
+    fn element(&mut self, plan: &ElementPlan) {
         let ends = plan.ends.map(|end| Self::of(&self.bodies, end));
         let [Some(a), Some(b)] = ends else { return };
         let entity = self.app.world_mut().spawn_empty().id();
         self.elements.push(entity);
-        if !with_springs {
-            return;
+        match self.springs {
+            Springs::None => return,
+            Springs::Engines => {
+                self.motor(plan, [a, b]);
+                return;
+            }
+            Springs::Ours => {}
         }
         let mut element = self.app.world_mut().entity_mut(entity);
         let axis = plan.axis.into();
@@ -153,12 +174,49 @@ impl Stage {
         accompany(&mut element, &plan.companion);
     }
 
+    /// Adds joints of the engine that act much as an element with these parameters: between its ends, and between each of them
+    /// and a fixed body, as this crate does where an end cannot move.
+    fn motor(&mut self, plan: &ElementPlan, ends: [Entity; 2]) {
+        let world = self.app.world_mut();
+        let is_body = |entity| world.get::<RigidBody>(entity).is_some();
+        let [a, b] = ends;
+        if a == b || !ends.into_iter().all(is_body) {
+            return;
+        }
+        let number = |x: f32| {
+            if x.is_finite() {
+                x.clamp(0.0, 1e9)
+            } else {
+                0.0
+            }
+        };
+        let rest = plan.rest.map_or(1.0, number);
+        let (stiffness, damping) = (number(plan.stiffness), number(plan.damping));
+        let joint: TypedJoint = if plan.kind < 3 {
+            SpringJointBuilder::new(rest, stiffness, damping).into()
+        } else {
+            let joint = GenericJointBuilder::new(JointAxesMask::empty())
+                .motor_model(JointAxis::AngX, MotorModel::ForceBased)
+                .motor_position(JointAxis::AngX, rest, stiffness, damping);
+            TypedJoint::GenericJoint(joint.build())
+        };
+        world.spawn((ImpulseJoint::new(a, joint), ChildOf(b)));
+        for end in ends {
+            let place = world.get::<Transform>(end).copied().unwrap_or_default();
+            let hook = world.spawn((RigidBody::Fixed, place)).id();
+            world.spawn((ImpulseJoint::new(hook, joint), ChildOf(end)));
+            let more = AdditionalSolverIterations(MOST_MORE);
+            world.entity_mut(end).insert(more);
+        }
+    }
+
     /// Applies one change.
-    pub fn act(&mut self, deed: &Deed, with_springs: bool) {
+    pub fn act(&mut self, deed: &Deed) {
+        let with_springs = self.springs == Springs::Ours;
         match deed {
             Deed::DespawnBody(b) => self.on_body(*b, |body| body.despawn()),
             Deed::DespawnElement(e) => self.on_element(*e, |element| element.despawn()),
-            Deed::SpawnElement(plan) => self.element(plan, with_springs),
+            Deed::SpawnElement(plan) => self.element(plan),
             Deed::ToggleBody(b) => self.on_body(*b, |mut body| {
                 if body.take::<RigidBodyDisabled>().is_none() {
                     body.insert(RigidBodyDisabled);

@@ -65,6 +65,9 @@ impl Kept {
             kept.take_share(world, |body| scene.body_row(body).is_none());
         }
         kept.show(&scene, world);
+        // Elements may act on other bodies now than in the snapshot. These get their loads with new rows.
+        let has_none = |row: &BodyRow| world.get::<SpringLoad>(row.entity).is_none();
+        scene.stale |= scene.bodies.iter().any(has_none);
         // Everything written so far belongs to the restored state. Only later writes count as changes.
         scene.since = Some(world.change_tick());
         world.insert_resource(scene);
