@@ -26,8 +26,8 @@ use bevy_rapier3d::rapier::dynamics::RigidBody as RapierBody;
 /// The point follows a steadily moving target without lag. If the target jumps, the point overshoots by an eighth of
 /// the jump (e⁻²). A body that is gone or cannot be moved is not pulled.
 ///
-/// If the target, point, frequency or greatest force is not a valid number, this entity gets a [`SpringFault`], and
-/// nothing is pulled until that is corrected.
+/// If the target, point, frequency or greatest force is not a valid number, or the frequency needs a spring of more than
+/// 1e12 N/m, this entity gets a [`SpringFault`], and nothing is pulled until that is corrected.
 ///
 /// ```
 /// # use bevy::prelude::*;
@@ -101,6 +101,21 @@ impl MouseSpring {
         }
     }
 
+    /// Returns the field and the reason if no spring can pull a mass (kg) with this frequency.
+    fn is_too_stiff(&self, mass: f32) -> Option<(&'static str, &'static str)> {
+        let (stiffness, damping) = self.coefficients(mass);
+        let can_be = stiffness <= MOST && damping <= MOST;
+        (!can_be).then_some((
+            "MouseSpring::frequency",
+            "is too high for the mass of the body: the springs would be stiffer than 1e12 N/m",
+        ))
+    }
+
+    /// Stiffness (N/m) and damping (N s/m) of the spring for a mass, kg.
+    fn coefficients(&self, mass: f32) -> (f32, f32) {
+        SpringTuning::frequency(self.frequency, 1.0).coefficients(mass, 0.0)
+    }
+
     /// Whether both can use the same springs: they differ at most in the target.
     fn pulls_like(&self, other: &Self) -> bool {
         Self {
@@ -109,6 +124,9 @@ impl MouseSpring {
         } == *other
     }
 }
+
+/// Axes of the world, along each of which a spring pulls.
+const AXES: [Vec3; 3] = [Vec3::X, Vec3::Y, Vec3::Z];
 
 /// The springs of a [`MouseSpring`], and the component for which they were made.
 #[derive(Component, Clone, Copy, Debug)]
@@ -153,24 +171,30 @@ pub(crate) fn hold(
         release(entity, grip, &mut commands);
     }
     for (entity, spring, mut at, grip, told) in &mut held {
-        let fault = spring.fault();
-        tell(entity, fault, told, &mut commands);
-        let body = body_of(spring.body).filter(|_| fault.is_none());
-        match grip {
+        let wrong = spring.fault();
+        let body = body_of(spring.body).filter(|_| wrong.is_none());
+        let grip = match grip {
             Some(grip) if !(body.is_some() && grip.of.pulls_like(spring)) => {
                 release(entity, grip, &mut commands);
+                None
             }
-            Some(_) => {
-                at.translation = spring.target;
-                continue;
-            }
-            None => {}
-        }
-        if let Some((body, scale)) = body {
+            grip => grip,
+        };
+        if grip.is_some() {
+            tell(entity, None, told, &mut commands);
             at.translation = spring.target;
-            let springs = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| {
-                let mass = mass_at(body, scale * spring.point, axis)?;
-                Some(along(axis, entity, spring, mass))
+            continue;
+        }
+        let masses =
+            body.map(|(body, scale)| AXES.map(|axis| mass_at(body, scale * spring.point, axis)));
+        let heaviest = masses.into_iter().flatten().flatten().reduce(f32::max);
+        let wrong = wrong.or_else(|| spring.is_too_stiff(heaviest?));
+        tell(entity, wrong, told, &mut commands);
+        if let Some(masses) = masses.filter(|_| wrong.is_none()) {
+            at.translation = spring.target;
+            let springs = [0, 1, 2].map(|i| {
+                let mass = masses[i]?;
+                Some(along(AXES[i], entity, spring, mass))
             });
             let of = *spring;
             // Silenced, because the game may have let go (despawned the entity) in the same tick.
@@ -199,8 +223,7 @@ pub(crate) fn forget(gone: compat::Removed<MouseSpring>, mut commands: Commands)
 
 /// Returns the spring along an axis of the world, for an effective mass at the held point, kg.
 fn along(axis: Vec3, entity: Entity, spring: &MouseSpring, mass: f32) -> impl Bundle + use<> {
-    let tuning = SpringTuning::frequency(spring.frequency, 1.0);
-    let (stiffness, damping) = tuning.coefficients(mass, 0.0);
+    let (stiffness, damping) = spring.coefficients(mass);
     (
         SpringDamper::new(entity, spring.body)
             .with_stiffness(stiffness)

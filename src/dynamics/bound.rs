@@ -72,6 +72,18 @@ impl Bound {
         self.work = power;
     }
 
+    /// The bound itself if all its numbers are finite, otherwise that of a new network. Of a network whose bound is not finite, the
+    /// energy would never be checked again, or nothing would move any more.
+    pub(crate) fn if_finite(&self) -> Self {
+        let numbers = [self.last, self.start, self.work, self.liveliest];
+        let mut numbers = numbers.into_iter().chain(self.given);
+        if numbers.all(f64::is_finite) {
+            *self
+        } else {
+            Self::default()
+        }
+    }
+
     /// Stores whether the step resolves the stiffest mode, with (ω h)² = `z`.
     pub(crate) fn see(&mut self, z: f64) {
         self.unresolved = z > RESOLVED;

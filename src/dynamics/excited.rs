@@ -56,7 +56,7 @@ impl Excited {
             motion.run(time, all);
             return all;
         }
-        let mut count = u32::from(self.first).max(least);
+        let mut count = u32::from(self.first).max(least).min(all);
         let mut kicks = count;
         motion.save(0);
         motion.run(time, count);
@@ -79,7 +79,7 @@ impl Excited {
         }
         // The next attempt compares an eighth with a quarter. It shows at little cost whether the mode has come to rest.
         self.first = u16::try_from(all / 8).unwrap_or(u16::MAX);
-        self.span = (2 * self.span).clamp(1, LONGEST_WAIT);
+        self.span = self.span.saturating_mul(2).clamp(1, LONGEST_WAIT);
         self.wait = self.span;
         motion.load(0);
         motion.run(time, all);

@@ -207,7 +207,8 @@ impl Controller {
         self.scale_to(time);
         let mut outcome = match self.known.filter(|_| self.age > 0) {
             Some(known) => {
-                self.age -= 1;
+                // A forged number must not put the next probe off for ever.
+                self.age = (self.age - 1).min(CALM);
                 let (plan, capped) = cheapest(known, tolerance, [least, most]);
                 // The motion may have changed since the probe.
                 let plan = plan.sound(motion, time);
@@ -304,9 +305,9 @@ impl Controller {
         self.span = if grows {
             (self.span / 2).max(1)
         } else {
-            (2 * self.span).min(BUSY)
+            self.span.saturating_mul(2).min(BUSY)
         };
-        self.calm = if calm { self.calm + 1 } else { 0 };
+        self.calm = if calm { self.calm.saturating_add(1) } else { 0 };
         self.age = if self.calm > 2 { CALM } else { self.span };
     }
 

@@ -29,7 +29,8 @@ pub enum SnapshotError {
     /// [`RapierSnapshot`](crate::RapierSnapshot) of the same tick first, or see
     /// [`CoiloverSnapshot::without_engine`](crate::CoiloverSnapshot::without_engine).
     OtherEngine,
-    /// The snapshot, as read from a file or received over the network, refers to parts that it does not contain.
+    /// The snapshot, as read from a file or received over the network, refers to parts that it does not contain, or
+    /// has two joints where an element has one.
     Broken,
 }
 

@@ -77,6 +77,9 @@ impl CoiloverSnapshot {
     /// If the snapshot does not fit the world, an error is returned and nothing is changed. There is one exception: if
     /// a [`RapierSnapshot`] was restored just before, the springs then start afresh, and what they had inside Rapier at
     /// the tick of the snapshot is removed.
+    ///
+    /// The snapshot may come from a source that you do not trust. Numbers that no scene has, such as NaN, are replaced by
+    /// those of a new element or body.
     pub fn restore(&self, world: &mut World) -> Result<(), SnapshotError> {
         self.0.put(world)
     }

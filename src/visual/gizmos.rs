@@ -15,7 +15,7 @@ use bevy::prelude::*;
 /// the forces on both ends as arrows, red for tension and blue for compression. Rest length and forces are drawn along
 /// the line between the ends, or along the element's [`SpringAxis`](crate::SpringAxis). Torsion elements are not drawn.
 ///
-/// Nothing is drawn unless `all` is set or an element has [`ShowSpringGizmos`]. It needs Bevy's `GizmoPlugin`, which
+/// Nothing is drawn unless `all` is set or an element has [`ShowSpringGizmos`], nor while a size here is not finite. It needs Bevy's `GizmoPlugin`, which
 /// `DefaultPlugins` contains with the feature `bevy_gizmos_render`.
 ///
 /// ```
@@ -92,6 +92,9 @@ fn draw(
     mut gizmos: Gizmos<SpringGizmos>,
 ) {
     let SpringGizmos { all, scale, cross } = gizmos.config_ext.clone();
+    if !(scale.is_finite() && cross.is_finite()) {
+        return;
+    }
     for (line, readout, spring, pair, axis, show) in &elements {
         if !show.map_or(all, |s| s.0) {
             continue;

@@ -1,6 +1,7 @@
 //! The drawn children of an element: spawned when its looks are added or changed, and removed with them.
 
 use super::coil::Coil;
+use super::helix::{SIZES, is_size};
 use super::layout::{Layout, Part, SHORT};
 use super::made::{Made, Maker};
 use super::place::{Line, Lines, Placement};
@@ -203,9 +204,9 @@ pub(super) fn take_skins(
             log::warn!("{entity}: SpringSkin: it must be a child of an element; it is not placed");
             continue;
         };
-        if !skin.length.is_finite() || skin.length <= 0.0 {
+        if !is_size(skin.length) {
             log::warn!(
-                "{entity}: SpringSkin: length is {}, and must be finite and positive; it is not placed",
+                "{entity}: SpringSkin: length is {}, and must be {SIZES}; it is not placed",
                 skin.length
             );
             let_go(entity, &mut commands);

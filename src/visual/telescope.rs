@@ -1,4 +1,5 @@
 use super::coil::rounded;
+use super::helix::{SIZES, is_size};
 use super::place::Placement;
 use bevy::prelude::*;
 
@@ -8,7 +9,7 @@ use bevy::prelude::*;
 /// Tube and rod keep their lengths while the ends stay within the stroke. Beyond it, the tube or the rod is drawn
 /// longer or shorter than it is, so that they do not come apart or pass through the other end.
 ///
-/// If a size is not finite and above zero, or the rod is not thinner than the tube, a warning is logged and the telescope
+/// If a size is not from 1e-12 to 1e12, or the rod is not thinner than the tube, a warning is logged and the telescope
 /// is not drawn until that is corrected. The element acts all the same.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
 #[type_path = "bevy_coilover"]
@@ -123,11 +124,9 @@ impl Telescope {
             ("stroke", self.stroke),
         ] {
             if let Some(value) = value
-                && (!value.is_finite() || value <= 0.0)
+                && !is_size(value)
             {
-                return Err(format!(
-                    "{field} is {value}, and must be finite and positive"
-                ));
+                return Err(format!("{field} is {value}, and must be {SIZES}"));
             }
         }
         if self.rod_radius >= self.tube_radius {

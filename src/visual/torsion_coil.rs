@@ -1,5 +1,6 @@
-use super::helix::Handedness;
+use super::helix::{Handedness, SIZES, is_size};
 use super::twist::Twist;
+use crate::input::check::MOST;
 use bevy::prelude::*;
 
 /// Draws a spiral spring, as in a clock, for the [`TorsionSpring`](crate::TorsionSpring),
@@ -9,7 +10,7 @@ use bevy::prelude::*;
 /// A. Its outer end is fixed to body B and moves around with it. So the spiral has its [`turns`](Self::turns) at the
 /// rest angle, and more or fewer of them when it is twisted.
 ///
-/// If a size is not finite and above zero, if there are more than 100 turns, or if the turns do not fit between the two
+/// If a size is not from 1e-12 to 1e12, if there are more than 100 turns, or if the turns do not fit between the two
 /// radii, a warning is logged and the spiral is not drawn until that is corrected. The element acts all the same.
 ///
 /// ```
@@ -141,14 +142,15 @@ impl TorsionCoil {
             ("thickness", self.thickness),
             ("turns", self.turns),
         ] {
-            if !value.is_finite() || value <= 0.0 {
-                return Err(format!(
-                    "{field} is {value}, and must be finite and positive"
-                ));
+            if !is_size(value) {
+                return Err(format!("{field} is {value}, and must be {SIZES}"));
             }
         }
-        if !self.center.is_finite() {
-            return Err(format!("center is {}, and must be finite", self.center));
+        if !self.center.abs().cmple(Vec3::splat(MOST)).all() {
+            return Err(format!(
+                "center is {}, and must be at most {MOST} m away",
+                self.center
+            ));
         }
         if self.turns > MOST_TURNS {
             return Err(format!(

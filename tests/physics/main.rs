@@ -44,6 +44,8 @@ mod repeatability;
 mod sleeping;
 mod snapshot;
 mod spinning_pair;
+#[cfg(feature = "visual")]
+mod spoilt;
 mod stability;
 mod static_sag;
 mod stiff_by_default;

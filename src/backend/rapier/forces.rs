@@ -117,6 +117,16 @@ impl SpringLoad {
         (load, sum(&elements, &user))
     }
 
+    /// Replaces a user's share that is not finite, or larger than the engine can compute with, by none. A scene or a remote
+    /// call may have written anything.
+    pub(crate) fn mend(&mut self) {
+        for share in [&mut self.user.force, &mut self.user.torque] {
+            if !share.length_squared().is_finite() {
+                *share = Vec3::ZERO;
+            }
+        }
+    }
+
     pub(crate) fn raised_iterations(&self) -> bool {
         self.raised_iterations
     }
@@ -269,6 +279,7 @@ pub(crate) fn release(
             // What the user wrote in this tick has not been read yet.
             load.read_user(component);
         }
+        load.mend();
         if let Ok((handle, link, users)) = handles.get(entity)
             && let Ok((mut set, ..)) = contexts.get_mut(link.0)
             && let Some(body) = set.bodies.get_mut(handle.0)

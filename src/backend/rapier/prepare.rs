@@ -115,7 +115,9 @@ fn enter_loads(
             continue;
         };
         let known = load.map(|mut load| {
-            load.bypass_change_detection().slot = slot;
+            let load = load.bypass_change_detection();
+            load.slot = slot;
+            load.mend();
             load.user
         });
         if let (Some(user), true) = (known, force.is_some()) {

@@ -60,8 +60,8 @@ impl Component {
             *fine = (time * (1.5 + PI / phase)).min(KEPT);
             *kept = KEPT;
         } else {
-            *fine = (*fine - time).max(0.0);
-            *kept = (*kept - time).max(0.0);
+            *fine = ((*fine).min(KEPT) - time).max(0.0);
+            *kept = ((*kept).min(KEPT) - time).max(0.0);
         }
         if *fine > 0.0 && self.elements.len() <= FEW {
             (phase / FINE).ceil().clamp(1.0, MOST) as u32

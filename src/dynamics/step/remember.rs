@@ -50,7 +50,7 @@ impl Component {
         self.forget_points();
         let memory = &mut self.memory;
         (memory.controller, memory.kinks) = (*controller, *kinks);
-        (memory.caution, memory.bound) = (*caution, *bound);
+        (memory.caution, memory.bound) = (*caution, bound.if_finite());
         if memory.points.is_some() || !points.is_empty() {
             memory.points.get_or_insert_default().start_from(points);
         }

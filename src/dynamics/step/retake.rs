@@ -33,10 +33,10 @@ pub(super) struct Caution {
 impl Caution {
     /// Advances the memory by a step of `time` seconds. Returns the accuracy of that step.
     pub(super) fn pass(&mut self, time: f64, accuracy: Accuracy) -> Accuracy {
-        if self.left <= 0.0 {
+        if self.left.is_nan() || self.left <= 0.0 {
             return accuracy;
         }
-        self.left -= time;
+        self.left = self.left.min(STAYS) - time;
         Accuracy {
             microsteps: accuracy.microsteps.max(self.microsteps),
             ..accuracy

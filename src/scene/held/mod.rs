@@ -83,7 +83,7 @@ impl Leeway {
     /// Counts a step. Returns whether the numbers must be computed again. `by` and `masses` are those of now, and `known` says
     /// whether contacts are known.
     pub(crate) fn is_due(&mut self, by: [(bool, bool); 2], masses: [f64; 2], known: bool) -> bool {
-        self.age += 1;
+        self.age = self.age.saturating_add(1);
         let mut ends = self.by.iter().zip(by);
         let more = ends.any(|(old, new)| (new.0 && !old.0) || (new.1 && !old.1));
         let fewer = self.age >= YOUNG && self.by != by;

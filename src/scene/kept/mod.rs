@@ -8,6 +8,7 @@
 mod inside;
 mod map;
 mod memory;
+mod sound;
 
 use crate::backend::BodyId;
 use crate::dynamics::step::Remembered;

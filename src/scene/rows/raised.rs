@@ -39,7 +39,10 @@ impl<T: Copy + Default + PartialEq + PartialOrd> Replaced<T> {
     /// crate's, it is the user's. Updates `known`.
     fn order(known: &mut Option<Self>, now: T, wanted: T) -> T {
         let users = match *known {
-            Some(known) if known.ours == now => known.users,
+            // The crate only raises. A record that says otherwise is forged, and would order a step that never ends.
+            Some(Self { ours, users }) if ours == now && users >= T::default() && users < ours => {
+                users
+            }
             _ => now,
         };
         let ours = if wanted > users { wanted } else { users };

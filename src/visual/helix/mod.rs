@@ -91,13 +91,21 @@ impl Default for Helix {
 /// Why a coil cannot be wound.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum HelixError {
-    /// A field is not finite and above zero: its name and value.
+    /// A field is not above zero, or too small or too large to compute with: its name and value.
     NotPositive(&'static str, f32),
     /// The wire would cross the axis of the coil: radius of the wire and radius of the coil, m.
     WireTooThick(f32, f32),
     /// There are more than 1000 turns: their number.
     TooManyTurns(f32),
 }
+
+/// Sizes that can be drawn, m, and numbers of turns. The products of two of them, and their quotients, fit into f32.
+pub(super) fn is_size(x: f32) -> bool {
+    (1e-12..=1e12).contains(&x)
+}
+
+/// What [`is_size`] asks for, for messages.
+pub(super) const SIZES: &str = "finite and positive, from 1e-12 to 1e12";
 
 /// Most turns of a coil. With more, the mesh gets too large to draw.
 const MOST_TURNS: f32 = 1000.0;
@@ -106,7 +114,7 @@ impl fmt::Display for HelixError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::NotPositive(field, value) => {
-                write!(f, "{field} is {value}, and must be finite and positive")
+                write!(f, "{field} is {value}, and must be {SIZES}")
             }
             Self::WireTooThick(wire, radius) => write!(
                 f,
@@ -146,8 +154,8 @@ impl Helix {
         self
     }
 
-    /// Checks whether such a wire can be wound. Returns an error if a size is not finite and above zero, if the wire
-    /// would cross the axis, or if there are more than 1000 turns.
+    /// Checks whether such a wire can be wound. Returns an error if a size or the number of turns is not from 1e-12 to
+    /// 1e12, if the wire would cross the axis, or if there are more than 1000 turns.
     pub fn check(&self) -> Result<(), HelixError> {
         for (field, value) in [
             ("radius", self.radius),
@@ -155,7 +163,7 @@ impl Helix {
             ("turns", self.turns),
             ("length", self.length),
         ] {
-            if !value.is_finite() || value <= 0.0 {
+            if !is_size(value) {
                 return Err(HelixError::NotPositive(field, value));
             }
         }

@@ -174,7 +174,7 @@ impl<'a> Surroundings<'a> {
         if jointed || touched {
             row.rare.lingers = LINGER;
         } else if row.has(BodyFlags::LINGERS) {
-            row.rare.lingers = (row.rare.lingers - time as f32).max(0.0);
+            row.rare.lingers = (row.rare.lingers.min(LINGER) - time as f32).max(0.0);
         }
         let lingers = (jointed || touched || row.has(BodyFlags::LINGERS)) && row.rare.lingers > 0.0;
         let flags = &mut row.flags;

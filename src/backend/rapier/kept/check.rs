@@ -4,7 +4,7 @@ use crate::backend::BodyId;
 use crate::backend::rapier::body::{handle, joint_handle};
 use crate::backend::rapier::held::{fits, is_ours};
 use crate::input::parts::Acts;
-use crate::scene::held::KeptJoint;
+use crate::scene::held::{Joints, KeptJoint};
 use crate::scene::kept::{Kept, KeptBody, KeptContext, KeptInside, NONE};
 use crate::scene::rows::{BodyRow, Raised};
 use crate::scene::state::Scene;
@@ -27,6 +27,12 @@ impl Kept {
         let elements = self.elements.iter().flat_map(|element| element.on);
         let groups = self.groups.iter().map(|group| group.body);
         if !elements.chain(groups).all(body) {
+            return Err(SnapshotError::Broken);
+        }
+        let insides = self.elements.iter().filter_map(|e| e.inside.as_deref());
+        let mut insides = insides.chain(self.left.iter().map(|(_, inside)| inside));
+        // Of two joints at one place, nobody would take care of the first.
+        if insides.any(|inside| Joints::of(&inside.joints).count() != inside.joints.len()) {
             return Err(SnapshotError::Broken);
         }
         let mut elements = world.query_filtered::<(), Acts>();

@@ -34,6 +34,7 @@ impl Kept {
     pub(crate) fn put(&self, world: &mut World) -> Result<(), SnapshotError> {
         let engine_went_back = engine_went_back(world);
         let mut kept = self.clone();
+        kept.mend();
         kept.name_contexts(world);
         let fits = kept.check(world, engine_went_back);
         if fits.is_err() && engine_went_back {
@@ -267,7 +268,7 @@ impl Kept {
             if let Some(mut readout) = world.get_mut::<SpringReadout>(kept.entity) {
                 readout.set_if_neq(kept.readout);
             }
-            if let Some(rest) = kept.rest_length
+            if let Some(rest) = kept.sound_rest_length()
                 && !kept.is_provisional(world)
             {
                 write_rest(kept.entity, rest, world);
@@ -312,11 +313,10 @@ impl KeptElement {
 
     /// Fills a row with the remembered state. Returns whether the parameters in its component differ from those that acted last.
     fn fill(&self, row: &mut ElementRow, context: Option<Entity>) -> bool {
-        let p = &mut row.numbers;
-        let rest = p.rest_length.or(self.rest_length);
-        let differs = [p.stiffness, p.damping] != self.numbers || rest != self.rest_length;
-        [p.stiffness, p.damping] = self.numbers;
-        p.rest_length = self.rest_length;
+        let given = row.numbers;
+        let rest = given.rest_length.or(self.rest_length);
+        let differs = [given.stiffness, given.damping] != self.numbers || rest != self.rest_length;
+        row.numbers = self.numbers_or(given);
         row.flags.remove(ElementFlags::KEPT);
         row.flags.insert(self.flags & ElementFlags::KEPT);
         row.ledger = self.ledger;
