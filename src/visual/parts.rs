@@ -203,9 +203,10 @@ pub(super) fn take_skins(
             log::warn!("{entity}: SpringSkin: it must be a child of an element; it is not placed");
             continue;
         };
-        if !skin.length.is_finite() || skin.length <= 0.0 {
+        // A shorter mesh would be scaled beyond what f32 holds.
+        if !skin.length.is_finite() || skin.length < SHORT {
             log::warn!(
-                "{entity}: SpringSkin: length is {}, and must be finite and positive; it is not placed",
+                "{entity}: SpringSkin: length is {}, and must be finite and at least {SHORT} m; it is not placed",
                 skin.length
             );
             let_go(entity, &mut commands);

@@ -10,7 +10,7 @@ use bevy::prelude::*;
 /// `Visibility` that a parent of drawn entities needs. The render layers of the child stay yours: those of the element
 /// are not copied to it.
 ///
-/// If `length` is not finite and above zero, or the entity has no parent, a warning is logged and the child is not
+/// If `length` is not finite and at least 10⁻⁵ m, or the entity has no parent, a warning is logged and the child is not
 /// placed until that is mended.
 ///
 /// While the element is [disabled](bevy::ecs::entity_disabling::Disabled), the child is not drawn.
