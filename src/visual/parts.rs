@@ -9,6 +9,7 @@ use super::shapes::{CoilMeshes, Finish, Shapes};
 use super::skin::SpringSkin;
 use super::telescope::Telescope;
 use super::twist::Twist;
+use crate::input::strays::Strays;
 use bevy::asset::{Assets, Handle};
 use bevy::camera::visibility::RenderLayers;
 use bevy::color::Color;
@@ -188,6 +189,8 @@ pub(super) fn take_skins(
     mut enabled: RemovedComponents<Disabled>,
     mut removed: RemovedComponents<SpringSkin>,
     bare: Query<(), (With<Part>, Without<SpringSkin>, Allow<Disabled>)>,
+    // Only the plugin for physics has it.
+    mut strays: Option<ResMut<Strays>>,
     mut commands: Commands,
 ) {
     for entity in removed.read().filter(|entity| bare.contains(*entity)) {
@@ -211,6 +214,9 @@ pub(super) fn take_skins(
             );
             let_go(entity, &mut commands);
             continue;
+        }
+        if let Some(strays) = &mut strays {
+            strays.notice_skin(entity);
         }
         commands.entity(entity).insert(Part::Custom(skin.length));
         commands

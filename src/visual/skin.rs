@@ -11,7 +11,8 @@ use bevy::prelude::*;
 /// are not copied to it.
 ///
 /// If `length` is not finite and at least 10⁻⁵ m, or the entity has no parent, a warning is logged and the child is not
-/// placed until that is mended.
+/// placed until that is mended. A warning is also logged if the parent is no such element. The child is not drawn until the
+/// parent is one.
 ///
 /// While the element is [disabled](bevy::ecs::entity_disabling::Disabled), the child is not drawn.
 ///
