@@ -26,6 +26,9 @@ use bevy_rapier3d::rapier::dynamics::RigidBody as RapierBody;
 /// The point follows a steadily moving target without lag. If the target jumps, the point overshoots by an eighth of
 /// the jump (e⁻²). A body that is gone or cannot be moved is not pulled.
 ///
+/// A copy of the entity, as from a scene that was saved meanwhile, spawns springs of its own. Springs that were copied with
+/// it are despawned.
+///
 /// If the target, point, frequency or greatest force is not a valid number, or the frequency needs a spring of more than
 /// 1e12 N/m, this entity gets a [`SpringFault`], and nothing is pulled until that is corrected.
 ///
@@ -157,6 +160,8 @@ pub(crate) fn hold(
         With<RigidBody>,
     >,
     sets: Query<&RapierRigidBodySet>,
+    children: Query<&Children>,
+    springs: Query<(&SpringDamper, &SpringAxis)>,
     mut commands: Commands,
 ) {
     let body_of = |entity| {
@@ -184,6 +189,11 @@ pub(crate) fn hold(
             tell(entity, None, told, &mut commands);
             at.translation = spring.target;
             continue;
+        }
+        // Without a grip it has no springs of its own. Those of a copied entity would pull beside them.
+        let below = children.get(entity).into_iter().flatten();
+        for spring in below.filter(|child| is_grip(**child, entity, &springs)) {
+            commands.entity(*spring).try_despawn();
         }
         let masses =
             body.map(|(body, scale)| AXES.map(|axis| mass_at(body, scale * spring.point, axis)));
@@ -219,6 +229,15 @@ pub(crate) fn hold(
 /// Removes the fault of a [`MouseSpring`] when the component is removed.
 pub(crate) fn forget(gone: compat::Removed<MouseSpring>, mut commands: Commands) {
     commands.entity(gone.entity).try_remove::<SpringFault>();
+}
+
+/// Whether a child of a [`MouseSpring`] is a spring that [`along`] makes for it.
+fn is_grip(child: Entity, entity: Entity, springs: &Query<(&SpringDamper, &SpringAxis)>) -> bool {
+    springs.get(child).is_ok_and(|(spring, axis)| {
+        spring.body_a == entity
+            && spring.rest_length == Some(0.0)
+            && matches!(axis, SpringAxis::World(_))
+    })
 }
 
 /// Returns the spring along an axis of the world, for an effective mass at the held point, kg.

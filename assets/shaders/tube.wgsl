@@ -15,11 +15,19 @@ struct RoundWire {
 const TAU: f32 = 6.283185307179586;
 const DEAD: f32 = 1.0;
 const BLEND: f32 = 0.5;
+// Least divisors, so that a coil without size has no extent. Otherwise its positions would be no numbers.
+const LEAST_SIZE: f32 = 1e-9;
+const LEAST_SCALE: f32 = 1e-20;
 
 struct Point {
     position: vec3<f32>,
     normal: vec3<f32>,
     tangent: vec4<f32>,
+}
+
+// The vector at unit length; zero if it has no length.
+fn unit(v: vec3<f32>) -> vec3<f32> {
+    return v / max(length(v), LEAST_SCALE);
 }
 
 // Without scale: a point in the coil's own frame, for a coil of this radius, wire radius and length.
@@ -31,12 +39,13 @@ fn tube(radius: f32, wire_radius: f32, length: f32, uv: vec2<f32>) -> Point {
     let dead = select(min(DEAD, turns / 4.0), 0.0, open);
     let blend = select(min(BLEND, (turns - 2.0 * dead) / 4.0), 0.0, open);
 
+    let around = max(TAU * radius, LEAST_SIZE);
     var end_pitch = 0.0;
     var pitch = 0.0;
     var start = 0.0;
     var rise = 0.0;
     for (var i = 0u; i < 3u; i += 1u) {
-        let slope = end_pitch / (TAU * radius);
+        let slope = end_pitch / around;
         start = select(wire_radius * inverseSqrt(1.0 + slope * slope), 0.0, ground);
         rise = max(length - 2.0 * start, 0.0);
         let even = rise / turns;
@@ -58,7 +67,7 @@ fn tube(radius: f32, wire_radius: f32, length: f32, uv: vec2<f32>) -> Point {
 
     // The angle modulo a turn first: sine and cosine of large numbers are coarse on some cards.
     let angle = TAU * fract(turn);
-    let steep = here / (TAU * radius);
+    let steep = here / around;
     let cosine = inverseSqrt(1.0 + steep * steep);
     let outward = vec3(cos(angle), 0.0, -hand * sin(angle));
     let tangent = cosine * vec3(-sin(angle), steep, -hand * cos(angle));
@@ -66,7 +75,7 @@ fn tube(radius: f32, wire_radius: f32, length: f32, uv: vec2<f32>) -> Point {
     let center = radius * outward + vec3(0.0, height, 0.0);
 
     // What a ground end leaves of the section.
-    let cut = select(-1.0, max(-above / (wire_radius * cosine), -1.0), ground);
+    let cut = select(-1.0, max(-above / max(wire_radius * cosine, LEAST_SIZE), -1.0), ground);
     let low = select(-1.0, cut, lower);
     let high = select(-cut, 1.0, lower);
 
@@ -98,14 +107,14 @@ fn placed(model: mat4x4<f32>, uv: vec2<f32>) -> Point {
         round_wire.shape.w * stretched,
         uv,
     );
-    let turned = mat3x3<f32>(
-        model[0].xyz / max(size, 1e-20),
-        model[1].xyz / max(stretched, 1e-20),
-        normalize(cross(model[0].xyz / max(size, 1e-20), model[1].xyz / max(stretched, 1e-20))),
-    );
+    // The axis of a coil that is flattened altogether is across its other two.
+    let flattened = stretched < LEAST_SCALE;
+    let across = unit(model[0].xyz);
+    let along = select(unit(model[1].xyz), unit(cross(model[2].xyz, model[0].xyz)), flattened);
+    let turned = mat3x3<f32>(across, along, unit(cross(across, along)));
     var out: Point;
     out.position = turned * local.position + model[3].xyz;
-    out.normal = normalize(turned * local.normal);
-    out.tangent = vec4(normalize(turned * local.tangent.xyz), local.tangent.w);
+    out.normal = unit(turned * local.normal);
+    out.tangent = vec4(unit(turned * local.tangent.xyz), local.tangent.w);
     return out;
 }

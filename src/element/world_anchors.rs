@@ -7,6 +7,8 @@ use bevy::prelude::*;
 /// is removed. Points on ends that are still looked up by their [names](crate::EndNames) wait for them. From then on each
 /// point moves with its end. Insert it again to attach the element elsewhere.
 ///
+/// If an end is a body without a `Transform`, a warning is logged once, and this component waits until the body has one.
+///
 /// ```
 /// # use bevy::prelude::*;
 /// # use bevy_coilover::prelude::*;

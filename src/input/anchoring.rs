@@ -3,8 +3,15 @@
 use crate::element::{Anchors, WorldAnchors};
 use crate::input::named_ends::MOST_LEVELS;
 use crate::input::parts::{Acts, Parts, PartsItem};
+use bevy::ecs::entity::EntityHashMap;
 use bevy::ecs::system::SystemState;
 use bevy::prelude::*;
+
+/// Number of ticks that an end has to get its place before a warning is logged.
+const GRACE: u8 = 4;
+
+/// Elements whose points wait for a place of an end, with the number of ticks that they have waited.
+type Waiting<'s> = Local<'s, EntityHashMap<u8>>;
 
 /// What is read and written to convert anchors.
 type Sources<'w, 's> = (
@@ -18,14 +25,17 @@ type Sources<'w, 's> = (
     >,
     Query<'w, 's, &'static Transform>,
     Query<'w, 's, &'static ChildOf>,
+    Query<'w, 's, &'static Name>,
+    Waiting<'s>,
     Commands<'w, 's>,
 );
 
 /// Converts [`WorldAnchors`] into [`Anchors`]. If an end does not exist yet, the component waits, and the element
-/// itself reports the missing end. It also waits for named ends, because the present ends may be those of earlier names.
+/// itself reports the missing end. It also waits for named ends, because the present ends may be those of earlier names, and
+/// for a body without a place, which no other fault tells of: then a warning is logged once.
 pub(crate) fn anchor(world: &mut World, sources: &mut SystemState<Sources>) {
-    if let Ok((elements, transforms, parents, commands)) = sources.get_mut(world) {
-        convert(elements, transforms, parents, commands);
+    if let Ok((elements, transforms, parents, names, waiting, commands)) = sources.get_mut(world) {
+        convert(elements, transforms, parents, names, waiting, commands);
     }
     sources.apply(world);
 }
@@ -37,8 +47,11 @@ fn convert(
     )>,
     transforms: Query<&Transform>,
     parents: Query<&ChildOf>,
+    names: Query<&Name>,
+    mut waiting: Waiting,
     mut commands: Commands,
 ) {
+    let mut placeless = Vec::new();
     let on_ends = |(parts, points): (PartsItem, &WorldAnchors)| {
         // Composed from local transforms: `GlobalTransform` is one frame old here.
         let local = |end: Entity, point: Vec3| {
@@ -54,15 +67,51 @@ fn convert(
             Some(global.affine().inverse().transform_point3(point))
         };
         let [a, b] = parts.parameters().ok()?.ties.ends;
-        let anchors = Anchors::new(local(a, points.a)?, local(b, points.b)?);
-        Some((parts.entity, anchors))
+        match (local(a, points.a), local(b, points.b)) {
+            (Some(a), Some(b)) => Some((parts.entity, Anchors::new(a, b))),
+            (found, _) => {
+                let end = if found.is_none() { ("a", a) } else { ("b", b) };
+                // A fault of the element tells of an end that is no end at all.
+                if !parts.told {
+                    placeless.push((parts.entity, end));
+                }
+                None
+            }
+        }
     };
     let found: Vec<_> = elements.p0().iter().filter_map(on_ends).collect();
+    tell(placeless, &names, &mut waiting);
     for (entity, anchors) in found {
         // A point that cannot be converted (on an end scaled to zero) becomes NaN, and is reported like any bad anchor.
         if let Ok(mut given) = elements.p1().get_mut(entity) {
             given.set_if_neq(anchors);
         }
         commands.entity(entity).try_remove::<WorldAnchors>();
+    }
+}
+
+/// Warns once about each element whose points still wait for the place of an end.
+fn tell(
+    placeless: Vec<(Entity, (&str, Entity))>,
+    names: &Query<&Name>,
+    waiting: &mut EntityHashMap<u8>,
+) {
+    let before = std::mem::take(waiting);
+    for (entity, (field, end)) in placeless {
+        let ticks = before
+            .get(&entity)
+            .map_or(1, |ticks| ticks.saturating_add(1));
+        waiting.insert(entity, ticks);
+        if ticks != GRACE {
+            continue;
+        }
+        // As faults are told.
+        let who = names
+            .get(entity)
+            .map_or_else(|_| entity.to_string(), |name| format!("{name}, {entity}"));
+        log::warn!(
+            "{who}: WorldAnchors::{field} cannot be converted, because {end} has no Transform; until it has one, the \
+             element acts on its Anchors"
+        );
     }
 }

@@ -5,6 +5,10 @@
 use crate::compat::Added;
 use crate::input::parts::{IsElement, IsLinear};
 use bevy::ecs::entity::{EntityHashMap, EntityHashSet};
+#[cfg(feature = "visual")]
+use bevy::ecs::entity_disabling::Disabled;
+#[cfg(feature = "visual")]
+use bevy::ecs::query::Allow;
 use bevy::prelude::*;
 
 /// Number of ticks that an entity has to get its element.
@@ -28,6 +32,9 @@ pub(crate) enum Role {
 pub(crate) struct Strays {
     waiting: EntityHashMap<Stray>,
     told: EntityHashSet,
+    /// Skins that got a parent, and the number of ticks that it has left to become a linear element.
+    #[cfg(feature = "visual")]
+    skins: EntityHashMap<u8>,
     /// `Some(false)` once there is something to draw; `Some(true)` once it was checked that a plugin draws it.
     #[cfg(feature = "visual")]
     undrawn: Option<bool>,
@@ -39,6 +46,62 @@ struct Stray {
     looks: Vec<&'static str>,
     spirals: Vec<&'static str>,
     left: u8,
+}
+
+#[cfg(feature = "visual")]
+impl Strays {
+    /// Notices a skin that got a parent, which may be no element.
+    pub(crate) fn notice_skin(&mut self, skin: Entity) {
+        if !self.told.contains(&skin) {
+            self.skins.insert(skin, GRACE);
+        }
+    }
+
+    /// Warns about skins whose parent is still no linear element.
+    fn tell_skins(
+        &mut self,
+        skins: &Query<Skin, With<crate::SpringSkin>>,
+        elements: &Query<(), IsDrawnOn>,
+    ) {
+        let Self {
+            skins: waiting,
+            told,
+            ..
+        } = self;
+        waiting.retain(|&skin, left| {
+            let Ok((parent, name)) = skins.get(skin) else {
+                return false;
+            };
+            let parent = parent.parent();
+            if elements.contains(parent) {
+                return false;
+            }
+            *left -= 1;
+            if *left > 0 {
+                return true;
+            }
+            told.insert(skin);
+            log::warn!(
+                "{}: SpringSkin: its parent {parent} is no Spring, Damper or SpringDamper, so it is not drawn; make it \
+                 a child of one",
+                who(skin, name)
+            );
+            false
+        });
+    }
+}
+
+/// Parent and name of a skin.
+#[cfg(feature = "visual")]
+type Skin = (&'static ChildOf, Option<&'static Name>);
+
+/// Filter: a linear element, also a disabled one.
+#[cfg(feature = "visual")]
+type IsDrawnOn = (IsLinear, Allow<Disabled>);
+
+/// How a message calls an entity, as those of faults do.
+fn who(entity: Entity, name: Option<&Name>) -> String {
+    name.map_or_else(|| entity.to_string(), |name| format!("{name}, {entity}"))
 }
 
 /// Makes an app notice a component of this type on an entity without a suitable element.
@@ -83,7 +146,7 @@ pub(crate) fn notice<C: Component>(app: &mut App, role: Role) {
 /// Whether there is anything to check.
 pub(crate) fn any_strays(strays: Res<Strays>) -> bool {
     #[cfg(feature = "visual")]
-    if strays.undrawn == Some(false) {
+    if strays.undrawn == Some(false) || !strays.skins.is_empty() {
         return true;
     }
     !strays.waiting.is_empty()
@@ -96,8 +159,12 @@ pub(crate) fn tell_strays(
     linear: Query<(), IsLinear>,
     entities: Query<Option<&Name>>,
     #[cfg(feature = "visual")] drawn: Option<Res<crate::visual::IsDrawn>>,
+    #[cfg(feature = "visual")] skins: Query<Skin, With<crate::SpringSkin>>,
+    #[cfg(feature = "visual")] drawn_on: Query<(), IsDrawnOn>,
 ) {
     let strays = &mut *strays;
+    #[cfg(feature = "visual")]
+    strays.tell_skins(&skins, &drawn_on);
     #[cfg(feature = "visual")]
     if strays.undrawn == Some(false) {
         strays.undrawn = Some(true);
@@ -129,8 +196,7 @@ pub(crate) fn tell_strays(
             return true;
         }
         told.insert(entity);
-        // As faults are told.
-        let who = name.map_or_else(|| entity.to_string(), |name| format!("{name}, {entity}"));
+        let who = who(entity, name);
         if is_element {
             let looks = misplaced.join(", ");
             let (on, other) = if is_linear {

@@ -1,7 +1,7 @@
 //! The drawn children of an element: spawned when its looks are added or changed, and removed with them.
 
 use super::coil::Coil;
-use super::helix::{SIZES, is_size};
+use super::helix::is_size;
 use super::layout::{Layout, Part, SHORT};
 use super::made::{Made, Maker};
 use super::place::{Line, Lines, Placement};
@@ -10,6 +10,7 @@ use super::shapes::{CoilMeshes, Finish, Shapes};
 use super::skin::SpringSkin;
 use super::telescope::Telescope;
 use super::twist::Twist;
+use crate::input::strays::Strays;
 use bevy::asset::{Assets, Handle};
 use bevy::camera::visibility::RenderLayers;
 use bevy::color::Color;
@@ -189,6 +190,8 @@ pub(super) fn take_skins(
     mut enabled: RemovedComponents<Disabled>,
     mut removed: RemovedComponents<SpringSkin>,
     bare: Query<(), (With<Part>, Without<SpringSkin>, Allow<Disabled>)>,
+    // Only the plugin for physics has it.
+    mut strays: Option<ResMut<Strays>>,
     mut commands: Commands,
 ) {
     for entity in removed.read().filter(|entity| bare.contains(*entity)) {
@@ -204,13 +207,17 @@ pub(super) fn take_skins(
             log::warn!("{entity}: SpringSkin: it must be a child of an element; it is not placed");
             continue;
         };
-        if !is_size(skin.length) {
+        // A shorter mesh would be scaled beyond what f32 holds.
+        if !is_size(skin.length) || skin.length < SHORT {
             log::warn!(
-                "{entity}: SpringSkin: length is {}, and must be {SIZES}; it is not placed",
+                "{entity}: SpringSkin: length is {}, and must be from {SHORT} to 1e12 m; it is not placed",
                 skin.length
             );
             let_go(entity, &mut commands);
             continue;
+        }
+        if let Some(strays) = &mut strays {
+            strays.notice_skin(entity);
         }
         commands.entity(entity).insert(Part::Custom(skin.length));
         commands

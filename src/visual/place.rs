@@ -12,7 +12,8 @@ use bevy::prelude::*;
 /// An element that no camera sees is placed only once in this many frames. It is not left alone altogether, because it
 /// may cast a shadow into the picture. The visibility and the level of detail of an element in sight are updated as
 /// seldom: in between, it may be drawn a little too finely or too coarsely, or be placed in vain after it has gone out
-/// of sight. All are updated in the frame in which the views jump.
+/// of sight. All are updated in the frame in which the views jump, and those in sight also in a frame in which a view is
+/// cut to another place, near enough to change their size in pixels.
 const SELDOM: u32 = 8;
 
 /// Where an element is drawn.
@@ -23,6 +24,8 @@ pub struct Placement {
     pub(super) due: Due,
     /// Level of detail.
     pub(super) level: u8,
+    /// How far a view may move in one frame before the level must be updated, m.
+    room: f32,
     /// Whether a warning was logged that the coil is shorter than all its turns are thick.
     squeezed: bool,
     /// Whether the element was in sight when that was last checked.
@@ -136,11 +139,13 @@ impl Placement {
             return Due::Nowhere;
         }
         let before = self.level;
-        // An element that comes into sight is seen at once.
-        if has_turn || !self.seen {
+        let has_turn = has_turn || views.step() > self.room;
+        // An element that comes into sight, or has a place again, is seen at once.
+        if has_turn || !self.seen || self.due == Due::Nowhere {
             let middle = ends.from + 0.5 * between;
             let sight = views.sight(middle, 0.5 * length + self.layout.reach);
             self.seen = sight.seen;
+            self.room = sight.room;
             if sight.seen {
                 self.level = level(2.0 * self.layout.wire_radius * sight.pixels, before);
             }

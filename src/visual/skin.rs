@@ -10,8 +10,9 @@ use bevy::prelude::*;
 /// `Visibility` that a parent of drawn entities needs. The render layers of the child stay yours: those of the element
 /// are not copied to it.
 ///
-/// If `length` is not from 1e-12 to 1e12, or the entity has no parent, a warning is logged and the child is not
-/// placed until that is mended.
+/// If `length` is not from 1e-5 to 1e12 m, or the entity has no parent, a warning is logged and the child is not
+/// placed until that is mended. A warning is also logged if the parent is no such element. The child is not drawn until the
+/// parent is one.
 ///
 /// While the element is [disabled](bevy::ecs::entity_disabling::Disabled), the child is not drawn.
 ///

@@ -9,7 +9,7 @@ use std::f32::consts::TAU;
 
 /// Number of segments per turn.
 const SEGMENTS: f32 = 40.0;
-/// Number of turns that are left, however far the spring is unwound.
+/// Number of turns that are left, however far the spring is unwound; half of them if it has fewer than twice as many.
 const LEAST_TURNS: f32 = 0.25;
 
 /// Number of twist steps in a full turn: meshes are made for whole degrees.
@@ -22,7 +22,8 @@ pub(super) fn step(twist: f32) -> i32 {
 
 /// The angle of the strip from end to end, rad.
 fn angle(coil: &TorsionCoil, step: i32) -> f32 {
-    TAU * (coil.turns + step as f32 / STEPS).clamp(LEAST_TURNS, 2.0 * coil.turns + 1.0)
+    let least = LEAST_TURNS.min(0.5 * coil.turns);
+    TAU * (coil.turns + step as f32 / STEPS).clamp(least, 2.0 * coil.turns + 1.0)
 }
 
 /// 1 if the strip goes outwards by the right-hand rule about the axis, else −1.
@@ -37,17 +38,21 @@ pub(super) fn hand(coil: &TorsionCoil) -> f32 {
 pub(super) fn mesh(coil: &TorsionCoil, step: i32) -> Mesh {
     let hand = hand(coil);
     let whole = angle(coil, step);
-    let count = (whole / TAU * SEGMENTS).ceil() as u32;
+    let count = ((whole / TAU * SEGMENTS).ceil() as u32).max(1);
+    let room = coil.radius - coil.arbor_radius;
     let mut strip = Strip::default();
     for i in 0..=count {
         // Share of the way from the inner end to the outer end.
         let share = i as f32 / count as f32;
-        let radius = coil.arbor_radius + (coil.radius - coil.arbor_radius) * share;
+        let radius = coil.arbor_radius + room * share;
         let turned = -hand * whole * (1.0 - share);
         let (sine, cosine) = turned.sin_cos();
         // A positive rotation about Y goes from X towards −Z.
         let outward = Vec3::new(cosine, 0.0, -sine);
-        strip.ring(radius * outward, outward, coil);
+        let round = Vec3::new(-sine, 0.0, -cosine);
+        // Across the strip, which goes outwards more than around where it has few turns.
+        let across = (whole * radius * outward - hand * room * round).normalize();
+        strip.ring(radius * outward, across, coil);
         if i > 0 {
             strip.sides();
         }
@@ -69,7 +74,7 @@ struct Strip {
 }
 
 impl Strip {
-    /// Adds the section at one place of the strip.
+    /// Adds the section at one place of the strip. `outward` is across the strip, away from the axis.
     fn ring(&mut self, middle: Vec3, outward: Vec3, coil: &TorsionCoil) {
         let (thick, wide) = (0.5 * coil.thickness * outward, 0.5 * coil.width * Vec3::Y);
         let corners = [
@@ -185,22 +190,64 @@ mod tests {
         for handedness in [Handedness::Right, Handedness::Left] {
             let coil = TorsionCoil::new(0.2, 3.0).with_handedness(handedness);
             let mesh = mesh(&coil, 17);
-            let all = positions(&mesh);
-            let Some(Indices::U32(indices)) = mesh.indices() else {
-                panic!("indices");
-            };
             // A closed surface with outward faces has a positive volume: here, that of the strip.
-            let volume: f32 = indices
-                .chunks(3)
-                .map(|t| {
-                    let [a, b, c] = [t[0], t[1], t[2]].map(|i| all[i as usize]);
-                    a.dot(b.cross(c)) / 6.0
-                })
-                .sum();
+            let volume = volume(&mesh);
             let mean = 0.5 * (coil.radius + coil.arbor_radius);
             let length = TAU * (coil.turns + 17.0 / 360.0) * mean;
             let wanted = length * coil.width * coil.thickness;
             assert!((volume / wanted - 1.0).abs() < 0.01, "{volume} {wanted}");
+        }
+    }
+
+    /// Volume inside the faces. It is positive if they look outwards.
+    fn volume(mesh: &Mesh) -> f32 {
+        let all = positions(mesh);
+        let Some(Indices::U32(indices)) = mesh.indices() else {
+            panic!("indices");
+        };
+        let pyramids = indices.chunks(3).map(|t| {
+            let [a, b, c] = [t[0], t[1], t[2]].map(|i| all[i as usize]);
+            a.dot(b.cross(c)) / 6.0
+        });
+        pyramids.sum()
+    }
+
+    #[test]
+    fn a_strip_of_less_than_a_quarter_turn_is_as_thick_as_it_should_be_and_meets_both_ends() {
+        for (turns, handedness) in [0.001, 0.02, 0.1, 0.2, 0.25]
+            .into_iter()
+            .flat_map(|turns| [(turns, Handedness::Right), (turns, Handedness::Left)])
+        {
+            let coil = TorsionCoil::new(0.2, turns).with_handedness(handedness);
+            assert_eq!(coil.check(), Ok(()));
+            let at_rest = mesh(&coil, 0);
+            let [inner, outer] = ends(&at_rest);
+            assert!(outer.distance(0.2 * Vec3::X) < 1e-6, "{turns}: {outer}");
+            let start = Quat::from_rotation_y(-hand(&coil) * TAU * turns) * Vec3::X;
+            let wanted = coil.arbor_radius * start;
+            assert!(inner.distance(wanted) < 1e-6, "{turns}: {inner}, {wanted}");
+
+            let room = coil.radius - coil.arbor_radius;
+            let steps = (0..1000).map(|i| {
+                let radius = coil.arbor_radius + room * (i as f32 + 0.5) / 1000.0;
+                room.hypot(TAU * turns * radius) / 1000.0
+            });
+            let wanted = steps.sum::<f32>() * coil.width * coil.thickness;
+            let share = volume(&at_rest) / wanted;
+            assert!((share - 1.0).abs() < 0.05, "{turns}: {share}");
+        }
+    }
+
+    #[test]
+    fn the_inner_end_of_a_short_strip_stays_while_it_is_wound_and_unwound_a_little() {
+        let coil = TorsionCoil::new(0.2, 0.2);
+        let [rest, _] = ends(&mesh(&coil, 0));
+        for step in [-30, 30] {
+            let [inner, outer] = ends(&mesh(&coil, step));
+            assert!(outer.distance(0.2 * Vec3::X) < 1e-6, "{outer}");
+            let twist = TAU * step as f32 / STEPS;
+            let back = Quat::from_rotation_y(-hand(&coil) * twist) * rest;
+            assert!(inner.distance(back) < 1e-6, "{inner} is not {back}");
         }
     }
 

@@ -9,6 +9,10 @@ use bevy::prelude::*;
 const FINE_ENOUGH: [f32; 3] = [14.0, 5.0, 1.5];
 /// Factor by which the thickness must pass a bound before the level changes, so that the level does not flicker.
 const HYSTERESIS: f32 = 1.15;
+/// Share of its distance by which a camera can move without a change of size by more than the hysteresis.
+const ROOM: f32 = 1.0 - 1.0 / HYSTERESIS;
+/// Least cosine of the angle by which a camera turns from one frame to the next, unless it is cut to another direction.
+const TURN: f32 = 0.97;
 
 /// A camera.
 #[derive(Clone, Copy, PartialEq)]
@@ -17,6 +21,8 @@ struct View {
     /// the product of the plane with the ball's centre is below minus the radius.
     planes: [[Vec4; 4]; 2],
     position: Vec3A,
+    /// Unit vector against the direction in which it looks.
+    back: Vec3A,
     /// Pixels per metre; in perspective, at a distance of one metre.
     focal: f32,
     perspective: bool,
@@ -54,6 +60,8 @@ pub(super) struct Views {
     before: Vec<View>,
     changes: u32,
     has_jumped: bool,
+    /// The farthest that a view has moved since the last frame, m.
+    step: f32,
 }
 
 /// The components of a camera that are read.
@@ -66,6 +74,8 @@ pub(super) struct Sight {
     pub seen: bool,
     /// Pixels per metre at its place, in the camera in which it appears largest.
     pub pixels: f32,
+    /// How far a view may move in one frame before the size in pixels is wrong, m.
+    pub room: f32,
 }
 
 impl Views {
@@ -83,6 +93,7 @@ impl Views {
             self.now.push(View {
                 planes: View::planes(frustum),
                 position: at.translation_vec3a(),
+                back: at.affine().matrix3.z_axis.normalize_or_zero(),
                 focal: 0.5 * size.y as f32 * camera.clip_from_view().y_axis.y,
                 perspective: !matches!(projection, Projection::Orthographic(_)),
             });
@@ -90,19 +101,33 @@ impl Views {
         self.changes = self
             .changes
             .wrapping_add(u32::from(self.now != self.before));
+        let pairs = || self.now.iter().zip(&self.before);
+        // What a single view turns to was out of sight before. With several views, another one may have seen it.
+        let alone = self.now.len() == 1;
         let is_near = |(now, before): (&View, &View)| {
             let bounds = HYSTERESIS.recip()..=HYSTERESIS;
-            now.focal == before.focal || bounds.contains(&(now.focal / before.focal))
+            now.perspective == before.perspective
+                && (now.focal == before.focal || bounds.contains(&(now.focal / before.focal)))
+                && (alone || now.back == before.back || now.back.dot(before.back) > TURN)
         };
-        self.has_jumped =
-            self.now.len() != self.before.len() || !self.now.iter().zip(&self.before).all(is_near);
+        let has_jumped = self.now.len() != self.before.len() || !pairs().all(is_near);
+        let steps = pairs().map(|(now, before)| now.position.distance(before.position));
+        let step = steps.fold(0.0, f32::max);
+        self.has_jumped = has_jumped;
+        self.step = step;
     }
 
-    /// Whether a view is new, or shows everything suddenly larger or smaller, as that of a window whose size has
-    /// changed. Then the levels of detail of all elements are wrong.
+    /// Whether a view is new, shows everything suddenly larger or smaller, as that of a window whose size has changed,
+    /// or suddenly looks elsewhere beside another view. Then the levels of detail of all elements may be wrong.
     #[inline]
     pub const fn have_jumped(&self) -> bool {
         self.has_jumped
+    }
+
+    /// The farthest that a view has moved since the last frame, m.
+    #[inline]
+    pub const fn step(&self) -> f32 {
+        self.step
     }
 
     /// A number that changes whenever the cameras change.
@@ -117,6 +142,7 @@ impl Views {
         let mut out = Sight {
             seen: self.now.is_empty(),
             pixels: if self.now.is_empty() { f32::MAX } else { 0.0 },
+            room: f32::INFINITY,
         };
         for view in &self.now {
             if !view.sees(center, radius) {
@@ -125,6 +151,7 @@ impl Views {
             out.seen = true;
             let pixels = if view.perspective {
                 let distance = (view.position.distance(center) - radius).max(1e-3);
+                out.room = out.room.min(ROOM * distance);
                 view.focal / distance
             } else {
                 view.focal
@@ -205,6 +232,7 @@ mod tests {
             let view = View {
                 planes: View::planes(&frustum),
                 position: Vec3A::ZERO,
+                back: Vec3A::Z,
                 focal: 1.0,
                 perspective: true,
             };

@@ -83,6 +83,65 @@ fn an_end_that_is_scaled_to_nothing_is_told_as_a_bad_anchor() {
     assert_eq!(lab.get::<SpringFault>(element).field, "Anchors::a");
 }
 
+#[test]
+fn points_on_a_body_without_a_place_are_told_once_and_wait_until_it_has_one() {
+    let log = Log::capture();
+    let mut lab = Lab::weightless();
+    let hook = lab.point(Vec3::Y);
+    let [load, late] = [(), ()].map(|()| {
+        let mass = AdditionalMassProperties::Mass(1.0);
+        lab.spawn((RigidBody::Dynamic, mass))
+    });
+    let points = WorldAnchors::new(Vec3::new(0.5, 1.0, 0.0), Vec3::new(0.5, 0.0, 0.0));
+    let [on_b, on_a] = [Spring::new(hook, load), Spring::new(load, hook)]
+        .map(|spring| lab.spawn((spring, points)));
+    let in_time = lab.spawn((Spring::new(hook, late), points));
+    lab.tick();
+    let place = Transform::default();
+    lab.app.world_mut().entity_mut(late).insert(place);
+    lab.run(0.5);
+    let told = log.take();
+    assert_eq!(told.len(), 2, "{told:?}");
+    for (element, field) in [(on_b, "b"), (on_a, "a")] {
+        let wanted = format!(
+            "{element}: WorldAnchors::{field} cannot be converted, because {load} has no Transform"
+        );
+        assert!(
+            told.iter().any(|t| t.starts_with(&wanted)),
+            "{told:?} say nothing of {element}"
+        );
+    }
+    let waits = |lab: &Lab, element: Entity| lab.app.world().get::<WorldAnchors>(element).is_some();
+    assert!(waits(&lab, on_b) && waits(&lab, on_a) && !waits(&lab, in_time));
+    lab.app.world_mut().entity_mut(load).insert(place);
+    lab.tick();
+    assert!(!waits(&lab, on_b) && !waits(&lab, on_a));
+    let anchors = lab.get::<Anchors>(on_b);
+    assert!(anchors.a.distance(Vec3::X * 0.5) < 1e-5, "{anchors:?}");
+    assert!(anchors.b.distance(points.b) < 1e-5, "{anchors:?}");
+    lab.run(0.1);
+    assert_eq!(log.take(), Vec::<String>::new());
+}
+
+#[test]
+fn points_on_an_end_that_is_nowhere_are_told_by_the_fault_of_their_element_alone() {
+    let log = Log::capture();
+    let mut lab = Lab::weightless();
+    let (nowhere, load) = (lab.spawn(()), lab.body(1.0, Vec3::ZERO));
+    let points = WorldAnchors::new(Vec3::Y, Vec3::ZERO);
+    let element = lab.spawn((Spring::new(nowhere, load), points));
+    lab.run(0.5);
+    assert_eq!(lab.get::<SpringFault>(element).field, "Spring::body_a");
+    let told = log.take();
+    assert_eq!(told.len(), 1, "{told:?}");
+    let place = Transform::from_xyz(0.0, 1.0, 0.0);
+    lab.app.world_mut().entity_mut(nowhere).insert(place);
+    lab.run(0.1);
+    assert!(lab.app.world().get::<SpringFault>(element).is_none());
+    assert!(lab.app.world().get::<WorldAnchors>(element).is_none());
+    assert_eq!(log.take(), Vec::<String>::new());
+}
+
 fn rates(app: &App) -> (f32, f32) {
     let tick = app.world().resource::<Time<Fixed>>().timestep();
     let step = match *app.world().resource::<TimestepMode>() {

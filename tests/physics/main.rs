@@ -56,6 +56,8 @@ mod tolerance;
 mod undamped;
 mod user_force;
 #[cfg(feature = "visual")]
+mod visual_cuts;
+#[cfg(feature = "visual")]
 mod visual_data;
 #[cfg(feature = "visual")]
 mod visual_gizmos;

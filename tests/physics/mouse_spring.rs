@@ -138,6 +138,40 @@ fn a_copy_pulls_by_springs_of_its_own() {
 }
 
 #[test]
+fn springs_that_were_copied_with_their_pointer_do_not_pull_beside_those_of_the_copy() {
+    let mut lab = Lab::weightless();
+    let start = Vec3::new(1.0, 0.5, -0.25);
+    let (body, other) = (lab.body(1.0, Vec3::ZERO), lab.body(1.0, start));
+    let mouse = grab(&mut lab, body, Vec3::ZERO);
+    lab.run(0.2);
+    // As a scene is copied: with all that is below the pointer, and with the copy of the body in place of the body.
+    let mut pointer = lab.app.world_mut().entity_mut(mouse);
+    let copy = pointer.clone_and_spawn_with_opt_out(|all| {
+        all.linked_cloning(true);
+    });
+    lab.get_mut::<MouseSpring>(copy).body = other;
+    let springs = lab.get::<Children>(copy).to_vec();
+    assert_eq!(springs.len(), 3, "the springs are copied too");
+    for spring in springs {
+        let mut spring = lab.get_mut::<SpringDamper>(spring);
+        assert_eq!(spring.body_a, copy);
+        spring.body_b = other;
+    }
+    let omega = TAU * f64::from(FREQUENCY);
+    for tick in 1..=60 {
+        lab.tick();
+        assert_eq!(elements(&mut lab), 6, "three for each pointer");
+        let t = f64::from(tick) * f64::from(DT);
+        let left = ((1.0 + omega * t) * (-omega * t).exp()) as f32;
+        let at = lab.position(other);
+        assert!(at.distance(left * start) < 2e-3, "{t} s: {at}");
+    }
+    lab.app.world_mut().despawn(copy);
+    lab.run(0.1);
+    assert_eq!(elements(&mut lab), 3, "the original still pulls");
+}
+
+#[test]
 fn a_held_body_that_is_despawned_is_let_go_without_a_word() {
     let log = Log::capture();
     let mut lab = Lab::weightless();

@@ -109,3 +109,58 @@ fn a_coil_without_the_plugin_that_draws_it_is_told_once() {
         told[0].contains("CoiloverVisualPlugin is missing") && told[0].contains("CoiloverPlugins")
     );
 }
+
+#[cfg(feature = "visual")]
+#[test]
+fn a_skin_below_what_is_no_linear_element_is_told_once_and_drawn_once_that_is_one() {
+    let log = Log::capture();
+    let mut lab = crate::visual_data::lab();
+    let (hook, body) = (lab.point(Vec3::Y), lab.body(1.0, Vec3::ZERO));
+    let [folder, other] = [(), ()].map(|()| lab.spawn(Transform::default()));
+    let bar = lab.spawn(TorsionSpring::new(hook, body, Vec3::Y));
+    let lone = lab.spawn((SpringSkin::default(), ChildOf(folder), Name::new("Band")));
+    let twisted = lab.spawn((SpringSkin::default(), ChildOf(bar)));
+    lab.run(0.5);
+    let told: Vec<_> = log.take();
+    let told: Vec<_> = told.iter().filter(|t| t.contains("SpringSkin")).collect();
+    assert_eq!(told.len(), 2, "{told:?}");
+    for (who, parent) in [
+        (format!("Band, {lone}"), folder),
+        (twisted.to_string(), bar),
+    ] {
+        let said = told.iter().find(|t| t.starts_with(&format!("{who}: ")));
+        assert!(
+            said.is_some_and(|t| t.contains(&format!("its parent {parent} is no Spring"))),
+            "{told:?} say nothing of {who}"
+        );
+    }
+    lab.app.world_mut().entity_mut(lone).insert(ChildOf(other));
+    lab.run(0.5);
+    assert_eq!(log.take(), Vec::<String>::new(), "told twice");
+    let spring = Spring::new(hook, body);
+    lab.app.world_mut().entity_mut(other).insert(spring);
+    lab.run(0.1);
+    let foot = lab.get::<GlobalTransform>(lone).transform_point(Vec3::ZERO);
+    assert!(foot.distance(Vec3::Y) < 1e-5, "{foot}");
+}
+
+#[cfg(feature = "visual")]
+#[test]
+fn a_skin_whose_element_comes_a_little_later_or_is_disabled_is_not_told() {
+    let log = Log::capture();
+    let mut lab = crate::visual_data::lab();
+    let (hook, body) = (lab.point(Vec3::Y), lab.point(Vec3::ZERO));
+    let late = lab.spawn(());
+    lab.spawn((SpringSkin::default(), ChildOf(late)));
+    lab.tick();
+    let spring = Spring::new(hook, body);
+    lab.app.world_mut().entity_mut(late).insert(spring);
+    let pooled = lab.spawn((spring, bevy::ecs::entity_disabling::Disabled));
+    lab.spawn((SpringSkin::default(), ChildOf(pooled)));
+    let gone = lab.spawn(());
+    lab.spawn((SpringSkin::default(), ChildOf(gone)));
+    lab.tick();
+    lab.app.world_mut().despawn(gone);
+    lab.run(0.5);
+    assert_eq!(log.take(), Vec::<String>::new());
+}

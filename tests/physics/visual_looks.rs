@@ -1,6 +1,7 @@
 //! Do fitted looks suit the scene, and can a coilover be built in one expression?
 
 use crate::harness::*;
+use crate::messages::Log;
 use crate::visual_data::{lab, parts};
 use bevy::ecs::entity_disabling::Disabled;
 use bevy::prelude::*;
@@ -264,4 +265,29 @@ fn looks_that_go_before_they_are_drawn_leave_no_size_behind() {
     let widest = widths.fold(0.0, f32::max);
     // The collar is 1.12 times as wide as the tube, whose radius is 4.8 % of the length.
     assert!((0.095..0.12).contains(&widest), "{widest}");
+}
+
+#[test]
+fn a_skin_of_hardly_any_length_is_told_once_and_never_gets_an_endless_scale() {
+    for length in [0.0, f32::from_bits(1), f32::MIN_POSITIVE, 1e-30, 9e-6] {
+        let log = Log::capture();
+        let mut lab = lab();
+        let (a, b) = (lab.point(Vec3::X), lab.point(Vec3::X * 3.0));
+        let element = lab.spawn(Spring::new(a, b));
+        let skin = lab.spawn((SpringSkin { length }, ChildOf(element)));
+        for _ in 0..12 {
+            lab.tick();
+            let at = lab.get::<GlobalTransform>(skin).affine();
+            assert!(at.is_finite(), "{length} m: {at:?}");
+            assert!(at.matrix3.y_axis.length() < 1e6, "{length} m: {at:?}");
+        }
+        let told = log.take();
+        assert_eq!(told.len(), 1, "{told:?}");
+        let named = format!("{skin}: SpringSkin: length is");
+        assert!(told[0].starts_with(&named), "{told:?}");
+        lab.get_mut::<SpringSkin>(skin).length = 1.0;
+        lab.run(0.1);
+        assert!(goes(&lab, skin, Vec3::X, Vec3::X * 3.0));
+        assert_eq!(log.take(), Vec::<String>::new());
+    }
 }

@@ -271,7 +271,8 @@ pub fn look(lab: &mut Lab, at: Transform) -> Entity {
     lab.spawn((camera, projection, frustum, at))
 }
 
-fn turn(lab: &mut Lab, camera: Entity, at: Transform) {
+/// Puts a camera elsewhere, as a game does between two frames.
+pub fn turn(lab: &mut Lab, camera: Entity, at: Transform) {
     let frustum = lab
         .get::<Projection>(camera)
         .compute_frustum(&GlobalTransform::from(at));

@@ -4,7 +4,7 @@ use crate::canvas::*;
 use bevy::light::CascadeShadowConfigBuilder;
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
-use std::f32::consts::TAU;
+use std::f32::consts::{FRAC_PI_2, TAU};
 
 const RADIUS: f32 = 0.15;
 const WIRE: f32 = 0.03;
@@ -110,4 +110,42 @@ fn its_shadow_is_as_thick_at_twice_the_length() {
     println!("shadow: {widths:?} px at 1x and 2x");
     assert!((widths[0] - widths[1]).abs() <= 1.0, "{widths:?}");
     assert!((widths[0] - 2.0 * WIRE / PIXEL).abs() <= 2.0, "{widths:?}");
+}
+
+#[test]
+fn a_coil_that_is_scaled_to_no_length_is_a_ring_and_one_without_size_is_not_drawn() {
+    let Some(picture) = draw(|world| {
+        let helix = Helix::new(RADIUS, WIRE, TURNS, 1.0).with_ends(HelixEnds::Closed);
+        let mesh = world.resource_mut::<Assets<Mesh>>().add(helix);
+        let wire = RoundWireMaterial {
+            base: StandardMaterial::from(Color::srgb(1.0, 0.0, 0.0)),
+            extension: RoundWire { helix },
+        };
+        let wire = world.resource_mut::<Assets<RoundWireMaterial>>().add(wire);
+        // Its axis points at the camera.
+        let ahead = Transform::from_rotation(Quat::from_rotation_x(FRAC_PI_2));
+        for scale in [Vec3::new(1.0, 0.0, 1.0), Vec3::Y, Vec3::ZERO] {
+            world.spawn((
+                Mesh3d(mesh.clone()),
+                MeshMaterial3d(wire.clone()),
+                ahead.with_scale(scale),
+            ));
+        }
+    }) else {
+        return;
+    };
+    let ring = extent(&picture, |pixel, _| is_red(pixel));
+    let outer = RADIUS + WIRE;
+    for (side, name) in [
+        (-ring.low.x, "left"),
+        (ring.high.x, "right"),
+        (-ring.low.y, "low"),
+        (ring.high.y, "high"),
+    ] {
+        assert!((side - outer).abs() < 2.0 * PIXEL, "{name}: {side} m");
+    }
+    let inside = extent(&picture, |pixel, p| {
+        is_drawn(pixel) && p.length() < RADIUS - 1.5 * WIRE
+    });
+    assert_eq!(inside.count, 0, "a ring is hollow");
 }
