@@ -46,6 +46,11 @@ impl Fault {
         }
     }
 
+    /// Whether the engine itself panicked.
+    pub(crate) fn is_in_the_engine(&self) -> bool {
+        self.kind.contains("/rapier3d-")
+    }
+
     /// The same fault, with the time at which it was seen.
     pub(crate) fn at(self, time: &str) -> Self {
         Self {

@@ -4,7 +4,8 @@ use crate::fault::{Fault, caught};
 use crate::left::nothing_is_left;
 use crate::numbers::{NOT_FINITE, are_finite};
 use crate::plan::{Deed, Plan, TICKS};
-use crate::stage::{Springs, Stage};
+use crate::springs::Springs;
+use crate::stage::Stage;
 use bevy_coilover::prelude::*;
 
 /// Result of a scene.
@@ -60,8 +61,7 @@ pub fn judge(plan: &Plan, met: &mut Met) -> Verdict {
     Verdict::Engines(fault)
 }
 
-/// Whether the engine fails in the same way without this crate, or whether only joints of the game beside locked axes let it
-/// fail: its rows for what both lock are nothing but rounding, and grow without bound (see docs/limits.md).
+/// Whether the engine fails in the same way without this crate, or fails because of the game's joints (see docs/limits.md).
 fn is_the_engines(plan: &Plan, fault: &Fault) -> bool {
     let is_alike = |plan: &Plan, springs| {
         let other = caught(|| play(plan, springs, &mut Met::default()));
@@ -76,12 +76,21 @@ fn is_the_engines(plan: &Plan, fault: &Fault) -> bool {
     if is_alike(&without, Springs::None) || is_alike(&without, Springs::Engines) {
         return true;
     }
-    let mut unlocked = plan.clone();
-    unlocked.bodies.iter_mut().for_each(|body| body.locks = 0);
     let is_join = |(_, deed): &(u8, Deed)| matches!(deed, Deed::Join(..));
-    fault.kind == NOT_FINITE
-        && plan.deeds.iter().any(is_join)
-        && !is_alike(&unlocked, Springs::Ours)
+    if !plan.deeds.iter().any(is_join) {
+        return false;
+    }
+    let mut mended = plan.clone();
+    if fault.kind == NOT_FINITE {
+        // A joint beside locked axes: the engine's equations for what both lock are rounding, and grow without bound.
+        mended.bodies.iter_mut().for_each(|body| body.locks = 0);
+    } else if fault.is_in_the_engine() {
+        // A joint between bodies that cannot move, beside one that can. Joints of springs always hold one that can.
+        mended.deeds.retain(|deed| !is_join(deed));
+    } else {
+        return false;
+    }
+    !is_alike(&mended, Springs::Ours)
 }
 
 fn play(plan: &Plan, springs: Springs, met: &mut Met) -> Result<(), Fault> {

@@ -9,4 +9,5 @@ pub mod judge;
 mod left;
 mod numbers;
 pub mod plan;
+mod springs;
 pub mod stage;

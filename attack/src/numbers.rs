@@ -62,8 +62,10 @@ fn engine(world: &mut World, met: &mut Met) -> Result<(), Fault> {
         &RapierRigidBodySet,
         &RapierContextColliders,
         &RapierContextJoints,
+        &RapierConfiguration,
     )>();
-    for (set, colliders, joints) in contexts.iter(world) {
+    for (set, colliders, joints, configuration) in contexts.iter(world) {
+        let is_stepped = configuration.physics_pipeline_active;
         for (handle, body) in set.bodies.iter() {
             let ours = is_stand_in(body);
             met.stand_ins += u64::from(ours);
@@ -96,6 +98,15 @@ fn engine(world: &mut World, met: &mut Met) -> Result<(), Fault> {
             let mut impulses = joint.impulses.iter().copied().chain(motors);
             if !impulses.all(f32::is_finite) {
                 return Err(Fault::new(NOT_FINITE, seen()));
+            }
+            // The engine disables bodies whose numbers are not finite, so only now.
+            let moves = |handle| {
+                let body = set.bodies.get(handle);
+                body.is_some_and(|body| body.is_dynamic() && body.is_enabled())
+            };
+            if ours && is_stepped && !(moves(joint.body1()) || moves(joint.body2())) {
+                let kind = "a spring's joint holds nothing that moves";
+                return Err(Fault::ours(kind, seen()));
             }
         }
     }

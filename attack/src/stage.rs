@@ -1,6 +1,7 @@
 //! Builds a planned scene with Bevy and Rapier, and applies its changes.
 
 use crate::plan::{BodyPlan, Companion, Deed, ElementPlan, Kind, Plan, Shape};
+use crate::springs::Springs;
 use bevy::ecs::schedule::Schedules;
 use bevy::ecs::schedule::SingleThreadedExecutor;
 use bevy::prelude::*;
@@ -21,20 +22,6 @@ pub struct Stage {
     pub joints: Vec<Entity>,
     springs: Springs,
 }
-
-/// What elements of a plan become.
-#[derive(Clone, Copy, PartialEq)]
-pub enum Springs {
-    /// Elements of this crate.
-    Ours,
-    /// Joints of the engine with a motor, in as many substeps as this crate may order.
-    Engines,
-    /// Nothing.
-    None,
-}
-
-/// Most solver iterations that the crate adds on its own to the engine's four.
-const MOST_MORE: usize = 60;
 
 impl Stage {
     /// Builds a scene.
@@ -172,42 +159,6 @@ impl Stage {
             element.insert(Anchors::new(a.into(), b.into()));
         }
         accompany(&mut element, &plan.companion);
-    }
-
-    /// Adds joints of the engine that act much as an element with these parameters: between its ends, and between each of them
-    /// and a fixed body, as this crate does where an end cannot move.
-    fn motor(&mut self, plan: &ElementPlan, ends: [Entity; 2]) {
-        let world = self.app.world_mut();
-        let is_body = |entity| world.get::<RigidBody>(entity).is_some();
-        let [a, b] = ends;
-        if a == b || !ends.into_iter().all(is_body) {
-            return;
-        }
-        let number = |x: f32| {
-            if x.is_finite() {
-                x.clamp(0.0, 1e9)
-            } else {
-                0.0
-            }
-        };
-        let rest = plan.rest.map_or(1.0, number);
-        let (stiffness, damping) = (number(plan.stiffness), number(plan.damping));
-        let joint: TypedJoint = if plan.kind < 3 {
-            SpringJointBuilder::new(rest, stiffness, damping).into()
-        } else {
-            let joint = GenericJointBuilder::new(JointAxesMask::empty())
-                .motor_model(JointAxis::AngX, MotorModel::ForceBased)
-                .motor_position(JointAxis::AngX, rest, stiffness, damping);
-            TypedJoint::GenericJoint(joint.build())
-        };
-        world.spawn((ImpulseJoint::new(a, joint), ChildOf(b)));
-        for end in ends {
-            let place = world.get::<Transform>(end).copied().unwrap_or_default();
-            let hook = world.spawn((RigidBody::Fixed, place)).id();
-            world.spawn((ImpulseJoint::new(hook, joint), ChildOf(end)));
-            let more = AdditionalSolverIterations(MOST_MORE);
-            world.entity_mut(end).insert(more);
-        }
     }
 
     /// Applies one change.

@@ -5,8 +5,6 @@ mod alike;
 mod apart;
 mod changed;
 mod film;
-#[cfg(feature = "serialize")]
-mod forged;
 mod held;
 mod scenes;
 mod wrong;
