@@ -46,9 +46,9 @@ impl Fault {
         }
     }
 
-    /// Whether the engine itself panicked.
-    pub(crate) fn is_in_the_engine(&self) -> bool {
-        self.kind.contains("/rapier3d-")
+    /// Whether the engine itself panicked, in this file.
+    pub(crate) fn is_in_the_engine(&self, file: &str) -> bool {
+        self.kind.contains("/rapier3d-") && self.kind.contains(file)
     }
 
     /// The same fault, with the time at which it was seen.

@@ -3,7 +3,7 @@
 use crate::fault::{Fault, caught};
 use crate::left::nothing_is_left;
 use crate::numbers::{NOT_FINITE, are_finite};
-use crate::plan::{Deed, Plan, TICKS};
+use crate::plan::{Deed, Plan, Shape, TICKS};
 use crate::springs::Springs;
 use crate::stage::Stage;
 use bevy_coilover::prelude::*;
@@ -76,17 +76,19 @@ fn is_the_engines(plan: &Plan, fault: &Fault) -> bool {
     if is_alike(&without, Springs::None) || is_alike(&without, Springs::Engines) {
         return true;
     }
-    let is_join = |(_, deed): &(u8, Deed)| matches!(deed, Deed::Join(..));
-    if !plan.deeds.iter().any(is_join) {
-        return false;
-    }
     let mut mended = plan.clone();
-    if fault.kind == NOT_FINITE {
+    let is_join = |deed: &Deed| matches!(deed, Deed::Join(..));
+    let takes_collider =
+        |deed: &Deed| matches!(deed, Deed::DespawnBody(_) | Deed::Reshape(_, Shape::None));
+    if fault.kind == NOT_FINITE && plan.deeds.iter().any(|(_, deed)| is_join(deed)) {
         // A joint beside locked axes: the engine's equations for what both lock are rounding, and grow without bound.
         mended.bodies.iter_mut().for_each(|body| body.locks = 0);
-    } else if fault.is_in_the_engine() {
+    } else if fault.is_in_the_engine("interaction_groups.rs") {
         // A joint between bodies that cannot move, beside one that can. Joints of springs always hold one that can.
-        mended.deeds.retain(|deed| !is_join(deed));
+        mended.deeds.retain(|(_, deed)| !is_join(deed));
+    } else if fault.is_in_the_engine("ccd/sweeps.rs") {
+        // A fast body sweeps over a collider that is gone. Springs have no colliders.
+        mended.deeds.retain(|(_, deed)| !takes_collider(deed));
     } else {
         return false;
     }
