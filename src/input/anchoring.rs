@@ -3,6 +3,7 @@
 use crate::element::{Anchors, WorldAnchors};
 use crate::input::named_ends::MOST_LEVELS;
 use crate::input::parts::{Acts, Parts, PartsItem};
+use crate::input::strays::who;
 use bevy::ecs::entity::EntityHashMap;
 use bevy::ecs::system::SystemState;
 use bevy::prelude::*;
@@ -105,10 +106,7 @@ fn tell(
         if ticks != GRACE {
             continue;
         }
-        // As faults are told.
-        let who = names
-            .get(entity)
-            .map_or_else(|_| entity.to_string(), |name| format!("{name}, {entity}"));
+        let who = who(entity, names.get(entity).ok());
         log::warn!(
             "{who}: WorldAnchors::{field} cannot be converted, because {end} has no Transform; until it has one, the \
              element acts on its Anchors"

@@ -100,7 +100,7 @@ type Skin = (&'static ChildOf, Option<&'static Name>);
 type IsDrawnOn = (IsLinear, Allow<Disabled>);
 
 /// How a message calls an entity, as those of faults do.
-fn who(entity: Entity, name: Option<&Name>) -> String {
+pub(crate) fn who(entity: Entity, name: Option<&Name>) -> String {
     name.map_or_else(|| entity.to_string(), |name| format!("{name}, {entity}"))
 }
 

@@ -15,8 +15,8 @@ use bevy::prelude::*;
 /// the forces on both ends as arrows, red for tension and blue for compression. Rest length and forces are drawn along
 /// the line between the ends, or along the element's [`SpringAxis`](crate::SpringAxis). Torsion elements are not drawn.
 ///
-/// Nothing is drawn unless `all` is set or an element has [`ShowSpringGizmos`], nor while a size here is not finite. It needs Bevy's `GizmoPlugin`, which
-/// `DefaultPlugins` contains with the feature `bevy_gizmos_render`.
+/// Nothing is drawn unless `all` is set or an element has [`ShowSpringGizmos`], nor while a size here is not finite. It needs
+/// Bevy's `GizmoPlugin`, which `DefaultPlugins` contains with the feature `bevy_gizmos_render`.
 ///
 /// ```
 /// # use bevy::gizmos::config::GizmoConfigStore;
