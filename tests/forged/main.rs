@@ -90,7 +90,7 @@ fn moves_soundly(film: &mut Film) -> bool {
 
 #[test]
 fn forged_numbers_neither_panic_nor_hang_nor_reach_the_engine_as_nan() {
-    for wanted in [
+    for name in [
         "car, plain",
         "torsion, tolerance",
         "lattice, tolerance",
@@ -98,12 +98,7 @@ fn forged_numbers_neither_panic_nor_hang_nor_reach_the_engine_as_nan() {
         "hinges, extrapolation",
         "moved ends, plain",
     ] {
-        let (name, plugin, scene) = all()
-            .into_iter()
-            .find(|(name, ..)| name == wanted)
-            .expect("the scene is there");
-        let mut film = scene(plugin);
-        film.run(60);
+        let mut film = after(name, 60);
         let then = Both::take(&film);
         let text = ron::to_string(&then.springs).expect("it has a text");
         let fields = numbers(&text).into_iter().map(|n| (n.field, n.is_float));
@@ -131,12 +126,7 @@ fn forged_numbers_neither_panic_nor_hang_nor_reach_the_engine_as_nan() {
 
 #[test]
 fn one_that_says_that_the_engine_stays_does_not_touch_what_its_handles_name() {
-    let (_, plugin, scene) = all()
-        .into_iter()
-        .find(|(name, ..)| name == "car, plain")
-        .expect("the scene is there");
-    let mut film = scene(plugin);
-    film.run(60);
+    let mut film = after("car, plain", 60);
     let then = Both::take(&film);
     let text = ron::to_string(&then.springs).expect("it has a text");
     assert!(text.contains("engine_stays:false"), "{text}");

@@ -59,12 +59,7 @@ fn a_scene_goes_on_in_another_app_as_in_its_own() {
 /// finite and leaves no extra joints.
 #[test]
 fn without_rapiers_side_a_scene_goes_on_nearly_as_it_did() {
-    let (_, plugin, scene) = all()
-        .into_iter()
-        .find(|(name, ..)| name == "hinges, plain")
-        .expect("the scene is there");
-    let mut film = scene(plugin);
-    film.run(BEFORE);
+    let mut film = after("hinges, plain", BEFORE);
     let then = CoiloverSnapshot::take(film.lab.app.world());
     let bodies: Vec<_> = film
         .cast
@@ -91,7 +86,6 @@ fn without_rapiers_side_a_scene_goes_on_nearly_as_it_did() {
         let joints = sets.single(world).expect("one context");
         joints.impulse_joints.len()
     };
-    let mut plain = scene(plugin);
-    plain.run(BEFORE + AFTER);
+    let mut plain = after("hinges, plain", BEFORE + AFTER);
     assert_eq!(joints(&mut film), joints(&mut plain));
 }

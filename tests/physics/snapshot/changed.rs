@@ -14,13 +14,7 @@ const AFTER: usize = 300;
 
 /// The scene of a name after 200 ticks.
 fn played(name: &str) -> Film {
-    let (_, plugin, scene) = all()
-        .into_iter()
-        .find(|(known, ..)| known == name)
-        .expect("the scene is there");
-    let mut film = scene(plugin);
-    film.run(BEFORE);
-    film
+    after(name, BEFORE)
 }
 
 /// Scenes in which springs are alone, in networks, and held by contacts or joints.

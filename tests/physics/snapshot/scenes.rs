@@ -10,6 +10,17 @@ use bevy_rapier3d::prelude::*;
 /// Function that makes a scene.
 pub type Play = fn(CoiloverPlugin) -> Film;
 
+/// The scene of a name that [`all`] gives, after so many ticks.
+pub fn after(name: &str, ticks: usize) -> Film {
+    let (_, plugin, scene) = all()
+        .into_iter()
+        .find(|(known, ..)| known == name)
+        .expect("the scene is there");
+    let mut film = scene(plugin);
+    film.run(ticks);
+    film
+}
+
 /// Every scene with each plugin setting under test: name, plugin and function.
 pub fn all() -> Vec<(String, CoiloverPlugin, Play)> {
     let plain = CoiloverPlugin::default;

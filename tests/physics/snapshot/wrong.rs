@@ -10,13 +10,7 @@ use bevy_rapier3d::prelude::*;
 
 /// A car on the road after 60 ticks. It has every kind of state that springs keep in Rapier.
 fn played() -> Film {
-    let (_, plugin, scene) = all()
-        .into_iter()
-        .find(|(name, ..)| name == "car, plain")
-        .expect("the scene is there");
-    let mut film = scene(plugin);
-    film.run(60);
-    film
+    after("car, plain", 60)
 }
 
 fn springs(film: &mut Film, snapshot: &CoiloverSnapshot) -> Result<(), SnapshotError> {
@@ -285,12 +279,7 @@ fn what_is_not_put_back_makes_another_future() {
         "lattice, tolerance",
         "rods, plain",
     ] {
-        let (_, plugin, scene) = all()
-            .into_iter()
-            .find(|(known, ..)| known == name)
-            .expect("the scene is there");
-        let mut film = scene(plugin);
-        film.run(200);
+        let mut film = after(name, 200);
         let then = Both::take(&film);
         let first = film.watch(100);
         engine(&mut film, &then.engine).expect("Rapier's side fits");
