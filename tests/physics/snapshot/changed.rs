@@ -327,3 +327,28 @@ fn a_body_whose_element_went_elsewhere_falls_freely_after_going_back() {
     println!("gained {gained} m/s, in free fall {free}");
     assert!((gained - free).length() < 1e-3, "{gained}");
 }
+
+/// The present element holds a body that the snapshot's did not, and that was disabled when the element came to hold it.
+#[test]
+fn a_body_that_is_held_only_since_the_snapshot_keeps_no_force_of_a_spring_that_is_gone() {
+    let mut film = Film::new(CoiloverPlugin::default());
+    let [a, b, c] = [0.0, 1.0, 2.0].map(|x| film.spawn(body(1.0, Vec3::X * x)));
+    let pull = Spring::new(a, b).with_stiffness(50.0).with_rest_length(0.5);
+    let element = film.spawn(pull);
+    film.run(1);
+    let then = Both::take(&film);
+    film.lab.get_mut::<Spring>(element).body_b = c;
+    let world = film.lab.app.world_mut();
+    world.entity_mut(c).insert(RigidBodyDisabled);
+    film.run(1);
+    then.restore(&mut film);
+    film.run(1);
+    assert!(film.lab.get::<SpringLoad>(c).elements.force.x < -1.0);
+    film.lab.app.world_mut().despawn(element);
+    film.run(3);
+    let handle = film.lab.get::<RapierRigidBodyHandle>(c).0;
+    let world = film.lab.app.world_mut();
+    let mut sets = world.query::<&RapierRigidBodySet>();
+    let set = sets.single(world).expect("one context");
+    assert_eq!(set.bodies[handle].user_force(), Vec3::ZERO);
+}
