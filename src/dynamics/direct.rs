@@ -1,15 +1,24 @@
-//! Solves a small system directly: see [`super::envelope`].
+//! Solves a small system, or one that is long and narrow, directly: see [`super::envelope`].
 
-use super::body::{Body, Spin};
 use super::envelope::Envelope;
-use super::strut::{NOBODY, Strut, Twists, cross};
+use super::strut::{NOBODY, Strut, cross};
 use bevy::math::{DMat3, DVec3};
+
+/// Number of unknowns up to which a factorisation is cheaper than iterations, whatever the network looks like.
+const SMALL: usize = 96;
+
+/// Width of the matrix up to which a factorisation is cheaper than iterations for any number of unknowns: the number of entries
+/// that are kept in a row, as a root mean square. For each unknown, a factorisation costs the square of it. Pinned by
+/// `direct::tests`.
+const NARROW: usize = 40;
 
 /// The matrix of a system, and its unknowns: the velocity of each body, and where a body turns, its angular velocity.
 #[derive(Clone, Default)]
 pub(super) struct Direct {
     places: Vec<Place>,
     unknowns: usize,
+    /// Sum of the squares of the widths of all rows.
+    squares: usize,
     matrix: Envelope,
     vector: Vec<f64>,
 }
@@ -25,45 +34,102 @@ struct Place {
     first: usize,
 }
 
+impl Place {
+    fn unknowns(&self) -> usize {
+        if self.turns { 6 } else { 3 }
+    }
+}
+
+/// What a body adds to the matrix by itself.
+#[derive(Clone, Copy)]
+pub(super) struct Own {
+    pub mass: DMat3,
+    pub inertia: DMat3,
+    /// 1 on each axis along which the body can move, and 0 on a locked one.
+    pub free: DVec3,
+    /// 1 on each axis about which the body can turn, and 0 on a locked one.
+    pub free_to_turn: DVec3,
+}
+
+/// Three unknowns of a body.
+#[derive(Clone, Copy)]
+struct Unknowns {
+    at: usize,
+    /// 1 for each one that is free, and 0 for a locked one.
+    free: DVec3,
+}
+
 impl Direct {
-    /// Numbers the unknowns from the last body to the first. What is spawned first is often what all else hangs on, such as
-    /// the body of a car; where it comes last, each wheel has entries only for itself and for it.
-    pub(super) fn number(&mut self, bodies: &[Body]) {
+    /// Numbers the unknowns of other bodies, of which is said whether they turn. They are numbered from the last body to the
+    /// first: neighbours in the network have near numbers, which makes the matrix narrow, and what all else hangs on, such as the
+    /// body of a car, is often the first body. Where it comes last, each wheel has entries only for itself and for it.
+    pub(super) fn number(&mut self, turns: impl DoubleEndedIterator<Item = bool>) {
         self.unknowns = 0;
         self.places.clear();
-        for body in bodies.iter().rev() {
-            let (at, turns) = (self.unknowns, body.spin != Spin::Ignored);
-            // Its rows begin with itself, until a strut leads farther: see `shape`.
-            self.places.push(Place {
-                at,
-                turns,
-                first: at,
-            });
-            self.unknowns += if turns { 6 } else { 3 };
+        for turns in turns.rev() {
+            let at = self.unknowns;
+            let first = at;
+            let place = Place { at, turns, first };
+            self.unknowns += place.unknowns();
+            self.places.push(place);
         }
         self.places.reverse();
     }
 
-    pub(super) fn unknowns(&self) -> usize {
-        self.unknowns
-    }
-
-    /// Prepares the solve. Returns whether the matrix is positive definite, as far as f64 can tell.
-    pub(super) fn factorise(
-        &mut self,
-        struts: &[Strut],
-        mass: &[DMat3],
-        inertia: &[DMat3],
-        free: &Twists,
-    ) -> bool {
-        self.shape(struts);
-        let Self { matrix, places, .. } = self;
-        for (i, Place { at, turns, .. }) in places.iter().enumerate() {
-            add(matrix, *at, *at, mass[i]);
-            if *turns {
-                add(matrix, at + 3, at + 3, inertia[i]);
+    /// Notes the pairs of bodies that elements join. Other indices than those of the bodies are ignored.
+    pub(super) fn join(&mut self, pairs: impl Iterator<Item = [usize; 2]>) {
+        for place in &mut self.places {
+            place.first = place.at;
+        }
+        for [a, b] in pairs {
+            if let (Some(from), Some(to)) = (self.places.get(a), self.places.get(b)) {
+                // The rows of a body begin at the first body that an element leads to.
+                let first = from.at.min(to.at);
+                for end in [a, b] {
+                    self.places[end].first = self.places[end].first.min(first);
+                }
             }
         }
+        let squares = self.places.iter().map(|place| {
+            let width = place.at + place.unknowns() - place.first;
+            place.unknowns() * width * width
+        });
+        self.squares = squares.sum();
+    }
+
+    /// Whether a factorisation is cheaper than iterations, unless a few of these would do.
+    pub(super) fn is_cheaper(&self) -> bool {
+        self.unknowns <= SMALL || self.squares <= self.unknowns * NARROW * NARROW
+    }
+
+    /// Prepares the solve, after [`Self::join`]. Returns whether the matrix is positive definite, as far as f64 can tell.
+    pub(super) fn factorise(
+        &mut self,
+        bodies: impl Fn(usize) -> Own,
+        struts: impl Iterator<Item = Strut>,
+    ) -> bool {
+        self.matrix.clear();
+        for place in self.places.iter().rev() {
+            for _ in 0..place.unknowns() {
+                self.matrix.push(place.first);
+            }
+        }
+        let (matrix, places) = (&mut self.matrix, &self.places);
+        for (body, place) in places.iter().enumerate() {
+            let own = bodies(body);
+            add_own(matrix, place.at, own.mass, own.free);
+            if place.turns {
+                add_own(matrix, place.at + 3, own.inertia, own.free_to_turn);
+            }
+        }
+        let linear = |body: usize| Unknowns {
+            at: places[body].at,
+            free: bodies(body).free,
+        };
+        let angular = |body: usize| Unknowns {
+            at: places[body].at + 3,
+            free: bodies(body).free_to_turn,
+        };
         for strut in struts {
             let own = strut.matrix();
             for (i, row) in strut.bodies.into_iter().enumerate() {
@@ -72,98 +138,133 @@ impl Direct {
                         continue;
                     }
                     let own = if i == j { own } else { own * -1.0 };
-                    let (r, c) = (places[row], places[column]);
+                    let (row_turns, column_turns) = (places[row].turns, places[column].turns);
                     if strut.twist {
-                        if r.turns && c.turns {
-                            add(matrix, r.at + 3, c.at + 3, own);
+                        if row_turns && column_turns {
+                            add(matrix, angular(row), angular(column), own);
                         }
                         continue;
                     }
-                    add(matrix, r.at, c.at, own);
+                    add(matrix, linear(row), linear(column), own);
+                    if !row_turns && !column_turns {
+                        continue;
+                    }
                     let (a, b) = (cross(strut.arms[i]), cross(strut.arms[j]));
-                    if c.turns {
-                        add(matrix, r.at, c.at + 3, own * -b);
+                    if column_turns {
+                        add(matrix, linear(row), angular(column), own * -b);
                     }
-                    if r.turns {
-                        add(matrix, r.at + 3, c.at, a * own);
+                    if row_turns {
+                        add(matrix, angular(row), linear(column), a * own);
                     }
-                    if r.turns && c.turns {
-                        add(matrix, r.at + 3, c.at + 3, a * own * -b);
+                    if row_turns && column_turns {
+                        add(matrix, angular(row), angular(column), a * own * -b);
                     }
                 }
             }
         }
-        for (i, Place { at, turns, .. }) in places.iter().enumerate() {
-            for k in 0..3 {
-                if free.linear[i][k] == 0.0 {
-                    matrix.lock(at + k);
-                }
-                if *turns && free.angular[i][k] == 0.0 {
-                    matrix.lock(at + 3 + k);
-                }
-            }
-        }
-        matrix.factorise()
+        self.matrix.factorise()
     }
 
-    /// Gives the matrix its rows: those of a body begin at the first body that one of its struts leads to.
-    fn shape(&mut self, struts: &[Strut]) {
-        for Strut { bodies: [a, b], .. } in struts {
-            if *a != NOBODY && *b != NOBODY {
-                let first = self.places[*a].at.min(self.places[*b].at);
-                for end in [*a, *b] {
-                    self.places[end].first = self.places[end].first.min(first);
-                }
-            }
-        }
-        self.matrix.clear();
-        for place in self.places.iter().rev() {
-            for _ in 0..if place.turns { 6 } else { 3 } {
-                self.matrix.push(place.first);
-            }
-        }
-    }
-
-    /// Solves for `right`.
-    pub(super) fn solve(&mut self, right: &Twists, x: &mut Twists) {
+    /// Solves for the right side `linear`, and `angular` where bodies turn. Both become the solution.
+    pub(super) fn solve(&mut self, linear: &mut [DVec3], angular: &mut [DVec3]) {
         self.vector.resize(self.unknowns, 0.0);
-        scatter(right, &self.places, &mut self.vector);
+        for (body, Place { at, turns, .. }) in self.places.iter().enumerate() {
+            linear[body].write_to_slice(&mut self.vector[*at..]);
+            if *turns {
+                angular[body].write_to_slice(&mut self.vector[at + 3..]);
+            }
+        }
         self.matrix.solve(&mut self.vector);
-        gather(&self.vector, &self.places, x);
-    }
-}
-
-/// Adds a block to a matrix.
-fn add(matrix: &mut Envelope, row: usize, column: usize, block: DMat3) {
-    for c in 0..3 {
-        for r in 0..3 {
-            matrix.add(row + r, column + c, block.col(c)[r]);
-        }
-    }
-}
-
-fn scatter(from: &Twists, places: &[Place], to: &mut [f64]) {
-    for (i, Place { at, turns, .. }) in places.iter().enumerate() {
-        for k in 0..3 {
-            to[at + k] = from.linear[i][k];
-            if *turns {
-                to[at + 3 + k] = from.angular[i][k];
+        for (body, Place { at, turns, .. }) in self.places.iter().enumerate() {
+            linear[body] = DVec3::from_slice(&self.vector[*at..]);
+            if let Some(angular) = angular.get_mut(body) {
+                // The body may have turned in an earlier step.
+                *angular = if *turns {
+                    DVec3::from_slice(&self.vector[at + 3..])
+                } else {
+                    DVec3::ZERO
+                };
             }
         }
     }
 }
 
-fn gather(from: &[f64], places: &[Place], to: &mut Twists) {
-    for (i, Place { at, turns, .. }) in places.iter().enumerate() {
-        for k in 0..3 {
-            to.linear[i][k] = from[at + k];
-            if *turns {
-                to.angular[i][k] = from[at + 3 + k];
-            }
+/// Adds what a body has by itself. What is locked has no part in the motion of anything else.
+fn add_own(matrix: &mut Envelope, at: usize, own: DMat3, free: DVec3) {
+    let unknowns = Unknowns { at, free };
+    add(matrix, unknowns, unknowns, own);
+    let locked = DMat3::from_diagonal(DVec3::ONE - free);
+    matrix.add(at, at, locked);
+}
+
+/// Adds a block, apart from what is locked.
+fn add(matrix: &mut Envelope, row: Unknowns, column: Unknowns, block: DMat3) {
+    let block = DMat3::from_cols(
+        block.x_axis * row.free * column.free.x,
+        block.y_axis * row.free * column.free.y,
+        block.z_axis * row.free * column.free.z,
+    );
+    matrix.add(row.at, column.at, block);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn strut(bodies: [usize; 2]) -> Strut {
+        Strut {
+            bodies,
+            arms: [DVec3::ZERO; 2],
+            direction: DVec3::new(0.6, 0.8, 0.0),
+            along: 5.0,
+            across: 2.0,
+            twist: false,
         }
-        if let (false, Some(angular)) = (*turns, to.angular.get_mut(i)) {
-            // The body may have turned in an earlier step.
-            *angular = DVec3::ZERO;
+    }
+
+    fn own(free: DVec3) -> Own {
+        Own {
+            mass: DMat3::IDENTITY * 3.0,
+            inertia: DMat3::IDENTITY,
+            free,
+            free_to_turn: DVec3::ONE,
         }
+    }
+
+    #[test]
+    fn what_is_locked_neither_moves_nor_moves_anything_else() {
+        let mut direct = Direct::default();
+        direct.number([false, false].into_iter());
+        direct.join([[0, 1]].into_iter());
+        let frees = [DVec3::new(1.0, 0.0, 1.0), DVec3::ONE];
+        assert!(direct.factorise(|body| own(frees[body]), [strut([0, 1])].into_iter()));
+        let (right, mut x) = (DVec3::new(1.0, 0.0, 3.0), [DVec3::ZERO; 2]);
+        x[0] = right;
+        direct.solve(&mut x, &mut []);
+        assert_eq!(x[0].y, 0.0);
+        // The equations hold on all axes that are free.
+        let pull = strut([0, 1]).matrix() * (x[1] - x[0]);
+        let left = [3.0 * x[0] - pull, 3.0 * x[1] + pull];
+        assert!(((left[0] - right) * frees[0]).length() < 1e-14, "{left:?}");
+        assert!(left[1].length() < 1e-14, "{left:?}");
+    }
+
+    /// Whether a net is factorised.
+    fn is_factorised(rows: usize, columns: usize, turns: bool) -> bool {
+        let mut direct = Direct::default();
+        direct.number((0..rows * columns).map(|_| turns));
+        let beside = |at: usize| (at % columns + 1 < columns).then_some([at, at + 1]);
+        let below = |at: usize| (at / columns + 1 < rows).then_some([at, at + columns]);
+        direct.join((0..rows * columns).flat_map(|at| beside(at).into_iter().chain(below(at))));
+        direct.is_cheaper()
+    }
+
+    #[test]
+    fn a_rope_a_bridge_or_a_tower_is_factorised_at_any_length_and_a_cloth_is_not() {
+        assert!(is_factorised(1000, 1, true));
+        assert!(is_factorised(1000, 3, true));
+        assert!(is_factorised(1000, 8, false));
+        assert!(!is_factorised(100, 30, false));
+        assert!(!is_factorised(30, 30, true));
     }
 }

@@ -3,6 +3,8 @@
 //! leave (George and Liu, Computer Solution of Large Sparse Positive Definite Systems, 1981, chapter 4). A chain whose bodies
 //! come in order costs as many operations as it has bodies; a full matrix would cost the cube of that.
 
+use bevy::math::DMat3;
+
 /// The lower half of a matrix, or its factor.
 #[derive(Clone, Default)]
 pub(super) struct Envelope {
@@ -38,23 +40,14 @@ impl Envelope {
         &self.entries[start..start + row + 1 - first]
     }
 
-    /// Adds to an entry. What stands above the diagonal is the mirror of what stands below, and is ignored.
-    pub(super) fn add(&mut self, row: usize, column: usize, value: f64) {
-        if column <= row {
-            let Row { first, start } = self.rows[row];
-            self.entries[start + column - first] += value;
-        }
-    }
-
-    /// Makes an unknown independent of all others.
-    pub(super) fn lock(&mut self, unknown: usize) {
-        for row in unknown..self.rows.len() {
-            let Row { first, start } = self.rows[row];
-            if row == unknown {
-                self.entries[start..start + row - first].fill(0.0);
-                self.entries[start + row - first] = 1.0;
-            } else if first <= unknown {
-                self.entries[start + unknown - first] = 0.0;
+    /// Adds a block whose first entry stands in `row` and `column`. What stands above the diagonal is the mirror of what stands
+    /// below, and is ignored.
+    pub(super) fn add(&mut self, row: usize, column: usize, block: DMat3) {
+        for r in 0..3 {
+            let Row { first, start } = self.rows[row + r];
+            let below = (row + r + 1).saturating_sub(column).min(3);
+            for c in 0..below {
+                self.entries[start + column + c - first] += block.col(c)[r];
             }
         }
     }
@@ -145,7 +138,8 @@ mod tests {
                 } else {
                     ((row * 7 + column * 3) % 5) as f64 - 2.0
                 };
-                envelope.add(row, column, value);
+                let Row { first, start } = envelope.rows[row];
+                envelope.entries[start + column - first] = value;
                 full[(row, column)] = value;
                 full[(column, row)] = value;
             }
@@ -170,23 +164,6 @@ mod tests {
             envelope.solve(solution.as_mut_slice());
             assert!((solution - wanted).amax() < 1e-14, "{firsts:?}");
         }
-    }
-
-    #[test]
-    fn a_locked_unknown_keeps_its_right_hand_side_and_moves_no_other() {
-        let firsts = [0, 0, 0, 1, 2];
-        let (mut envelope, full) = both(&firsts, 40.0);
-        envelope.lock(2);
-        assert!(envelope.factorise());
-        let mut solution = vec![1.0, 2.0, 5.0, 3.0, 4.0];
-        envelope.solve(&mut solution);
-        let others = full.remove_row(2).remove_column(2).cholesky();
-        let right = DVector::from_vec(vec![1.0, 2.0, 3.0, 4.0]);
-        let wanted = others.expect("a large diagonal").solve(&right);
-        for (found, wanted) in [0, 1, 3, 4].map(|i| solution[i]).iter().zip(&wanted) {
-            assert!((found - wanted).abs() < 1e-14);
-        }
-        assert_eq!(solution[2], 5.0);
     }
 
     #[test]

@@ -112,6 +112,9 @@ impl Points {
             });
         }
         self.parts.find(&self.wires, bodies.len());
+        let pairs = self.wires.iter();
+        let pairs = pairs.map(|wire| wire.ends.map(|end| end as usize));
+        self.solver.join(bodies.len(), pairs);
         self.add_up();
         self.begin(budget);
     }
@@ -134,6 +137,11 @@ impl Points {
             element.stiff_damper = wire.stiff_damper;
             (element.heat, element.work) = (exchanged.heat, exchanged.work);
         }
+    }
+
+    /// Whether the last solve needed no iterations.
+    pub(super) fn is_direct(&self) -> bool {
+        self.solver.is_direct()
     }
 
     /// Whether all solves of this step have converged.

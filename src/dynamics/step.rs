@@ -102,15 +102,19 @@ impl Component {
             self.load(0);
         }
         let accuracy = self.memory.caution.pass(time, accuracy);
-        if self.is_warm {
+        let is_shared = self.elements.len() > 1;
+        if self.is_warm || is_shared && Points::can_be(&self.elements, &self.bodies) {
             let Memory {
                 points,
                 max_iterations,
                 ..
             } = &mut self.memory;
-            points.get_or_insert_default().go_on(*max_iterations);
-        }
-        if self.is_warm || self.is_of_points(time) {
+            let points = points.get_or_insert_default();
+            if self.is_warm {
+                points.go_on(*max_iterations);
+            } else {
+                points.load_from(&self.elements, &self.bodies, *max_iterations);
+            }
             let outcome = self.advance_points(time, accuracy, |motion| {
                 controller.drive(motion, time, accuracy)
             });

@@ -1,17 +1,14 @@
 //! The linear system of a network: masses on the diagonal, and one strut for each element. It is symmetric and positive
 //! definite.
 //!
-//! Small systems are factorised. Large ones are solved by matrix-free conjugate gradients from the last solution. Their
-//! preconditioner is the inverse of each body's diagonal block.
+//! Small systems, and long and narrow ones, are [factorised](Direct). All others are solved by matrix-free conjugate gradients
+//! from the last solution. Their preconditioner is the inverse of each body's diagonal block.
 
 use super::body::{Body, Spin};
 use super::conjugate::{self, Iterated};
-use super::direct::Direct;
+use super::direct::{Direct, Own};
 use super::strut::{NOBODY, Strut, Twists, cross};
 use bevy::math::{DMat3, DVec3};
-
-/// Number of unknowns up to which a factorisation is cheaper than iterations.
-pub(super) const DIRECT: usize = 96;
 
 /// Result of a solve.
 #[derive(Clone, Copy, Debug, Default)]
@@ -30,6 +27,8 @@ pub(super) struct System {
     blocks: Vec<DMat3>,
     blocks_turning: Vec<Block>,
     direct: Direct,
+    /// Whether a factorisation is cheaper than iterations.
+    is_direct: bool,
     /// Whether `direct` can solve with the present struts.
     factorised: bool,
     vectors: Vectors,
@@ -86,7 +85,8 @@ impl System {
         self.mass.clear();
         self.inertia.clear();
         self.free.clear(bodies.len(), self.turns);
-        self.direct.number(bodies);
+        let turns = bodies.iter().map(|body| body.spin != Spin::Ignored);
+        self.direct.number(turns);
         for (i, body) in bodies.iter().enumerate() {
             let w = body.inverse_mass;
             let free = DVec3::select(w.cmpgt(DVec3::ZERO), DVec3::ONE, DVec3::ZERO);
@@ -117,15 +117,24 @@ impl System {
     }
 
     pub(super) fn is_direct(&self) -> bool {
-        self.direct.unknowns() <= DIRECT
+        self.is_direct
     }
 
     /// Prepares the solve for the present struts.
     pub(super) fn prepare(&mut self) {
-        self.factorised = self.is_direct()
-            && (self.direct).factorise(&self.struts, &self.mass, &self.inertia, &self.free);
+        let struts = self.struts.iter().copied();
+        self.direct.join(struts.clone().map(|strut| strut.bodies));
+        // Iterations for bodies that turn cost so much that even a few are many.
+        self.is_direct = self.direct.is_cheaper();
+        let bodies = |body: usize| Own {
+            mass: self.mass[body],
+            inertia: *self.inertia.get(body).unwrap_or(&DMat3::IDENTITY),
+            free: self.free.linear[body],
+            free_to_turn: *self.free.angular.get(body).unwrap_or(&DVec3::ONE),
+        };
+        self.factorised = self.is_direct && self.direct.factorise(bodies, struts);
         if !self.factorised {
-            // Large, or stiff beyond what f64 can factorise.
+            // Wide, or stiff beyond what f64 can factorise.
             self.invert_blocks();
         }
     }
@@ -137,7 +146,9 @@ impl System {
             x.clear(self.mass.len(), self.turns);
         }
         if self.factorised {
-            self.direct.solve(right, x);
+            x.linear.clone_from(&right.linear);
+            x.angular.clone_from(&right.angular);
+            self.direct.solve(&mut x.linear, &mut x.angular);
             return Effort { converged: true };
         }
         self.iterate(right, x, budget)

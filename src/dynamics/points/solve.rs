@@ -1,5 +1,6 @@
-//! Solves the linear system of point masses and bars by matrix-free conjugate gradients. The preconditioner is the
-//! inverse of each point's diagonal block. Iterations start from the last solution.
+//! Solves the linear system of point masses and bars: a small or a narrow one [directly](Direct), all others by matrix-free
+//! conjugate gradients. Their preconditioner is the inverse of each point's diagonal block. Iterations start from the last
+//! solution.
 //!
 //! A large system does not fit into the processor's cache, so that each list that is read costs time. What is done with a
 //! body or an element is done in one pass where that is possible.
@@ -7,6 +8,8 @@
 use super::bar::{Bar, add};
 use super::parts::{Parts, Run, places};
 use crate::dynamics::conjugate::{self, Iterated};
+use crate::dynamics::direct::{Direct, Own};
+use crate::dynamics::strut::{NOBODY, Strut};
 use crate::threads::{PIECE, each, share};
 use bevy::math::{DMat3, DVec3};
 
@@ -36,6 +39,9 @@ pub(super) struct Solver {
     /// Partial sums.
     sums: Vec<f64>,
     starts: Vec<[f64; 2]>,
+    direct: Direct,
+    /// Whether `direct` can solve with the present bars.
+    factorised: bool,
 }
 
 impl Block {
@@ -105,13 +111,51 @@ impl Solver {
         self.sums.resize(bodies.div_ceil(PIECE), 0.0);
     }
 
-    pub(super) fn invert_blocks(&mut self) {
-        each(&mut self.blocks, |_, block| *block = block.inverse());
+    /// Begins a network of `bodies` bodies whose elements join `pairs` of them.
+    pub(super) fn join(&mut self, bodies: usize, pairs: impl Iterator<Item = [usize; 2]>) {
+        self.direct.number((0..bodies).map(|_| false));
+        self.direct.join(pairs);
+    }
+
+    /// Whether the last solve needed no iterations.
+    pub(super) fn is_direct(&self) -> bool {
+        self.factorised
+    }
+
+    /// Prepares the solve for the present bars. `soft` says whether few iterations would do.
+    pub(super) fn prepare(&mut self, bars: &[Bar], soft: bool) {
+        let (masses, last) = (&self.masses, self.masses.len());
+        let body = |body: usize| Own {
+            mass: DMat3::from_diagonal(DVec3::splat(masses[body])),
+            inertia: DMat3::IDENTITY,
+            free: DVec3::ONE,
+            free_to_turn: DVec3::ONE,
+        };
+        let index = |end: u32| Some(end as usize).filter(|end| *end < last);
+        let struts = bars.iter().map(|bar| Strut {
+            bodies: bar.ends.map(|end| index(end).unwrap_or(NOBODY)),
+            arms: [DVec3::ZERO; 2],
+            direction: bar.direction,
+            along: bar.along,
+            across: bar.across,
+            twist: false,
+        });
+        self.factorised = !soft && self.direct.is_cheaper() && self.direct.factorise(body, struts);
+        if !self.factorised {
+            // Wide, or stiff beyond what f64 can factorise.
+            each(&mut self.blocks, |_, block| *block = block.inverse());
+        }
     }
 
     /// Solves for the right side. `image` must be the product of the matrix with the last solution. Returns whether the
     /// iterations converged.
     pub(super) fn solve(&mut self, bars: &[Bar], parts: &Parts, budget: u32) -> bool {
+        if self.factorised {
+            let solution = &mut self.solution[..self.right.len()];
+            solution.copy_from_slice(&self.right);
+            self.direct.solve(solution, &mut []);
+            return true;
+        }
         let [weight, residual] = self.start();
         let mut running = Running {
             solver: self,

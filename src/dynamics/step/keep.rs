@@ -6,34 +6,14 @@ use crate::dynamics::body::{Body, is_within};
 use crate::dynamics::bound::{Bound, Common, slow_beside};
 use crate::dynamics::energy::Energy;
 use crate::dynamics::points::Points;
-use crate::dynamics::system::DIRECT;
 use crate::dynamics::tolerance::{Accuracy, Method, Motion, Outcome};
 
 /// Number of attempts, each with half the motion of the previous one. After them nothing moves but the common centre of mass of a
 /// free network.
 const HALVINGS: i32 = 12;
 
-/// (ω h)² of the stiffest mode below which the matrix is so well conditioned that a few iterations solve it.
-const SOFT: f64 = 9.0;
-
 impl Component {
-    /// Whether the component is solved as points: no body turns, and iterations are cheaper than a factorisation. They
-    /// are if the network is large, or so soft that they converge soon. In that case the points have been loaded.
-    pub(super) fn is_of_points(&mut self, time: f64) -> bool {
-        if self.elements.len() < 2 || !Points::can_be(&self.elements, &self.bodies) {
-            return false;
-        }
-        let Memory {
-            points,
-            max_iterations,
-            ..
-        } = &mut self.memory;
-        let points = points.get_or_insert_default();
-        points.load_from(&self.elements, &self.bodies, *max_iterations);
-        3 * self.bodies.len() > DIRECT || points.bounds(time).0 < SOFT
-    }
-
-    /// Takes the step of a network of points.
+    /// Takes the step of a network of points, which has been loaded.
     pub(super) fn advance_points(
         &mut self,
         time: f64,
@@ -46,7 +26,11 @@ impl Component {
         let now = start.energy.sum();
         bound.start(now, start.rounding, start.power, self.perturbed);
         let mut outcome = drive(points);
-        outcome.method = Method::Iterative;
+        outcome.method = if points.is_direct() {
+            Method::Direct
+        } else {
+            Method::Iterative
+        };
         outcome.capped |= !points.converged();
         let end = points.survey();
         bound.see(points.stiffest);
