@@ -75,10 +75,10 @@ pub enum SpringMethod {
     None,
     /// Alone on its bodies: solved in closed form.
     ClosedForm,
-    /// In a network, or alone with a companion such as [`Preload`](crate::Preload) on a body that it turns: solved by one
-    /// matrix factorisation for all elements.
+    /// In a network that is small, or long and narrow such as a rope, a bridge or a tower: solved by one matrix factorisation for
+    /// all elements. Also alone with a companion such as [`Preload`](crate::Preload) on a body that it turns.
     Direct,
-    /// In a large or soft network: solved by conjugate gradients.
+    /// In a network that is large and wide, such as a cloth, or in a soft one that turns no body: solved by conjugate gradients.
     Iterative,
     /// Solved by the engine's own solver, together with the contacts or joints that hold its bodies.
     /// [`SpringReadout::microsteps`] is then the number of solver substeps.

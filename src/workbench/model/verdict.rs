@@ -87,7 +87,7 @@ fn method(facts: &Facts) -> Option<Sentence> {
         ),
         SpringMethod::Iterative => say(
             Tone::Plain,
-            format!("Solved by iteration, as its network is large: {steps} a step."),
+            format!("Solved by iteration, as its network is wide or soft: {steps} a step."),
         ),
         SpringMethod::Engine => say(
             Tone::Plain,
