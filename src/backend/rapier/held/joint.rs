@@ -6,6 +6,7 @@
 
 use crate::backend::JointId;
 use crate::backend::rapier::body::{handle, joint_handle, joint_id};
+use crate::dynamics::single;
 use crate::scene::held::{Along, SoftJoint, SoftJoints};
 use bevy_rapier3d::rapier::dynamics::{
     GenericJoint, GenericJointBuilder, ImpulseJoint, ImpulseJointSet, JointAxesMask, JointAxis,
@@ -70,6 +71,8 @@ impl SoftJoint {
         let ordered = ordered_damping(self.stiffness, self.damping, self.substep);
         // Total damping as Rapier computes it: the motor's force at a rate of 1.
         let acting = self.substep * self.stiffness + ordered;
+        // A very large force over a very small damping does not fit into f32.
+        let speed = single(-f64::from(self.force) / f64::from(acting));
         let mut joint = GenericJointBuilder::new(held)
             .softness(LOOSE)
             .coupled_axes(coupled)
@@ -78,13 +81,7 @@ impl SoftJoint {
             .user_data(OURS)
             .build();
         joint
-            .set_motor(
-                axis,
-                self.target,
-                -self.force / acting,
-                self.stiffness,
-                ordered,
-            )
+            .set_motor(axis, self.target, speed, self.stiffness, ordered)
             .set_motor_model(axis, MotorModel::ForceBased)
             .set_motor_max_force(axis, self.most);
         joint
@@ -128,6 +125,8 @@ const EXACT: f64 = 3e-7;
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::backend::BodyId;
+    use bevy::math::{Quat, Vec3};
 
     #[test]
     fn what_rapier_makes_of_the_order_is_what_was_wanted() {
@@ -153,5 +152,26 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn a_huge_force_beside_a_tiny_damping_gives_a_motor_of_finite_numbers() {
+        let joint = SoftJoint {
+            bodies: [0, 1].map(|index| BodyId {
+                index,
+                generation: 0,
+            }),
+            anchors: [Vec3::ZERO; 2],
+            rotations: [Quat::IDENTITY; 2],
+            along: Along::Distance,
+            substep: 1.0 / 960.0,
+            stiffness: 0.0,
+            damping: 5e-6,
+            target: 0.0,
+            force: -1e36,
+            most: 5e7,
+        };
+        let speed = joint.data().motors[JointAxis::LinX as usize].target_vel;
+        assert_eq!(speed, f32::MAX);
     }
 }
