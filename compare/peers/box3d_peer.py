@@ -6,14 +6,13 @@ Its spring is stated as a frequency and a damping ratio of the mass that it move
 damping and the two point masses.
 """
 import math
-import pathlib
 import sys
 import time
 from importlib.metadata import version
 
 import numpy as np
 from robox3d._ffi import ffi, lib
-from scenes import read
+from scenes import scenes
 
 SUBSTEPS = [4, 16]
 RATES = [60, 240, 960]
@@ -85,10 +84,9 @@ def follow(scene, substeps, rate):
     return worst, diverged, np.median(spent)
 
 
-for path in sorted(pathlib.Path(sys.argv[1]).glob("*.txt")):
-    scene = read(path)
+for stem, scene in scenes(sys.argv[1]):
     for substeps in SUBSTEPS:
         for rate in RATES:
             error, diverged, step = follow(scene, substeps, rate)
             name = f"Box3D (robox3d {version('robox3d')}) distance"
-            print(f"{name},{substeps} substeps,{path.stem},{rate},{error:.3e},{int(diverged)},{1e6 * step:.1f}", flush=True)
+            print(f"{name},{substeps} substeps,{stem},{rate},{error:.3e},{int(diverged)},{1e6 * step:.1f}", flush=True)

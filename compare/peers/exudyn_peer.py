@@ -2,7 +2,6 @@
 
 Usage: python exudyn_peer.py FOLDER
 """
-import pathlib
 import sys
 import time
 import warnings
@@ -10,7 +9,7 @@ import warnings
 import exudyn as exu
 import numpy as np
 from exudyn.itemInterface import SensorBody
-from scenes import read
+from scenes import scenes
 
 warnings.simplefilter("ignore")  # Names of settings that it will drop some day.
 SOLVERS = {
@@ -19,6 +18,8 @@ SOLVERS = {
     "RK44": exu.DynamicSolverType.RK44,
 }
 RATES = [60, 240, 960]
+# From so many bodies on a sparse matrix is cheaper than a full one.
+MANY = 100
 
 
 def follow(scene, solver, rate):
@@ -46,6 +47,8 @@ def follow(scene, solver, rate):
     settings.timeIntegration.verboseMode = 0
     settings.timeIntegration.automaticStepSize = False
     settings.solutionSettings.writeSolutionToFile = False
+    if len(bodies) > MANY:
+        settings.linearSolverType = exu.LinearSolverType.EigenSparse
     settings.solutionSettings.sensorsWritePeriod = 1 / rate
     before = time.perf_counter()
     try:
@@ -65,9 +68,8 @@ def follow(scene, solver, rate):
     return worst, not worst <= 10 * scene["size"][0], spent
 
 
-for path in sorted(pathlib.Path(sys.argv[1]).glob("*.txt")):
-    scene = read(path)
+for stem, scene in scenes(sys.argv[1]):
     for name, solver in SOLVERS.items():
         for rate in RATES:
             error, diverged, spent = follow(scene, solver, rate)
-            print(f"Exudyn {exu.__version__} spring-damper,{name},{path.stem},{rate},{error:.3e},{int(diverged)},{spent:.1f}", flush=True)
+            print(f"Exudyn {exu.__version__} spring-damper,{name},{stem},{rate},{error:.3e},{int(diverged)},{spent:.1f}", flush=True)

@@ -2,13 +2,12 @@
 
 Usage: python mujoco_peer.py FOLDER
 """
-import pathlib
 import sys
 import time
 
 import mujoco
 import numpy as np
-from scenes import read
+from scenes import scenes
 
 INTEGRATORS = ["Euler", "implicitfast", "RK4", "discrete"]
 RATES = [60, 240, 960]
@@ -53,9 +52,8 @@ def follow(scene, integrator, rate):
     return worst, False, np.median(spent)
 
 
-for path in sorted(pathlib.Path(sys.argv[1]).glob("*.txt")):
-    scene = read(path)
+for stem, scene in scenes(sys.argv[1]):
     for integrator in INTEGRATORS:
         for rate in RATES:
             error, diverged, step = follow(scene, integrator, rate)
-            print(f"MuJoCo {mujoco.__version__} tendon,{integrator},{path.stem},{rate},{error:.3e},{int(diverged)},{1e6 * step:.1f}", flush=True)
+            print(f"MuJoCo {mujoco.__version__} tendon,{integrator},{stem},{rate},{error:.3e},{int(diverged)},{1e6 * step:.1f}", flush=True)

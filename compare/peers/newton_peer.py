@@ -4,7 +4,6 @@ Usage: python newton_peer.py FOLDER
 
 On the processor, a call per step. Newton calls a particle without mass fixed.
 """
-import pathlib
 import sys
 import time
 from importlib.metadata import version
@@ -12,7 +11,7 @@ from importlib.metadata import version
 import newton
 import numpy as np
 import warp as wp
-from scenes import read
+from scenes import scenes
 
 wp.config.quiet = True
 SOLVERS = {
@@ -58,11 +57,10 @@ def follow(scene, solver, rate):
     return worst, False, np.median(spent)
 
 
-for path in sorted(pathlib.Path(sys.argv[1]).glob("*.txt")):
-    scene = read(path)
+for stem, scene in scenes(sys.argv[1]):
     for solver in SOLVERS:
         for rate in RATES:
             error, diverged, step = follow(scene, solver, rate)
             # No comma within a cell.
             setting = solver.replace(",", "")
-            print(f"Newton {version('newton')} springs,{setting},{path.stem},{rate},{error:.3e},{int(diverged)},{1e6 * step:.1f}", flush=True)
+            print(f"Newton {version('newton')} springs,{setting},{stem},{rate},{error:.3e},{int(diverged)},{1e6 * step:.1f}", flush=True)

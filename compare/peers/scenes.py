@@ -1,5 +1,10 @@
 """Reads the scenes of points that `compare --describe` writes."""
+import pathlib
+
 import numpy as np
+
+# Of more bodies MuJoCo cannot allocate its matrix, and the others take hours with a call from Python per step.
+MOST_BODIES = 2000
 
 
 def read(path):
@@ -17,3 +22,11 @@ def read(path):
             scene[key] = numbers
     scene["watched"] = [int(b) for b in scene["watched"]]
     return scene
+
+
+def scenes(folder):
+    """Names and scenes of a folder."""
+    for path in sorted(pathlib.Path(folder).glob("*.txt")):
+        scene = read(path)
+        if len(scene["bodies"]) <= MOST_BODIES:
+            yield path.stem, scene
