@@ -90,6 +90,16 @@ fn ratios(ours: Option<Row>, joint: Option<Row>) -> [String; 2] {
     [less, longer]
 }
 
+/// Least number of steps a second from which on none of `rows` diverges, if there is one.
+fn stable_from<'a>(rows: impl Iterator<Item = &'a Row> + Clone) -> Option<u32> {
+    let diverged = rows.clone().filter(|row| row.strayed.diverged);
+    let last = diverged.map(|row| row.setting.rate).max();
+    let rates = rows.map(|row| row.setting.rate);
+    rates
+        .filter(|rate| last.is_none_or(|last| *rate > last))
+        .min()
+}
+
 /// Table of how many settings of each method diverge, in the scenes where some do. Empty if none does.
 pub fn diverging(scenes: &[(&Scene, Vec<Row>)]) -> String {
     let mut lines = String::new();
@@ -101,9 +111,12 @@ pub fn diverging(scenes: &[(&Scene, Vec<Row>)]) -> String {
         for way in WAYS {
             let of = rows.iter().filter(|r| way.contains(&r.setting.method));
             let lost = of.clone().filter(|r| r.strayed.diverged).count();
-            let cell = match of.count() {
+            let cell = match of.clone().count() {
                 0 => "not run".into(),
-                sum => format!("{lost} of {sum}"),
+                sum => match stable_from(of) {
+                    Some(rate) => format!("{lost} of {sum}, none from {rate} Hz"),
+                    None => format!("{lost} of {sum}, also with the shortest step"),
+                },
             };
             let _ = write!(lines, " {cell} |");
         }
@@ -113,8 +126,9 @@ pub fn diverging(scenes: &[(&Scene, Vec<Row>)]) -> String {
         return lines;
     }
     format!(
-        "## What diverges\n\nHow many settings diverge, of all that were run, at all time steps. In the scenes that are not \
-         named here, none does. The sections of the scenes name the settings.\n\n\
+        "## What diverges\n\nHow many settings diverge, of all that were run, at all time steps, and from how many steps a second \
+         on none does: that is the largest stable step. In the scenes that are not named here, none diverges. The sections of the \
+         scenes name the settings.\n\n\
          | scene | bevy_coilover | Rapier SpringJoint | Avian distance joint | force once per step |\n\
          |---|---|---|---|---|\n{lines}\n"
     )
