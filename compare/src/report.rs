@@ -219,11 +219,13 @@ mod tests {
             row(Method::Ours, 60, 30e-6, 1e-3),
             row(Method::Force, 30, 30e-6, 1e-3),
         ];
+        let stable = row(Method::Ours, 120, 30e-6, 1e-3);
         let lost = [ours, joint].map(lost).into_iter().flatten();
-        let told = diverging(&[(&SCENES[0], rows), (&SCENES[1], lost.collect())]);
+        let lost = lost.chain([stable]).collect();
+        let told = diverging(&[(&SCENES[0], rows), (&SCENES[1], lost)]);
         assert!(!told.contains(SCENES[0].title), "{told}");
         let line = format!(
-            "| {} | 1 of 1 | 1 of 1 | not run | not run |",
+            "| {} | 1 of 2, none from 120 Hz | 1 of 1, also with the shortest step | not run | not run |",
             SCENES[1].title
         );
         assert!(told.contains(&line), "{told}");
