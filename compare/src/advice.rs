@@ -46,7 +46,7 @@ pub fn section(scenes: &[(&Scene, Vec<Row>)]) -> String {
     let dials = [1, 2, 4, 8, 16]
         .map(Dial::Microsteps)
         .into_iter()
-        .chain([Dial::Extrapolated, Dial::Tolerance(3)]);
+        .chain([Dial::Extrapolated(1), Dial::Tolerance(3)]);
     for (scene, rows) in scenes {
         let _ = write!(text, "| {} |", scene.title);
         for dial in dials.clone() {

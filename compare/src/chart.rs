@@ -112,7 +112,7 @@ fn curves(rows: &[Row]) -> Vec<Curve> {
                     r.setting.rate == 60 && matches!(r.setting.dial, Dial::Microsteps(_))
                 });
                 add(own("extrapolated, dt"), method, EXTRAPOLATED, true, &|r| {
-                    r.setting.dial == Dial::Extrapolated
+                    r.setting.dial == Dial::Extrapolated(1)
                 });
             }
             Method::Joint => add(own("iterations"), method, paint, false, &|r| {

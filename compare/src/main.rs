@@ -27,6 +27,7 @@ mod stability;
 mod study;
 mod sweep;
 mod table;
+mod turning;
 mod verdict;
 mod words;
 
@@ -42,10 +43,11 @@ use std::process::ExitCode;
 use study::Study;
 use sweep::Sweep;
 use table::Table;
+use turning::Turning;
 
 fn main() -> ExitCode {
     let mut known: Vec<&str> = SCENES.iter().map(|s| s.name).collect();
-    known.extend([Sweep.name(), Scale.name(), Ground.name()]);
+    known.extend([Turning.name(), Sweep.name(), Scale.name(), Ground.name()]);
     known.extend(Map::ALL.iter().map(Map::name));
     let done = match Options::parse(&known) {
         Ok(Request::Help) => {
@@ -86,7 +88,8 @@ fn run(options: &Options) -> Result<(), Box<dyn Error>> {
         let chunks = campaign::missing(options, scene, &table);
         work.push((scene, table, chunks));
     }
-    let studies = study::asked(&Sweep, options).len()
+    let studies = study::asked(&Turning, options).len()
+        + study::asked(&Sweep, options).len()
         + study::asked(&Scale, options).len()
         + study::asked(&Ground, options).len()
         + Map::ALL
@@ -100,7 +103,8 @@ fn run(options: &Options) -> Result<(), Box<dyn Error>> {
     for (scene, mut table, chunks) in work {
         campaign::run(options, scene, &mut table, chunks, &bar)?;
     }
-    let mut extras = study::run(&Sweep, options, &folder, &bar)?;
+    let mut extras = study::run(&Turning, options, &folder, &bar)?;
+    extras += &study::run(&Sweep, options, &folder, &bar)?;
     for map in Map::ALL {
         extras += &study::run(&map, options, &folder, &bar)?;
     }

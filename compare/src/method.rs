@@ -71,7 +71,7 @@ impl Method {
                     .into_iter()
                     .map(Dial::Microsteps)
                     .collect();
-                dials.push(Dial::Extrapolated);
+                dials.push(Dial::Extrapolated(1));
                 dials.extend(pick(&[2, 3, 4], &[3]).into_iter().map(Dial::Tolerance));
                 dials
             }
@@ -93,7 +93,8 @@ impl Method {
 pub enum Dial {
     None,
     Microsteps(u32),
-    Extrapolated,
+    /// Extrapolated from this number of micro-steps and twice as many.
+    Extrapolated(u32),
     /// Tolerance of 10⁻ⁿ m/s.
     Tolerance(u32),
     Iterations(u32),
@@ -106,7 +107,8 @@ impl fmt::Display for Dial {
             Self::None => write!(f, "-"),
             Self::Microsteps(1) => write!(f, "default"),
             Self::Microsteps(n) => write!(f, "{n} micro-steps"),
-            Self::Extrapolated => write!(f, "extrapolated"),
+            Self::Extrapolated(1) => write!(f, "extrapolated"),
+            Self::Extrapolated(n) => write!(f, "extrapolated from {n}"),
             Self::Tolerance(n) => write!(f, "tolerance 1e-{n}"),
             Self::Iterations(n) => write!(f, "{n} iterations"),
             Self::Substeps(n) => write!(f, "{n} substeps"),

@@ -68,7 +68,7 @@ pub fn section(folder: &Path, scenes: &[(&Scene, Vec<Row>)]) -> String {
             let _ = write!(text, " {} |", scene.title);
         }
         let _ = writeln!(text, "\n|---|---|{}", "---|".repeat(scenes.len()));
-        for dial in [Method::Ours.default_dial(), Dial::Extrapolated] {
+        for dial in [Method::Ours.default_dial(), Dial::Extrapolated(1)] {
             let setting = Setting {
                 method: Method::Ours,
                 dial,

@@ -50,7 +50,7 @@ pub fn headline(scenes: &[(&Scene, Vec<Row>)]) -> String {
             rows,
             Setting {
                 method: Method::Ours,
-                dial: Dial::Extrapolated,
+                dial: Dial::Extrapolated(1),
                 rate: 60,
             },
         );

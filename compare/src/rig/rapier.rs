@@ -51,7 +51,11 @@ pub fn plug(app: &mut App, gravity: Vec3, ground: Option<f32>, setting: Setting)
                 // The plugin's default, in which stiff springs get more micro-steps by themselves.
                 Dial::Microsteps(1) => plugin,
                 Dial::Microsteps(n) => plugin.with_microsteps(n),
-                Dial::Extrapolated => plugin.with_extrapolation(),
+                // As by default, stiff springs get more micro-steps.
+                Dial::Extrapolated(n) => plugin
+                    .with_microsteps(n)
+                    .with_resolve(CoiloverSettings::default().resolve)
+                    .with_extrapolation(),
                 Dial::Tolerance(n) => plugin.with_tolerance(10.0_f32.powi(-(n as i32))),
                 _ => plugin,
             });

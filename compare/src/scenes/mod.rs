@@ -1,11 +1,11 @@
 //! The scenes with known motion.
 
 mod duffing;
-mod dumbbell;
+pub mod dumbbell;
 mod large;
 mod networks;
 pub mod oscillator;
-mod pendulum;
+pub mod pendulum;
 mod praised;
 mod quarter_car;
 mod star;
