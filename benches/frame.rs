@@ -8,6 +8,7 @@
 use benches::{Link, Own, Scene};
 use bevy::app::App;
 use bevy::ecs::world::World;
+use bevy_coilover::prelude::CoiloverPlugin;
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use std::time::Duration;
 
@@ -44,7 +45,7 @@ fn frames(c: &mut Criterion) {
     for count in [1_000, 10_000, 100_000] {
         group.throughput(Throughput::Elements(u64::from(count)));
         for link in [Link::Nothing, Link::Bare, Link::Ours, Link::Joint] {
-            let mut lazy = Lazy::new(|| Scene::Isolated.app(count, link, 1));
+            let mut lazy = Lazy::new(|| Scene::Isolated.app(count, link));
             group.bench_function(BenchmarkId::new(format!("{link:?}"), count), |b| {
                 let app = lazy.app();
                 b.iter(|| app.update());
@@ -64,13 +65,13 @@ fn road(c: &mut Criterion) {
         group.sample_size(10);
         group.throughput(Throughput::Elements(u64::from(count)));
         for link in [Link::Ours, Link::Joint] {
-            let mut lazy = Lazy::new(|| scene.app(count, link, 1));
+            let mut lazy = Lazy::new(|| scene.app(count, link));
             group.bench_function(BenchmarkId::new(format!("{link:?}"), count), |b| {
                 let app = lazy.app();
                 b.iter(|| app.update());
             });
         }
-        let mut lazy = Lazy::new(|| scene.clocked(count, Link::Ours, 1));
+        let mut lazy = Lazy::new(|| scene.clocked(count, Link::Ours, default()));
         group.bench_function(BenchmarkId::new("own", count), |b| {
             b.iter_custom(|frames| lazy.own(frames, |_| {}));
         });
@@ -81,26 +82,33 @@ fn road(c: &mut Criterion) {
 fn isolated(c: &mut Criterion) {
     let mut group = c.benchmark_group("own/isolated");
     group.sample_size(10);
-    let mut bench = |name: &str, scene: Scene, link: Link, count: u32, microsteps: u32| {
-        let mut lazy = Lazy::new(|| scene.clocked(count, link, microsteps));
+    let mut bench = |name: &str, scene: Scene, link: Link, count: u32, plugin: CoiloverPlugin| {
+        let mut lazy = Lazy::new(|| scene.clocked(count, link, plugin));
         group.throughput(Throughput::Elements(u64::from(count)));
         group.bench_function(BenchmarkId::new(name, count), |b| {
             b.iter_custom(|frames| lazy.own(frames, |_| {}));
         });
     };
+    let plugin = CoiloverPlugin::default;
     for count in [1, 10, 100, 1_000, 10_000, 100_000] {
-        bench("awake", Scene::Isolated, Link::Ours, count, 1);
+        bench("awake", Scene::Isolated, Link::Ours, count, plugin());
     }
-    bench("asleep", Scene::Asleep, Link::Ours, 10_000, 1);
+    bench("asleep", Scene::Asleep, Link::Ours, 10_000, plugin());
     let beside = "asleep, another body flies";
-    bench(beside, Scene::AllButOne, Link::Ours, 10_000, 1);
+    bench(beside, Scene::AllButOne, Link::Ours, 10_000, plugin());
     for count in [10_000, 100_000] {
-        bench("bare force", Scene::Isolated, Link::Bare, count, 1);
+        bench("bare force", Scene::Isolated, Link::Bare, count, plugin());
     }
-    bench("with laws", Scene::Isolated, Link::Laws, 10_000, 1);
-    bench("turning", Scene::Isolated, Link::Turning, 1_000, 1);
-    bench("4 microsteps", Scene::Isolated, Link::Ours, 10_000, 4);
-    bench("16 microsteps", Scene::Isolated, Link::Ours, 10_000, 16);
+    bench("with laws", Scene::Isolated, Link::Laws, 10_000, plugin());
+    bench("turning", Scene::Isolated, Link::Turning, 1_000, plugin());
+    // By default the plugin looks whether a spring needs more micro-steps. "1" is without that look.
+    for count in [1, 4, 16] {
+        let (name, fixed) = (
+            format!("{count} microsteps"),
+            plugin().with_microsteps(count),
+        );
+        bench(&name, Scene::Isolated, Link::Ours, 10_000, fixed);
+    }
     group.finish();
 }
 
@@ -117,7 +125,7 @@ fn networks(c: &mut Criterion) {
         let mut group = c.benchmark_group(format!("own/{scene:?}"));
         group.sample_size(10);
         for count in sizes.iter().copied() {
-            let mut lazy = Lazy::new(|| scene.clocked(count, Link::Ours, 1));
+            let mut lazy = Lazy::new(|| scene.clocked(count, Link::Ours, default()));
             let springs = scene.springs(count);
             group.throughput(Throughput::Elements(u64::from(springs)));
             group.bench_function(BenchmarkId::from_parameter(springs), |b| {
@@ -139,7 +147,7 @@ fn churn(c: &mut Criterion) {
         ("a spring", benches::respring),
     ];
     for (name, change) in cases {
-        let mut lazy = Lazy::new(|| Scene::Isolated.clocked(count, Link::Ours, 1));
+        let mut lazy = Lazy::new(|| Scene::Isolated.clocked(count, Link::Ours, default()));
         group.throughput(Throughput::Elements(u64::from(count)));
         group.bench_function(BenchmarkId::new(name, count), |b| {
             b.iter_custom(|frames| lazy.own(frames, change));

@@ -35,7 +35,7 @@ fn held_after(scene: Scene, count: u32, link: Link, change: fn(&mut World)) -> u
         stats.bytes_allocated - stats.bytes_deallocated
     };
     let before = live();
-    let mut app = scene.app(count, link, 1);
+    let mut app = scene.app(count, link);
     change(app.world_mut());
     let bytes = live() - before;
     drop(app);

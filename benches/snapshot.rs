@@ -17,7 +17,7 @@ fn snapshots(c: &mut Criterion) {
         (Scene::Rolling, 250),
     ];
     for (scene, count) in scenes {
-        let mut app = scene.app(count, Link::Ours, 1);
+        let mut app = scene.app(count, Link::Ours);
         for _ in 0..60 {
             app.update();
         }

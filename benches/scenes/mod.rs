@@ -159,24 +159,24 @@ impl Scene {
 
     /// Returns an app with about `count` springs, without gravity, on bodies without colliders. The simulation has
     /// already run for a while, as in a game.
-    pub fn app(self, count: u32, link: Link, microsteps: u32) -> App {
-        self.made(count, link, microsteps, false)
+    pub fn app(self, count: u32, link: Link) -> App {
+        self.made(count, link, CoiloverPlugin::default(), false)
     }
 
     /// Returns the app of [`Self::app`] with a clock around our own systems. Systems run one after the other:
     /// otherwise the clock would count the waking of threads for each system, 0.15 ms on two cores. The
     /// springs themselves use all threads.
-    pub fn clocked(self, count: u32, link: Link, microsteps: u32) -> App {
-        self.made(count, link, microsteps, true)
+    pub fn clocked(self, count: u32, link: Link, plugin: CoiloverPlugin) -> App {
+        self.made(count, link, plugin, true)
     }
 
-    fn made(self, count: u32, link: Link, microsteps: u32, clocked: bool) -> App {
+    fn made(self, count: u32, link: Link, plugin: CoiloverPlugin, clocked: bool) -> App {
         let mut app = App::new();
         app.add_plugins((
             MinimalPlugins,
             TransformPlugin,
             RapierPhysicsPlugin::<NoUserData>::default().in_fixed_schedule(),
-            CoiloverPlugin::default().with_microsteps(microsteps),
+            plugin,
         ))
         .insert_resource(TimestepMode::Fixed {
             dt: 1.0 / 60.0,

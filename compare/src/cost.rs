@@ -126,17 +126,18 @@ fn draw_panel(panel: &Sheet, scenes: &Measured, within: f64, dearest: f64) -> Dr
     const CHEAPEST: f64 = 7.0;
     let width = panel.dim_in_pixel().0 as i32;
     // The space to the right of this holds the methods without a setting within the limit.
-    let reach = f64::from(width - 64);
+    let reach = f64::from(width - 76);
     let at = |price: f64| 10 + (reach * (price / CHEAPEST).ln() / (dearest / CHEAPEST).ln()) as i32;
     let title = format!("within {} mm", 1e3 * within);
     panel.draw(&Text::new(title, (10, 14), font(17)))?;
     let bottom = height(scenes.len()) - 16;
-    for tick in [10.0, 30.0, 100.0, 300.0, 1000.0, 3000.0] {
+    let ticks = ["10 µs", "100 µs", "1 ms", "10 ms", "100 ms"];
+    for (decade, label) in ticks.into_iter().enumerate() {
+        let tick = 10.0_f64.powi(decade as i32 + 1);
         if tick <= dearest {
             let x = at(tick);
             panel.draw(&PathElement::new([(x, 46), (x, bottom)], FAINT))?;
-            let label = Text::new(format!("{tick} µs"), (x - 14, bottom + 4), font(12));
-            panel.draw(&label)?;
+            panel.draw(&Text::new(label, (x - 14, bottom + 4), font(12)))?;
         }
     }
     let never = width - 28;
@@ -157,7 +158,7 @@ fn draw_panel(panel: &Sheet, scenes: &Measured, within: f64, dearest: f64) -> Dr
                     panel.draw(&Circle::new((at(price(&row)), y), radius, paint.filled()))?;
                 }
                 None => {
-                    let x = never - 14 + 14 * missing;
+                    let x = never - 21 + 14 * missing;
                     panel.draw(&Cross::new((x, y), 4, paint.stroke_width(2)))?;
                     missing += 1;
                 }

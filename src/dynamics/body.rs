@@ -51,6 +51,17 @@ pub(crate) struct Body {
     pub turned: Option<Turned>,
 }
 
+/// Rotation of a body at an instant, and what changes it. World frame.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Swing {
+    /// Angular velocity, rad/s.
+    pub velocity: DVec3,
+    /// Angular acceleration from the user's torque, rad/s².
+    pub pushed: DVec3,
+    /// Gyroscopic acceleration of free flight, rad/s².
+    pub free: DVec3,
+}
+
 /// Inverse inertia in the world frame, and the rotation to which it belongs. It is stored because it is used many times
 /// until the rotation changes.
 #[derive(Clone, Copy, Debug)]
@@ -175,15 +186,28 @@ impl Body {
         frame * ((self.inertia * spin).cross(spin) / self.inertia)
     }
 
-    /// Returns the angular acceleration from the user's torque, and the gyroscopic one of free flight, rad/s².
-    pub(crate) fn angular_acceleration(&self, inverse_inertia: DMat3) -> (DVec3, DVec3) {
+    /// Its rotation at the present instant.
+    pub(crate) fn swing(&self) -> Swing {
+        if self.spin == Spin::Ignored {
+            return Swing::default();
+        }
+        let inverse_inertia = self.inverse_inertia();
         let pushed = inverse_inertia * self.torque;
         match self.spin {
-            Spin::Free { momentum } => (
+            Spin::Free { momentum } => {
+                let velocity = inverse_inertia * momentum;
+                Swing {
+                    velocity,
+                    pushed,
+                    free: inverse_inertia * momentum.cross(velocity),
+                }
+            }
+            Spin::Locked { velocity } => Swing {
+                velocity,
                 pushed,
-                inverse_inertia * momentum.cross(inverse_inertia * momentum),
-            ),
-            Spin::Ignored | Spin::Locked { .. } => (pushed, DVec3::ZERO),
+                free: DVec3::ZERO,
+            },
+            Spin::Ignored => Swing::default(),
         }
     }
 
@@ -263,9 +287,8 @@ impl Body {
         super::delivery::force_for(acceleration, self.inverse_mass)
     }
 
-    /// Applies an element's impulse (N s) at `arm` from the centre of mass. `inverse_inertia` is that at the present
-    /// rotation.
-    pub(crate) fn apply(&mut self, impulse: DVec3, arm: DVec3, inverse_inertia: DMat3) {
+    /// Applies an element's impulse (N s) at `arm` from the centre of mass.
+    pub(crate) fn apply(&mut self, impulse: DVec3, arm: DVec3) {
         self.given.0 += impulse;
         self.velocity += self.inverse_mass * impulse;
         if arm == DVec3::ZERO {
@@ -273,28 +296,36 @@ impl Body {
         }
         let angular = arm.cross(impulse);
         self.given.1 += angular;
-        self.apply_angular(angular, inverse_inertia);
+        self.apply_angular(angular);
     }
 
     /// Applies an element's angular impulse (N m s).
-    pub(crate) fn apply_twist(&mut self, impulse: DVec3, inverse_inertia: DMat3) {
+    pub(crate) fn apply_twist(&mut self, impulse: DVec3) {
         self.given.1 += impulse;
-        self.apply_angular(impulse, inverse_inertia);
+        self.apply_angular(impulse);
     }
 
     /// Applies an angular impulse (N m s) without counting it as an element's.
-    pub(crate) fn apply_angular(&mut self, impulse: DVec3, inverse_inertia: DMat3) {
-        match &mut self.spin {
+    pub(crate) fn apply_angular(&mut self, impulse: DVec3) {
+        match self.spin {
             Spin::Ignored => {}
-            Spin::Free { momentum } => *momentum += impulse,
-            Spin::Locked { velocity } => *velocity += inverse_inertia * impulse,
+            Spin::Free { momentum } => {
+                self.spin = Spin::Free {
+                    momentum: momentum + impulse,
+                };
+            }
+            Spin::Locked { velocity } => {
+                self.spin = Spin::Locked {
+                    velocity: velocity + self.inverse_inertia() * impulse,
+                };
+            }
         }
     }
 
     /// Applies gravity and the user's force and torque for `time` seconds.
-    pub(crate) fn apply_external(&mut self, time: f64, inverse_inertia: DMat3) {
+    pub(crate) fn apply_external(&mut self, time: f64) {
         self.velocity += time * self.acceleration;
-        self.apply_angular(time * self.torque, inverse_inertia);
+        self.apply_angular(time * self.torque);
     }
 
     /// Sets linear and angular velocity to `share` of those of `other`.

@@ -132,32 +132,38 @@ impl Direct {
         };
         for strut in struts {
             let own = strut.matrix();
+            let turns = strut
+                .bodies
+                .map(|body| body != NOBODY && places[body].turns);
+            let swings = turns.contains(&true) && !strut.twist;
+            // Force by the rotation of the body at each end.
+            let levers = strut.arms.map(cross);
+            let swung = levers.map(|lever| if swings { own * -lever } else { DMat3::ZERO });
             for (i, row) in strut.bodies.into_iter().enumerate() {
                 for (j, column) in strut.bodies.into_iter().enumerate() {
                     if row == NOBODY || column == NOBODY || places[column].at > places[row].at {
                         continue;
                     }
-                    let own = if i == j { own } else { own * -1.0 };
-                    let (row_turns, column_turns) = (places[row].turns, places[column].turns);
+                    let sign = if i == j { 1.0 } else { -1.0 };
+                    let both_turn = turns[i] && turns[j];
                     if strut.twist {
-                        if row_turns && column_turns {
-                            add(matrix, angular(row), angular(column), own);
+                        if both_turn {
+                            add(matrix, angular(row), angular(column), own * sign);
                         }
                         continue;
                     }
-                    add(matrix, linear(row), linear(column), own);
-                    if !row_turns && !column_turns {
-                        continue;
+                    add(matrix, linear(row), linear(column), own * sign);
+                    if turns[j] {
+                        add(matrix, linear(row), angular(column), swung[j] * sign);
                     }
-                    let (a, b) = (cross(strut.arms[i]), cross(strut.arms[j]));
-                    if column_turns {
-                        add(matrix, linear(row), angular(column), own * -b);
+                    if turns[i] {
+                        // Torque by the motion of the other end: the same coupling, transposed.
+                        let swung = swung[i].transpose() * sign;
+                        add(matrix, angular(row), linear(column), swung);
                     }
-                    if row_turns {
-                        add(matrix, angular(row), linear(column), a * own);
-                    }
-                    if row_turns && column_turns {
-                        add(matrix, angular(row), angular(column), a * own * -b);
+                    if both_turn {
+                        let turned = levers[i] * swung[j] * sign;
+                        add(matrix, angular(row), angular(column), turned);
                     }
                 }
             }

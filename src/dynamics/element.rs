@@ -1,6 +1,6 @@
 //! An element between two ends: how its ends are held, its line, and its forces.
 
-use super::body::{Body, Spin, turn};
+use super::body::{Body, Spin, Swing, turn};
 use super::guide::Guide;
 use super::law::{Drag, Elastic, Law};
 use super::line::Line;
@@ -72,7 +72,6 @@ pub(crate) struct Hold {
     /// Vector from the centre of mass to the point at which the force acts, m.
     pub arm: DVec3,
     pub inverse_mass: DVec3,
-    pub inverse_inertia: DMat3,
     /// Whether the element turns the body about an axis instead of pushing it.
     pub twist: bool,
     pub position: DVec3,
@@ -85,7 +84,6 @@ impl End {
                 body: None,
                 arm: DVec3::ZERO,
                 inverse_mass: DVec3::ZERO,
-                inverse_inertia: DMat3::ZERO,
                 twist: false,
                 position: path.position,
             },
@@ -96,7 +94,6 @@ impl End {
                         body: Some(index),
                         arm,
                         inverse_mass: body.inverse_mass,
-                        inverse_inertia: DMat3::ZERO,
                         twist: false,
                         position: body.position,
                     };
@@ -106,7 +103,6 @@ impl End {
                     body: Some(index),
                     arm,
                     inverse_mass: body.inverse_mass,
-                    inverse_inertia: body.inverse_inertia(),
                     twist: false,
                     position: body.position + arm,
                 }
@@ -162,15 +158,28 @@ impl End {
 
     /// Returns the velocity of the held point, its acceleration from external forces, and its acceleration in free flight.
     pub(super) fn motion(&self, hold: &Hold, bodies: &[Body]) -> (DVec3, DVec3, DVec3) {
+        self.motion_of(hold, bodies, |index| bodies[index].swing())
+    }
+
+    /// Like [`Self::motion`], for bodies whose rotation `swing` returns.
+    pub(super) fn motion_of(
+        &self,
+        hold: &Hold,
+        bodies: &[Body],
+        swing: impl Fn(usize) -> Swing,
+    ) -> (DVec3, DVec3, DVec3) {
         match (*self, hold.body) {
             (End::Body { .. }, Some(index)) => {
                 let body = &bodies[index];
                 if body.spin == Spin::Ignored {
                     return (body.velocity, body.acceleration, DVec3::ZERO);
                 }
-                let turning = body.angular_velocity();
+                let Swing {
+                    velocity: turning,
+                    pushed,
+                    free,
+                } = swing(index);
                 let swing = turning.cross(hold.arm);
-                let (pushed, free) = body.angular_acceleration(hold.inverse_inertia);
                 (
                     body.velocity + swing,
                     body.acceleration + pushed.cross(hold.arm),
@@ -189,8 +198,8 @@ impl End {
 
 impl Hold {
     /// Upper bound on the inverse effective mass along any direction.
-    pub(crate) fn most_inverse_mass(&self) -> f64 {
-        let inertia = &self.inverse_inertia;
+    pub(crate) fn most_inverse_mass(&self, bodies: &[Body]) -> f64 {
+        let inertia = &self.inverse_inertia(bodies);
         let trace = |m: &DMat3| m.x_axis.x + m.y_axis.y + m.z_axis.z;
         if self.twist {
             return trace(inertia);
@@ -200,10 +209,15 @@ impl Hold {
         self.inverse_mass.max_element() + turning
     }
 
+    fn inverse_inertia(&self, bodies: &[Body]) -> DMat3 {
+        self.body
+            .map_or(DMat3::ZERO, |index| bodies[index].inverse_inertia())
+    }
+
     /// Inverse effective mass of this end along a direction, 1/kg.
-    pub(crate) fn inverse_mass_along(&self, direction: DVec3) -> f64 {
+    pub(crate) fn inverse_mass_along(&self, direction: DVec3, bodies: &[Body]) -> f64 {
         if self.twist {
-            return direction.dot(self.inverse_inertia * direction);
+            return direction.dot(self.inverse_inertia(bodies) * direction);
         }
         let w = self.inverse_mass;
         // The direction would add rounding. Without it, equal lines have bitwise equal coefficients.
@@ -216,7 +230,7 @@ impl Hold {
             return linear;
         }
         let lever = self.arm.cross(direction);
-        linear + lever.dot(self.inverse_inertia * lever)
+        linear + lever.dot(self.inverse_inertia(bodies) * lever)
     }
 }
 
@@ -225,14 +239,13 @@ pub(crate) fn rounding(a: DVec3, b: DVec3) -> f64 {
     1e-9 * a.abs().max(b.abs()).max_element().max(1e-3)
 }
 
-impl Element {
-    /// Returns the vector from end A to end B, and whether it is longer than [`rounding`].
-    fn separation(&self, holds: &[Hold; 2]) -> (DVec3, bool) {
-        let d = holds[1].position - holds[0].position;
-        let [a, b] = holds.map(|h| h.position);
-        (d, d.length() > rounding(a, b))
-    }
+/// Returns the vector from end A to end B, and whether it is longer than [`rounding`].
+fn separation([a, b]: [DVec3; 2]) -> (DVec3, bool) {
+    let d = b - a;
+    (d, d.length() > rounding(a, b))
+}
 
+impl Element {
     /// Inverse effective mass along the line, if it does not depend on the line's direction: no body of the element turns,
     /// each has the same inverse mass along all axes, and the ends are apart.
     pub(crate) fn plain_inverse_mass(&self, bodies: &[Body]) -> Option<f64> {
@@ -265,12 +278,20 @@ impl Element {
             self.count_turns(bodies);
             return;
         }
-        let holds = [self.ends[0].hold(bodies), self.ends[1].hold(bodies)];
-        if let (d, true) = self.separation(&holds) {
+        let places = self.ends.each_ref().map(|end| end.position(bodies));
+        if let (d, true) = separation(places) {
             self.direction = Some(d.normalize());
         }
+        self.stiff_damper = false;
+        if self.rest_length != 0.0 || self.damping == 0.0 {
+            return;
+        }
         let along = self.direction.unwrap_or(DVec3::Y);
-        let inverse_mass: f64 = holds.iter().map(|h| h.inverse_mass_along(along)).sum();
+        let holds = self.ends.each_ref().map(|end| end.hold(bodies));
+        let inverse_mass: f64 = holds
+            .iter()
+            .map(|h| h.inverse_mass_along(along, bodies))
+            .sum();
         // For a stiffer spring, its isotropic, implicit form matters more than an axis for the damper.
         let resolved = self.stiffness * inverse_mass * step * step < 4.0;
         self.stiff_damper = resolved && self.damping * inverse_mass * step > 0.5;
@@ -283,7 +304,7 @@ impl Element {
             return self.guided_line(bodies);
         }
         let holds = [self.ends[0].hold(bodies), self.ends[1].hold(bodies)];
-        let (d, apart) = self.separation(&holds);
+        let (d, apart) = separation(holds.each_ref().map(|hold| hold.position));
         let isotropic = self.rest_length == 0.0 && !self.stiff_damper && self.law.is_none();
         let direction = match (apart, self.direction) {
             (true, None) => d.normalize(),
@@ -297,12 +318,15 @@ impl Element {
             }
             (false, None) => return None,
         };
-        let inverse_mass = holds.iter().map(|h| h.inverse_mass_along(direction)).sum();
+        let inverse_masses = holds
+            .each_ref()
+            .map(|hold| hold.inverse_mass_along(direction, bodies));
         Some(Line {
             holds,
             length: d.dot(direction),
             direction,
-            inverse_mass,
+            inverse_masses,
+            inverse_mass: inverse_masses.iter().sum(),
             isotropic,
             guided: false,
         })

@@ -50,24 +50,25 @@ impl Element {
             Guide::OfA(axis) => {
                 let axis = self.ends[0].rotation(bodies) * axis;
                 holds[0].arm += d;
-                holds[0].inverse_inertia = holds[0].inverse_inertia_of(bodies);
                 (axis, d.dot(axis))
             }
             Guide::Twist(axis) => {
                 for hold in &mut holds {
-                    hold.inverse_inertia = hold.inverse_inertia_of(bodies);
                     hold.twist = true;
                 }
                 let (gradient, angle) = self.twist(axis, bodies)?;
                 (gradient, self.angle + wrapped(angle - self.angle))
             }
         };
-        let inverse_mass = holds.iter().map(|h| h.inverse_mass_along(direction)).sum();
+        let inverse_masses = holds
+            .each_ref()
+            .map(|hold| hold.inverse_mass_along(direction, bodies));
         Some(Line {
             holds,
             length,
             direction,
-            inverse_mass,
+            inverse_masses,
+            inverse_mass: inverse_masses.iter().sum(),
             isotropic: false,
             guided: true,
         })
@@ -117,16 +118,14 @@ fn wrapped(angle: f64) -> f64 {
     if within > PI { within - TAU } else { within }
 }
 
-impl Hold {
-    fn inverse_inertia_of(&self, bodies: &[Body]) -> bevy::math::DMat3 {
-        self.body.map_or(bevy::math::DMat3::ZERO, |index| {
-            bodies[index].inverse_inertia()
-        })
-    }
-}
-
 impl Line {
-    pub(super) fn guided_motion(&self, element: &Element, bodies: &[Body]) -> Motion {
+    /// See [`Line::motion_of`].
+    pub(super) fn guided_motion(
+        &self,
+        element: &Element,
+        bodies: &[Body],
+        swing: &impl Fn(usize) -> Swing,
+    ) -> Motion {
         let u = self.direction;
         let mut motion = Motion {
             axial: 0.0,
@@ -141,14 +140,14 @@ impl Line {
             for ((end, hold), sign) in element.ends.iter().zip(&self.holds).zip([-1.0, 1.0]) {
                 motion.axial += sign * u.dot(end.angular_velocity(bodies));
                 if let Some(index) = hold.body {
-                    let (pushed, free) = bodies[index].angular_acceleration(hold.inverse_inertia);
-                    motion.pushed += sign * u.dot(pushed);
-                    motion.arms += sign * u.dot(free);
+                    let swing = swing(index);
+                    motion.pushed += sign * u.dot(swing.pushed);
+                    motion.arms += sign * u.dot(swing.free);
                 }
             }
             return motion;
         }
-        let [a, b] = [0, 1].map(|i| element.ends[i].motion(&self.holds[i], bodies));
+        let [a, b] = [0, 1].map(|i| element.ends[i].motion_of(&self.holds[i], bodies, swing));
         motion.axial = (b.0 - a.0).dot(u);
         motion.pushed = (b.1 - a.1).dot(u);
         motion.arms = (b.2 - a.2).dot(u);

@@ -133,8 +133,7 @@ fn act(line: &Line, bodies: &mut [Body], impulse: f64, step: f64) {
 /// Applies the external forces alone.
 pub(crate) fn external(bodies: &mut [Body], step: f64) {
     for body in bodies {
-        let inverse_inertia = body.inverse_inertia();
-        body.apply_external(step, inverse_inertia);
+        body.apply_external(step);
     }
 }
 

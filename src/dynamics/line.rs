@@ -1,6 +1,6 @@
 //! The line from end to end at an instant, its motion, and impulses along it.
 
-use super::body::{Body, Spin};
+use super::body::{Body, Spin, Swing};
 use super::element::{Element, Hold};
 use bevy::math::DVec3;
 
@@ -42,7 +42,9 @@ pub(crate) struct Line {
     pub holds: [Hold; 2],
     pub length: f64,
     pub direction: DVec3,
-    /// Inverse of the effective mass along the line, 1/kg.
+    /// Inverse effective masses of the two ends along the line, 1/kg.
+    pub inverse_masses: [f64; 2],
+    /// Inverse of the effective mass along the line, 1/kg: the sum of both.
     pub inverse_mass: f64,
     /// Whether the element is an isotropic oscillator, without a special axis, because its rest length is zero.
     pub isotropic: bool,
@@ -68,10 +70,21 @@ impl Line {
 
     /// Motion of the line at the bodies' present velocities. `step` bounds the centripetal acceleration.
     pub(crate) fn motion(&self, element: &Element, bodies: &[Body], step: f64) -> Motion {
+        self.motion_of(element, bodies, |index| bodies[index].swing(), step)
+    }
+
+    /// Like [`Self::motion`], for bodies whose rotation `swing` returns. Several elements at a body then share it.
+    pub(crate) fn motion_of(
+        &self,
+        element: &Element,
+        bodies: &[Body],
+        swing: impl Fn(usize) -> Swing,
+        step: f64,
+    ) -> Motion {
         if self.guided {
-            return self.guided_motion(element, bodies);
+            return self.guided_motion(element, bodies, &swing);
         }
-        let [a, b] = [0, 1].map(|i| element.ends[i].motion(&self.holds[i], bodies));
+        let [a, b] = [0, 1].map(|i| element.ends[i].motion_of(&self.holds[i], bodies, &swing));
         let velocity = b.0 - a.0;
         let axial = velocity.dot(self.direction);
         let lateral = velocity - axial * self.direction;
@@ -146,7 +159,7 @@ impl Line {
         let inverse_mass: f64 = self
             .holds
             .iter()
-            .map(|h| h.inverse_mass_along(across))
+            .map(|h| h.inverse_mass_along(across, bodies))
             .sum();
         if inverse_mass > 0.0 {
             self.impulse(bodies, change / inverse_mass);
@@ -158,9 +171,9 @@ impl Line {
         for (hold, sign) in self.holds.iter().zip([-1.0, 1.0]) {
             match hold.body {
                 Some(index) if hold.twist => {
-                    bodies[index].apply_twist(sign * impulse, hold.inverse_inertia);
+                    bodies[index].apply_twist(sign * impulse);
                 }
-                Some(index) => bodies[index].apply(sign * impulse, hold.arm, hold.inverse_inertia),
+                Some(index) => bodies[index].apply(sign * impulse, hold.arm),
                 None => {}
             }
         }

@@ -11,7 +11,7 @@
 //! rule, which conserves the energy of any linear motion at any stiffness. Modes that the step cannot resolve are damped a
 //! little, as those of a lone element are.
 
-use super::body::{Body, Spin};
+use super::body::{Body, Spin, Swing};
 use super::element::{Element, End};
 use super::kick;
 use super::line::{Line, Motion};
@@ -43,6 +43,8 @@ pub(crate) struct Network {
     /// The last solution, from which the next iterations start.
     acceleration: Twists,
     trial: Vec<Body>,
+    /// Rotation of each body, which its elements share.
+    swings: Vec<Swing>,
     /// For each body, the stiffness of its elements over its mass, 1/s²: the Gershgorin bound on ω².
     stiffness: Vec<f64>,
     /// For each body, the damping of its elements over its mass, 1/s: the bound on 2γ.
@@ -76,6 +78,8 @@ struct Row {
 impl Network {
     /// Fills the rows with the elements' lines and their motion.
     fn measure(&mut self, elements: &[Element], bodies: &[Body], step: f64) {
+        note_swings(&mut self.swings, bodies);
+        let swings = &self.swings;
         self.rows.clear();
         self.rows
             .extend(elements.iter().enumerate().filter_map(|(index, element)| {
@@ -83,7 +87,7 @@ impl Network {
                 Some(Row {
                     element: index,
                     line,
-                    before: line.motion(element, bodies, step),
+                    before: line.motion_of(element, bodies, |body| swings[body], step),
                     load: DVec3::ZERO,
                     centripetal_gain: 0.0,
                     centripetal: 0.0,
@@ -123,9 +127,12 @@ impl Network {
         trial.clear();
         trial.extend_from_slice(bodies);
         self.act(&mut trial, step);
+        note_swings(&mut self.swings, &trial);
+        let swings = &self.swings;
         for row in &mut self.rows {
             // The mean of before and after the kick makes the step time-symmetric.
-            let after = row.line.motion(&elements[row.element], &trial, step);
+            let (element, swing) = (&elements[row.element], |body: usize| swings[body]);
+            let after = row.line.motion_of(element, &trial, swing, step);
             row.centripetal = 0.5 * (row.centripetal + after.turning + after.arms);
         }
         self.trial = trial;
@@ -302,6 +309,11 @@ impl Network {
         }
         kick::external(bodies, step);
     }
+}
+
+fn note_swings(swings: &mut Vec<Swing>, bodies: &[Body]) {
+    swings.clear();
+    swings.extend(bodies.iter().map(Body::swing));
 }
 
 /// The part of an element in the linear system.

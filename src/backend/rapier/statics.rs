@@ -39,7 +39,7 @@ impl Lever {
 
     /// Inverse mass along the line of an end without joints and contacts, 1/kg.
     fn free(&self, end: usize) -> f64 {
-        self.line.holds[end].inverse_mass_along(self.line.direction)
+        self.line.inverse_masses[end]
     }
 }
 

@@ -85,10 +85,7 @@ impl Network {
 
 /// Shares of an element's stiffness and damping that count at its two ends, 1/kg.
 fn shares(line: &Line) -> [f64; 2] {
-    let w = line
-        .holds
-        .each_ref()
-        .map(|h| h.inverse_mass_along(line.direction).sqrt());
+    let w = line.inverse_masses.map(f64::sqrt);
     w.map(|own| own * (w[0] + w[1]))
 }
 

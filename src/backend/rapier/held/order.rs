@@ -131,11 +131,8 @@ impl Order {
 
     /// For each end that elements can move: the index of its body, and the root of its inverse mass along the line.
     pub(crate) fn mobilities(&self) -> impl Iterator<Item = (usize, f64)> {
-        let holds = self.line.holds.iter();
-        holds.filter_map(|hold| {
-            let inverse_mass = hold.inverse_mass_along(self.line.direction);
-            Some((hold.body?, inverse_mass.sqrt()))
-        })
+        let holds = self.line.holds.iter().zip(self.line.inverse_masses);
+        holds.filter_map(|(hold, inverse_mass)| Some((hold.body?, inverse_mass.sqrt())))
     }
 
     /// Makes the order of an element. [`Plan`](super::plan::Plan) completes it.
@@ -205,13 +202,13 @@ impl Order {
     }
 
     /// Returns the joints of the element for substeps of `substep` seconds, or none if it has no force. `holders` are the bodies
-    /// at both ends.
+    /// at both ends, `bodies` those of the plan.
     pub(crate) fn joints(
         &mut self,
         row: &ElementRow,
         holders: [BodyId; 2],
-        substep: f64,
-        time: f64,
+        bodies: &[Body],
+        [substep, time]: [f64; 2],
     ) -> Option<Wanted> {
         let frame = self.frame(row, holders, time);
         let mobility = self.axis_mobility[self.steadier(time)].unwrap_or(0.0);
@@ -221,7 +218,8 @@ impl Order {
             .as_ref()
             .map_or(0.0, |turn| turn.across_damping(time));
         let scale = self.leverage();
-        let inverse_mass: f64 = self.line.holds.iter().map(|h| h.most_inverse_mass()).sum();
+        let holds = self.line.holds.iter();
+        let inverse_mass: f64 = holds.map(|hold| hold.most_inverse_mass(bodies)).sum();
         let per_speed = (inverse_mass * substep).max(f64::MIN_POSITIVE).recip();
         let (nothing, bound) = (NOTHING * per_speed, SWIFTEST * per_speed);
         let joint = |[stiffness, damping]: [f64; 2], target: f64, [force, most]: [f64; 2]| {

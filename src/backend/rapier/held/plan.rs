@@ -293,7 +293,8 @@ impl Plan {
         for order in &self.orders {
             for hold in &order.line.holds {
                 if let Some(body) = hold.body {
-                    self.sums[body] += order.stiffness().abs() * hold.most_inverse_mass();
+                    let inverse_mass = hold.most_inverse_mass(&self.bodies);
+                    self.sums[body] += order.stiffness().abs() * inverse_mass;
                 }
             }
         }

@@ -22,8 +22,7 @@ pub(crate) fn stagger(
 ) {
     let mut moved = plan.bodies.clone();
     for body in &mut moved {
-        let inverse_inertia = body.inverse_inertia();
-        body.apply_external(by, inverse_inertia);
+        body.apply_external(by);
     }
     for order in &plan.orders {
         let rate = order.line.motion(&order.element, &plan.bodies, 0.0).axial;

@@ -312,7 +312,7 @@ fn join(
         let held = row.rare.held;
         let inside = row.inside.get_or_insert_default();
         let holders = [0, 1].map(|end| holder(inside, end, &held[end], engine, time));
-        wanted.push(order.joints(row, holders, substep, time));
+        wanted.push(order.joints(row, holders, &plan.bodies, [substep, time]));
         if let Some(inside) = &mut row.inside {
             inside.active = true;
             inside.turn = order.turn;
