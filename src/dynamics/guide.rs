@@ -3,8 +3,8 @@
 //! Each of them is one generalised coordinate (a length or an angle). Its rate is linear in the velocities, and the force on
 //! the bodies is along its gradient. So each of them conserves energy.
 
-use super::body::Body;
-use super::element::{Element, Hold};
+use super::body::{Body, Swing};
+use super::element::Element;
 use super::line::{Line, Motion};
 use crate::functions::atan2;
 use bevy::math::{DQuat, DVec3};

@@ -16,6 +16,9 @@ pub const GROUND_FREQUENCY: f32 = 1000.0;
 /// 3 m in one step of 1/240 s.
 const FASTEST: f32 = 1e4;
 
+/// The plugin's default of `with_resolve`.
+const RESOLVE: u32 = 1024;
+
 /// Adds Rapier and what the method needs.
 pub fn plug(app: &mut App, gravity: Vec3, ground: Option<f32>, setting: Setting) {
     let mut parameters = IntegrationParameters {
@@ -51,10 +54,11 @@ pub fn plug(app: &mut App, gravity: Vec3, ground: Option<f32>, setting: Setting)
                 // The plugin's default, in which stiff springs get more micro-steps by themselves.
                 Dial::Microsteps(1) => plugin,
                 Dial::Microsteps(n) => plugin.with_microsteps(n),
+                Dial::Extrapolated(1) => plugin.with_extrapolation(),
                 // As by default, stiff springs get more micro-steps.
                 Dial::Extrapolated(n) => plugin
                     .with_microsteps(n)
-                    .with_resolve(CoiloverSettings::default().resolve)
+                    .with_resolve(RESOLVE)
                     .with_extrapolation(),
                 Dial::Tolerance(n) => plugin.with_tolerance(10.0_f32.powi(-(n as i32))),
                 _ => plugin,
