@@ -71,7 +71,7 @@ fn road(c: &mut Criterion) {
                 b.iter(|| app.update());
             });
         }
-        let mut lazy = Lazy::new(|| scene.clocked(count, Link::Ours, default()));
+        let mut lazy = Lazy::new(|| scene.clocked(count, Link::Ours, CoiloverPlugin::default()));
         group.bench_function(BenchmarkId::new("own", count), |b| {
             b.iter_custom(|frames| lazy.own(frames, |_| {}));
         });
@@ -125,7 +125,8 @@ fn networks(c: &mut Criterion) {
         let mut group = c.benchmark_group(format!("own/{scene:?}"));
         group.sample_size(10);
         for count in sizes.iter().copied() {
-            let mut lazy = Lazy::new(|| scene.clocked(count, Link::Ours, default()));
+            let mut lazy =
+                Lazy::new(|| scene.clocked(count, Link::Ours, CoiloverPlugin::default()));
             let springs = scene.springs(count);
             group.throughput(Throughput::Elements(u64::from(springs)));
             group.bench_function(BenchmarkId::from_parameter(springs), |b| {
@@ -147,7 +148,8 @@ fn churn(c: &mut Criterion) {
         ("a spring", benches::respring),
     ];
     for (name, change) in cases {
-        let mut lazy = Lazy::new(|| Scene::Isolated.clocked(count, Link::Ours, default()));
+        let mut lazy =
+            Lazy::new(|| Scene::Isolated.clocked(count, Link::Ours, CoiloverPlugin::default()));
         group.throughput(Throughput::Elements(u64::from(count)));
         group.bench_function(BenchmarkId::new(name, count), |b| {
             b.iter_custom(|frames| lazy.own(frames, change));
