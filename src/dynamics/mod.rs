@@ -30,6 +30,7 @@ pub(crate) mod lanes;
 pub(crate) mod law;
 pub(crate) mod line;
 pub(crate) mod linkage;
+pub(crate) mod micro;
 pub(crate) mod moving;
 pub(crate) mod network;
 pub(crate) mod nonlinear_pair;

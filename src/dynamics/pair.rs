@@ -9,7 +9,7 @@ use super::law::Law;
 use super::line;
 use super::nonlinear_pair::NonlinearPair;
 use super::poles::{Poles, RESOLVED_PHASE};
-use super::resolution::{EXTRAPOLATION_LIMIT, RESOLVED};
+use super::resolution::EXTRAPOLATION_LIMIT;
 use crate::functions::exp;
 use bevy::math::DVec3;
 
@@ -243,8 +243,8 @@ impl Pair {
             return false;
         };
         let turned = step * step * line.lateral_square;
-        self.stiffness_number(step) < EXTRAPOLATION_LIMIT * EXTRAPOLATION_LIMIT
-            && self.damping * self.inverse_mass * step < EXTRAPOLATION_LIMIT
+        let decay = self.damping * self.inverse_mass * step;
+        converges(self.stiffness_number(step), decay)
             && (line.isotropic || turned < line.length * line.length)
     }
 
@@ -368,29 +368,18 @@ impl Line {
 }
 
 /// (ω h)².
-fn stiffness_number(stiffness: f64, inverse_mass: f64, step: f64) -> f64 {
+pub(super) fn stiffness_number(stiffness: f64, inverse_mass: f64, step: f64) -> f64 {
     stiffness * inverse_mass * step * step
 }
 
 /// Whether the energy of a step is checked. `damping` is c h/m, `stiffness_number` is (ω h)².
-fn is_watched(damping: f64, stiffness_number: f64) -> bool {
+pub(super) fn is_watched(damping: f64, stiffness_number: f64) -> bool {
     damping >= STRONG || !is_resolved(stiffness_number)
 }
 
-/// Returns the poles of an element for micro-steps of `step` seconds if [`super::lanes`] can solve it. Its energy must
-/// need no check. It must also need no finer micro-steps, unless it may not take them (`may_resolve` is false). The rest
-/// length must be above zero.
-#[inline(always)]
-pub(crate) fn plain_poles(
-    [stiffness, damping]: [f64; 2],
-    inverse_mass: f64,
-    (step, may_resolve): (f64, bool),
-    memo: &mut Memo,
-) -> Option<Poles> {
-    let damping = damping * inverse_mass * step;
-    let stiffness = stiffness_number(stiffness, inverse_mass, step);
-    let finer = may_resolve && stiffness > RESOLVED;
-    (!finer && !is_watched(damping, stiffness)).then(|| memo.poles(stiffness, damping / 2.0))
+/// Whether extrapolation converges for coarse micro-steps with (ω h)² = `z` and c h/m = `decay`.
+pub(super) fn converges(z: f64, decay: f64) -> bool {
+    z < EXTRAPOLATION_LIMIT * EXTRAPOLATION_LIMIT && decay < EXTRAPOLATION_LIMIT
 }
 
 fn is_resolved(z: f64) -> bool {

@@ -61,10 +61,11 @@ impl Accuracy {
         self.cap(self.microsteps.max(1)).0.saturating_mul(more)
     }
 
-    /// The fixed number of micro-steps of every step, if neither a tolerance nor extrapolation is asked for.
-    pub(crate) fn plain(&self) -> Option<u32> {
-        let plain = self.tolerance.is_none() && !self.extrapolate;
-        plain.then(|| self.cap(self.microsteps.max(1)).0)
+    /// The number of micro-steps of every step, if no tolerance chooses it. Extrapolation takes twice as many besides.
+    pub(crate) fn fixed(&self) -> Option<u32> {
+        self.tolerance
+            .is_none()
+            .then(|| self.cap(self.microsteps.max(1)).0)
     }
 }
 
@@ -94,11 +95,15 @@ pub(crate) struct Outcome {
 }
 
 impl Outcome {
-    /// Outcome of plain micro-steps.
-    pub(crate) fn plain(accuracy: &Accuracy) -> Self {
-        let (microsteps, capped) = accuracy.cap(accuracy.microsteps.max(1));
+    /// Outcome of a fixed number of micro-steps.
+    pub(crate) fn fixed(accuracy: &Accuracy) -> Self {
+        let (count, capped) = accuracy.cap(accuracy.microsteps.max(1));
         Self {
-            microsteps,
+            microsteps: if accuracy.extrapolate {
+                3 * count
+            } else {
+                count
+            },
             capped,
             ..Self::default()
         }

@@ -22,8 +22,8 @@ pub(crate) struct Lanes {
     stiffness: Each,
     /// Rest length, m.
     rest_length: Each,
-    /// The fields of [`Poles`], in their order.
-    poles: [Each; 4],
+    /// The fields of [`Poles`], in their order: for the micro-steps, and for the half ones of extrapolation.
+    poles: [[Each; 4]; 2],
     reached: Outcome,
 }
 
@@ -79,6 +79,8 @@ pub(crate) struct Stride {
     pub schedule: Schedule,
     /// Number of micro-steps.
     pub count: u32,
+    /// Whether the step is extrapolated from these micro-steps and twice as many.
+    pub extrapolates: bool,
     /// The engine's cap on speeds, m/s.
     pub fastest: f64,
 }
@@ -92,7 +94,7 @@ impl Lanes {
         lane: usize,
         points: &[FreePoint; 2],
         [stiffness, rest_length]: [f64; 2],
-        poles: &Poles,
+        poles: &[Poles; 2],
     ) {
         for (ends, point) in self.ends.iter_mut().zip(points) {
             put(&mut ends.position, lane, point.position);
@@ -102,15 +104,16 @@ impl Lanes {
         }
         self.stiffness[lane] = stiffness;
         self.rest_length[lane] = rest_length;
-        let Poles {
-            restoring,
-            loss,
-            speed,
-            skew,
-        } = *poles;
-        let poles = [restoring, loss, speed, skew];
-        for (each, pole) in self.poles.iter_mut().zip(poles) {
-            each[lane] = pole;
+        for (each, poles) in self.poles.iter_mut().zip(poles) {
+            let Poles {
+                restoring,
+                loss,
+                speed,
+                skew,
+            } = *poles;
+            for (each, pole) in each.iter_mut().zip([restoring, loss, speed, skew]) {
+                each[lane] = pole;
+            }
         }
     }
 
@@ -124,8 +127,8 @@ impl Lanes {
         })
     }
 
-    /// Returns the result for a lane. None for a special case that must be solved elsewhere: the ends met on the way, or a
-    /// body may exceed the engine's cap on speeds.
+    /// Returns the result for a lane. None for a special case that must be solved elsewhere: the ends met on the way, a
+    /// body may exceed the engine's cap on speeds, or the line turns too far for extrapolation.
     #[inline(always)]
     pub(crate) fn way(&self, lane: usize) -> Option<Way> {
         let Outcome {
@@ -181,17 +184,25 @@ impl Lanes {
             mass,
         };
         let length = d.length();
-        let run = Run {
+        let square = stiffness * inverse_mass;
+        let rounding = rounding(simd, a.position, b.position);
+        let run = |count: u32, poles: &[Each; 4]| Run {
             simd,
-            step: time / f64::from(stride.count),
-            count: stride.count,
+            step: time / f64::from(count),
+            count,
             outside,
             rest_length,
-            square: stiffness * inverse_mass,
-            poles: self.poles.each_ref().map(|pole| Four::load(simd, pole)),
-            rounding: rounding(simd, a.position, b.position),
+            square,
+            poles: poles.each_ref().map(|pole| Four::load(simd, pole)),
+            rounding,
         };
-        let end = run.go(d, v, length);
+        let [poles, half_poles] = &self.poles;
+        let mut end = run(stride.count, poles).go(d, v, length);
+        if stride.extrapolates {
+            let fine = run(2 * stride.count, half_poles);
+            let turns = fine.turns_far(d, v, length);
+            end = fine.go(d, v, length).extrapolated(simd, &end, turns);
+        }
         let heat = store.energy(d, v, length) - store.energy(end.d, end.v, end.length);
         // Displacement and velocity that the elements add to the free motion of the separations.
         let all_time = all(time);

@@ -33,6 +33,23 @@ pub(super) struct Reached<S: Simd> {
     pub met: Mask<S>,
 }
 
+impl<S: Simd> Reached<S> {
+    /// Extrapolates from the state that half as many micro-steps reached; see `pair::Separation::towards`. `odd` are lanes in
+    /// which that is wrong.
+    #[inline(always)]
+    pub(super) fn extrapolated(self, simd: S, coarse: &Self, odd: Mask<S>) -> Self {
+        let three = Four::all(simd, 3.0);
+        let d = self.d.plus(self.d.minus(coarse.d).over(three));
+        Self {
+            d,
+            v: self.v.plus(self.v.minus(coarse.v).over(three)),
+            side: self.side,
+            length: d.length(),
+            met: self.met | coarse.met | odd,
+        }
+    }
+}
+
 /// The lines at an instant; see `pair::Line`.
 struct Lines<S: Simd> {
     length: Four<S>,
@@ -59,6 +76,15 @@ impl<S: Simd> Run<S> {
             lateral_square: lateral.dot(lateral),
             pushed: self.outside.dot(direction),
         }
+    }
+
+    /// Lanes in which the line turns so far in two micro-steps that extrapolation from them would not converge; see
+    /// `Pair::resolved`.
+    #[inline(always)]
+    pub(super) fn turns_far(&self, d: Vectors<S>, v: Vectors<S>, length: Four<S>) -> Mask<S> {
+        let lines = self.along(v, d.times(self.all(1.0) / length), length);
+        let coarse = self.all(2.0) * self.all(self.step);
+        (length * length).at_most(coarse * coarse * lines.lateral_square)
     }
 
     /// See `line::turning`.

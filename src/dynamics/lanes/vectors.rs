@@ -170,6 +170,11 @@ impl<S: Simd> Vectors<S> {
     }
 
     #[inline(always)]
+    pub(super) fn over(self, by: Four<S>) -> Self {
+        Self(self.0.map(|each| each / by))
+    }
+
+    #[inline(always)]
     pub(super) fn dot(self, other: Self) -> Four<S> {
         let ([a, b, c], [x, y, z]) = (self.0, other.0);
         a * x + b * y + c * z

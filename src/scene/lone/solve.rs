@@ -3,8 +3,9 @@
 use super::alone::Alone;
 use super::{Pair, Route, Way};
 use crate::backend::Sight;
+use crate::dynamics::kick::Memo;
 use crate::dynamics::lanes::{LANES, Lanes, Stride, widest};
-use crate::dynamics::pair::plain_poles;
+use crate::dynamics::micro::Micro;
 use crate::dynamics::points::FreePoint;
 use crate::dynamics::poles::Poles;
 use crate::dynamics::tolerance::{Method, Outcome};
@@ -36,6 +37,8 @@ pub(crate) struct Worker {
     lanes: [Lanes; GROUPS],
     /// The elements in its lanes.
     taken: Vec<InLane>,
+    /// Coefficients of half micro-steps, where steps are extrapolated. Equal elements share them.
+    half: Memo,
     /// Whether some body can no longer be moved.
     pub stale: bool,
 }
@@ -44,10 +47,7 @@ pub(crate) struct Worker {
 #[derive(Clone, Copy)]
 pub(super) struct Pace {
     pub(super) stride: Stride,
-    /// Duration of a micro-step, s.
-    micro: f64,
-    /// Whether an element may take more micro-steps if these do not resolve it.
-    may_resolve: bool,
+    micro: Micro,
     solved: Solved,
 }
 
@@ -150,7 +150,7 @@ impl Worker {
         let points = [a.point, b.point];
         let more = [a.more, b.more];
         if let Some(pace) = pace.filter(|_| more.iter().flatten().all(|more| *more == 0))
-            && let Some((numbers, poles)) = plain(row, inverse_mass, pace)
+            && let Some((numbers, poles)) = plain(row, inverse_mass, pace, &mut self.half)
         {
             row.inverse_mass = inverse_mass;
             let (group, lane) = (self.taken.len() / LANES, self.taken.len() % LANES);
@@ -275,10 +275,10 @@ impl<V: Sight> WithSimd for Going<'_, '_, V> {
 }
 
 impl Step {
-    /// Data of the step for lanes; none if lanes cannot be used, because of a tolerance,
-    /// extrapolation or other substeps than usual.
+    /// Data of the step for lanes; none if lanes cannot be used, because of a tolerance or other substeps than usual.
     pub(super) fn pace(&self) -> Option<Pace> {
-        let count = self.accuracy.plain()?;
+        let count = self.accuracy.fixed()?;
+        let extrapolates = self.accuracy.extrapolate;
         if self.alike.is_some() || self.terms(0).second_substep {
             return None;
         }
@@ -286,26 +286,31 @@ impl Step {
             stride: Stride {
                 schedule: self.schedule,
                 count,
+                extrapolates,
                 fastest: self.plan.fastest,
             },
-            micro: self.plan.time / f64::from(count),
-            may_resolve: self.accuracy.resolve > 0,
+            micro: Micro {
+                step: self.plan.time / f64::from(count),
+                may_resolve: self.accuracy.resolve > 0,
+                extrapolates,
+            },
             solved: Solved {
                 method: Method::ClosedForm,
-                ..Outcome::plain(&self.accuracy).into()
+                ..Outcome::fixed(&self.accuracy).into()
             },
         })
     }
 }
 
-/// Returns stiffness and rest length, and the poles, if a lane can solve the element. It must be
-/// linear, with a rest length above zero.
+/// Returns stiffness and rest length, and the poles, if a lane can solve the element; see [`Micro::poles`]. It must be linear,
+/// with a rest length above zero. `half` is the memo of half micro-steps.
 #[inline(always)]
 pub(super) fn plain(
     row: &mut ElementRow,
     inverse_mass: f64,
     pace: &Pace,
-) -> Option<([f64; 2], Poles)> {
+    half: &mut Memo,
+) -> Option<([f64; 2], [Poles; 2])> {
     let Numbers {
         stiffness,
         damping,
@@ -313,13 +318,10 @@ pub(super) fn plain(
     } = row.numbers;
     let rest_length = rest_length.filter(|rest| row.law.is_none() && *rest > 0.0)?;
     let [stiffness, damping, rest_length] = [stiffness, damping, rest_length].map(f64::from);
-    let both = [stiffness, damping];
-    let poles = plain_poles(
-        both,
-        inverse_mass,
-        (pace.micro, pace.may_resolve),
-        &mut row.memo,
-    )?;
+    let memos = [&mut row.memo, half];
+    let poles = pace
+        .micro
+        .poles([stiffness, damping], inverse_mass, memos)?;
     Some(([stiffness, rest_length], poles))
 }
 
