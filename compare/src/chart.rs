@@ -2,13 +2,10 @@
 
 use crate::front::front;
 use crate::method::{Dial, Method};
-use crate::paint::{Drawn, EXTRAPOLATED, FAINT, INK, Sheet, colour, decades, font};
+use crate::paint::{Chart, Drawn, EXTRAPOLATED, INK, Label, Sheet, axes, colour, decades, font};
 use crate::table::Row;
-use plotters::coord::combinators::LogCoord;
 use plotters::prelude::*;
 use std::path::Path;
-
-type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<LogCoord<f64>, LogCoord<f64>>>;
 
 /// Errors below this are rounding errors of single precision, m. The chart draws them at this value.
 const FLOOR: f64 = 1e-7;
@@ -39,17 +36,12 @@ pub fn draw(path: &Path, title: &str, rows: &[Row]) -> Drawn {
         .x_label_area_size(44)
         .y_label_area_size(64)
         .build_cartesian_2d(xs.log_scale(), ys.clone().log_scale())?;
-    chart
-        .configure_mesh()
-        .light_line_style(TRANSPARENT)
-        .bold_line_style(FAINT)
-        .axis_style(INK)
-        .label_style(font(14))
-        .x_desc("computing time per 1/60 s of the scene, µs")
-        .y_desc("largest position error, m")
-        .x_label_formatter(&|x| format!("{x:.0}"))
-        .y_label_formatter(&|y| format!("{y:.0e}"))
-        .draw()?;
+    let labels: [&Label; 2] = [&|x| format!("{x:.0}"), &|y| format!("{y:.0e}")];
+    let titles = [
+        "computing time per 1/60 s of the scene, µs",
+        "largest position error, m",
+    ];
+    axes(&mut chart, 14, titles, labels)?;
     let best: Vec<_> = front(rows).iter().map(point).collect();
     chart.draw_series(LineSeries::new(best, INK.mix(0.25).stroke_width(7)))?;
     let curves = curves(rows);

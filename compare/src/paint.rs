@@ -2,6 +2,7 @@
 
 use crate::method::Method;
 use plotters::coord::Shift;
+use plotters::coord::combinators::LogCoord;
 use plotters::prelude::*;
 use std::error::Error;
 
@@ -9,6 +10,10 @@ use std::error::Error;
 pub type Sheet<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 /// Result of drawing.
 pub type Drawn = Result<(), Box<dyn Error>>;
+
+/// Chart with two logarithmic axes.
+pub type Chart<'a, 'b> =
+    ChartContext<'a, SVGBackend<'b>, Cartesian2d<LogCoord<f64>, LogCoord<f64>>>;
 
 pub const INK: RGBColor = RGBColor(40, 44, 52);
 pub const FAINT: RGBColor = RGBColor(225, 228, 232);
@@ -46,4 +51,24 @@ pub fn decades(values: impl Iterator<Item = f64>, whole: bool) -> std::ops::Rang
     } else {
         low / 1.6..high * 1.6
     }
+}
+
+/// How the numbers at an axis are written.
+pub type Label = dyn Fn(&f64) -> String;
+
+/// Draws the axes of a chart with faint lines at their numbers. `size` is that of the letters, px; titles and labels are those of
+/// the x axis and of the y axis.
+pub fn axes(chart: &mut Chart, size: u32, titles: [&str; 2], labels: [&Label; 2]) -> Drawn {
+    chart
+        .configure_mesh()
+        .light_line_style(TRANSPARENT)
+        .bold_line_style(FAINT)
+        .axis_style(INK)
+        .label_style(font(size))
+        .x_desc(titles[0])
+        .y_desc(titles[1])
+        .x_label_formatter(labels[0])
+        .y_label_formatter(labels[1])
+        .draw()?;
+    Ok(())
 }

@@ -73,6 +73,16 @@ pub struct Truth {
     pub at: Box<dyn Fn(f64) -> Option<Vec<DVec3>>>,
 }
 
+impl Truth {
+    /// Nothing is known, and nothing is watched: for scenes that are only timed.
+    pub fn unknown() -> Self {
+        Self {
+            watched: Vec::new(),
+            at: Box::new(|_| None),
+        }
+    }
+}
+
 impl Body {
     pub fn fixed(at: Vec3) -> Self {
         Self::new(Kind::Fixed, at)

@@ -3,7 +3,7 @@
 use crate::clock::{Times, turn_of};
 use crate::machine::field;
 use crate::method::{Method, Setting};
-use crate::paint::{Drawn, FAINT, INK, colour, decades, font};
+use crate::paint::{Drawn, Label, axes, colour, decades, font};
 use crate::problem::{Body, Link, Problem, Truth};
 use crate::rig::Rig;
 use crate::study::{Study, number};
@@ -182,10 +182,7 @@ fn pairs(count: u32) -> Problem {
         seconds: 1.0,
         size: 1.0,
         energy: None,
-        truth: Truth {
-            watched: Vec::new(),
-            at: Box::new(|_| None),
-        },
+        truth: Truth::unknown(),
     }
 }
 
@@ -203,17 +200,9 @@ fn draw(path: &Path, loads: &[Load]) -> Drawn {
         .x_label_area_size(44)
         .y_label_area_size(70)
         .build_cartesian_2d(xs.log_scale(), ys.log_scale())?;
-    chart
-        .configure_mesh()
-        .light_line_style(TRANSPARENT)
-        .bold_line_style(FAINT)
-        .axis_style(INK)
-        .label_style(font(14))
-        .x_desc("springs")
-        .y_desc("time of an update, µs")
-        .x_label_formatter(&|x| format!("{x:.0}"))
-        .y_label_formatter(&|y| format!("{y:.0}"))
-        .draw()?;
+    let labels: [&Label; 2] = [&|x| format!("{x:.0}"), &|y| format!("{y:.0}")];
+    let titles = ["springs", "time of an update, µs"];
+    axes(&mut chart, 14, titles, labels)?;
     for method in Method::ALL {
         let of: Vec<(f64, f64)> = loads
             .iter()

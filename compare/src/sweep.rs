@@ -2,7 +2,7 @@
 
 use crate::follow::follow;
 use crate::method::{Method, Setting};
-use crate::paint::{Drawn, FAINT, INK, colour, decades, font};
+use crate::paint::{Drawn, Label, axes, colour, decades, font};
 use crate::rig::Rig;
 use crate::scenes::oscillator::{AMPLITUDE, oscillator};
 use crate::study::{Study, number};
@@ -168,17 +168,12 @@ fn draw(path: &Path, points: &[Point]) -> Drawn {
             .x_label_area_size(44)
             .y_label_area_size(60)
             .build_cartesian_2d((0.008..12.0).log_scale(), range.clone().log_scale())?;
-        chart
-            .configure_mesh()
-            .light_line_style(TRANSPARENT)
-            .bold_line_style(FAINT)
-            .axis_style(INK)
-            .label_style(font(13))
-            .x_desc("ω·dt, radians per step")
-            .y_desc("largest error in 5 s, of the first stretch")
-            .x_label_formatter(&|x| format!("{x}"))
-            .y_label_formatter(&|y| format!("{y:.0e}"))
-            .draw()?;
+        let labels: [&Label; 2] = [&|x| format!("{x}"), &|y| format!("{y:.0e}")];
+        let titles = [
+            "ω·dt, radians per step",
+            "largest error in 5 s, of the first stretch",
+        ];
+        axes(&mut chart, 13, titles, labels)?;
         for method in Method::ALL {
             let of = |p: &&Point| p.method == method && p.zeta == zeta;
             if !points.iter().any(|p| of(&p)) {

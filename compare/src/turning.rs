@@ -7,7 +7,7 @@
 use crate::clock::{Times, race};
 use crate::follow::follow;
 use crate::method::{Dial, Method, Setting};
-use crate::paint::{Drawn, EXTRAPOLATED, FAINT, INK, colour, decades, font};
+use crate::paint::{Drawn, EXTRAPOLATED, Label, axes, colour, decades, font};
 use crate::problem::{Problem, Truth};
 use crate::scenes::{Scene, dumbbell, pendulum};
 use crate::study::{Study, number};
@@ -66,15 +66,13 @@ fn dials() -> impl Iterator<Item = Dial> {
     fixed.chain(EXTRAPOLATED_FROM.into_iter().map(Dial::Extrapolated))
 }
 
-fn settings() -> Vec<Setting> {
-    let of = |rate| {
-        dials().map(move |dial| Setting {
-            method: Method::Ours,
-            dial,
-            rate,
-        })
+fn settings(rate: u32) -> Vec<Setting> {
+    let of = |dial| Setting {
+        method: Method::Ours,
+        dial,
+        rate,
     };
-    RATES.into_iter().flat_map(of).collect()
+    dials().map(of).collect()
 }
 
 /// Many copies of a problem in one world, at the same place. Nothing has a shape, so they do not meet.
@@ -96,10 +94,7 @@ fn copies(problem: &Problem) -> Problem {
         seconds: problem.seconds,
         size: problem.size,
         energy: None,
-        truth: Truth {
-            watched: Vec::new(),
-            at: Box::new(|_| None),
-        },
+        truth: Truth::unknown(),
     }
 }
 
@@ -112,7 +107,7 @@ impl Study for Turning {
 
     fn wanted(&self, method: Method, quick: bool) -> usize {
         match method {
-            Method::Ours if !quick => SCENES.len() * settings().len(),
+            Method::Ours if !quick => SCENES.len() * RATES.len() * dials().count(),
             _ => 0,
         }
     }
@@ -126,8 +121,7 @@ impl Study for Turning {
             let problem = make();
             let many = copies(&problem);
             for rate in RATES {
-                let mut settings = settings();
-                settings.retain(|setting| setting.rate == rate);
+                let settings = settings(rate);
                 let times = race(&many, &settings, TURNS);
                 runs.extend(settings.into_iter().zip(times).map(|(setting, times)| Run {
                     scene,
@@ -191,17 +185,12 @@ impl Study for Turning {
                 .x_label_area_size(40)
                 .y_label_area_size(60)
                 .build_cartesian_2d(xs.clone().log_scale(), ys.clone().log_scale())?;
-            chart
-                .configure_mesh()
-                .light_line_style(TRANSPARENT)
-                .bold_line_style(FAINT)
-                .axis_style(INK)
-                .label_style(font(13))
-                .x_desc("time of one element per 1/60 s, µs")
-                .y_desc("largest position error, m")
-                .x_label_formatter(&|x| format!("{x}"))
-                .y_label_formatter(&|y| format!("{y:.0e}"))
-                .draw()?;
+            let labels: [&Label; 2] = [&|x| format!("{x}"), &|y| format!("{y:.0e}")];
+            let titles = [
+                "time of one element per 1/60 s, µs",
+                "largest position error, m",
+            ];
+            axes(&mut chart, 13, titles, labels)?;
             for (title, paint, wanted) in [
                 ("fixed micro-steps", colour(Method::Ours), false),
                 ("extrapolated", EXTRAPOLATED, true),
