@@ -1,7 +1,7 @@
 //! Solves a small system, or one that is long and narrow, directly: see [`super::envelope`].
 
 use super::envelope::Envelope;
-use super::strut::{NOBODY, Strut, cross};
+use super::strut::{Strut, cross};
 use bevy::math::{DMat3, DVec3};
 
 /// Number of unknowns up to which a factorisation is cheaper than iterations, whatever the network looks like.
@@ -57,6 +57,14 @@ struct Unknowns {
     at: usize,
     /// 1 for each one that is free, and 0 for a locked one.
     free: DVec3,
+}
+
+/// All unknowns of the body at an end.
+#[derive(Clone, Copy)]
+struct Motion {
+    linear: Unknowns,
+    /// None where the rotation is not among the unknowns.
+    angular: Option<Unknowns>,
 }
 
 impl Direct {
@@ -122,51 +130,16 @@ impl Direct {
                 add_own(matrix, place.at + 3, own.inertia, own.free_to_turn);
             }
         }
-        let linear = |body: usize| Unknowns {
-            at: places[body].at,
-            free: bodies(body).free,
-        };
-        let angular = |body: usize| Unknowns {
-            at: places[body].at + 3,
-            free: bodies(body).free_to_turn,
-        };
         for strut in struts {
-            let own = strut.matrix();
-            let turns = strut
-                .bodies
-                .map(|body| body != NOBODY && places[body].turns);
-            let swings = turns.contains(&true) && !strut.twist;
-            // Force by the rotation of the body at each end.
-            let levers = strut.arms.map(cross);
-            let swung = levers.map(|lever| if swings { own * -lever } else { DMat3::ZERO });
-            for (i, row) in strut.bodies.into_iter().enumerate() {
-                for (j, column) in strut.bodies.into_iter().enumerate() {
-                    if row == NOBODY || column == NOBODY || places[column].at > places[row].at {
-                        continue;
-                    }
-                    let sign = if i == j { 1.0 } else { -1.0 };
-                    let both_turn = turns[i] && turns[j];
-                    if strut.twist {
-                        if both_turn {
-                            add(matrix, angular(row), angular(column), own * sign);
-                        }
-                        continue;
-                    }
-                    add(matrix, linear(row), linear(column), own * sign);
-                    if turns[j] {
-                        add(matrix, linear(row), angular(column), swung[j] * sign);
-                    }
-                    if turns[i] {
-                        // Torque by the motion of the other end: the same coupling, transposed.
-                        let swung = swung[i].transpose() * sign;
-                        add(matrix, angular(row), linear(column), swung);
-                    }
-                    if both_turn {
-                        let turned = levers[i] * swung[j] * sign;
-                        add(matrix, angular(row), angular(column), turned);
-                    }
-                }
-            }
+            let ends = strut.bodies.map(|body| {
+                let place = places.get(body)?;
+                let (own, at) = (bodies(body), place.at);
+                let linear = Unknowns { at, free: own.free };
+                let (at, free) = (at + 3, own.free_to_turn);
+                let angular = place.turns.then_some(Unknowns { at, free });
+                Some(Motion { linear, angular })
+            });
+            add_strut(matrix, &strut, ends);
         }
         self.matrix.factorise()
     }
@@ -201,6 +174,49 @@ fn add_own(matrix: &mut Envelope, at: usize, own: DMat3, free: DVec3) {
     add(matrix, unknowns, unknowns, own);
     let locked = DMat3::from_diagonal(DVec3::ONE - free);
     matrix.add(at, at, locked);
+}
+
+/// Adds what a strut couples: each end with itself and with the other one. `None` for an end that is no body of the system.
+fn add_strut(matrix: &mut Envelope, strut: &Strut, ends: [Option<Motion>; 2]) {
+    let own = strut.matrix();
+    // Force by the rotation of the body at each end.
+    let levers = strut.arms.map(cross);
+    let swung: [DMat3; 2] = std::array::from_fn(|i| {
+        let swings = !strut.twist && ends[i].is_some_and(|end| end.angular.is_some());
+        if swings {
+            own * -levers[i]
+        } else {
+            DMat3::ZERO
+        }
+    });
+    for (i, row) in ends.into_iter().enumerate() {
+        for (j, column) in ends.into_iter().enumerate() {
+            let (Some(row), Some(column)) = (row, column) else {
+                continue;
+            };
+            if column.linear.at > row.linear.at {
+                continue;
+            }
+            let sign = if i == j { 1.0 } else { -1.0 };
+            if strut.twist {
+                if let (Some(row), Some(column)) = (row.angular, column.angular) {
+                    add(matrix, row, column, own * sign);
+                }
+                continue;
+            }
+            add(matrix, row.linear, column.linear, own * sign);
+            if let Some(column) = column.angular {
+                add(matrix, row.linear, column, swung[j] * sign);
+            }
+            if let Some(row) = row.angular {
+                // Torque by the motion of the other end: the same coupling, transposed.
+                add(matrix, row, column.linear, swung[i].transpose() * sign);
+            }
+            if let (Some(row), Some(column)) = (row.angular, column.angular) {
+                add(matrix, row, column, levers[i] * swung[j] * sign);
+            }
+        }
+    }
 }
 
 /// Adds a block, apart from what is locked.
