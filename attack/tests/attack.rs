@@ -95,7 +95,10 @@ fn search() -> Result<bool, Box<dyn Error>> {
         let mut tree = scene_of(seed)?;
         match judge(&tree.current(), &mut met) {
             Verdict::Sound => {}
-            Verdict::Engines(fault) => *engines.entry(fault.kind).or_default() += 1,
+            Verdict::Engines(fault) => {
+                println!("seed {seed}, a fault of the engine: {}", fault.kind);
+                *engines.entry(fault.kind).or_default() += 1;
+            }
             Verdict::Ours(fault) => {
                 println!("seed {seed}: {fault}");
                 let count = ours.entry(fault.kind.clone()).or_default();

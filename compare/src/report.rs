@@ -16,7 +16,7 @@ pub fn opening() -> String {
     format!(
         "# Speed against error\n\n\
          Made by `cargo run --release -p compare`, which measures every spring that a Bevy game could use on the \
-         same scenes. Do not edit: the command writes this file, and copies the first table into `docs/accuracy.md`.\n\n\
+         same scenes. Do not edit: the command writes this file, and copies the table of *In short* into `docs/accuracy.md`.\n\n\
          - **Methods.** bevy_coilover at 1 to 16 micro-steps, extrapolated, and by tolerance; the tutorial's \
          force `k·stretch + c·rate` written once per step into `ExternalForce`; Rapier's `SpringJoint` at 4 to 32 \
          solver iterations; Avian 0.7's `DistanceJoint` with compliance 1/k and `JointDamping` c/m at 6 to 48 \

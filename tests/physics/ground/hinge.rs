@@ -46,8 +46,9 @@ fn a_stiff_spring_on_a_hinged_arm_wins_nothing() {
                 let floor = -2.0 * GRAVITY;
                 let first = scene.energy() - floor;
                 let most = (scene.most(span(20.0)) - floor) / first;
+                let last = (scene.energy() - floor) / first;
                 println!(
-                    "arm, ω·dt {phase}, ζ {zeta}, {name}: E × {most:.4} of {first:.1} J, {:.2e} m/s",
+                    "arm, ω·dt {phase}, ζ {zeta}, {name}: E × {most:.4} of {first:.1} J, at the end × {last:.4} and {:.2e} m/s",
                     scene.speed()
                 );
                 assert!(most < 1.02, "ω·dt {phase}, ζ {zeta}, {name}: E × {most}");
