@@ -206,24 +206,25 @@ pub(crate) fn hold(
                 let mass = masses[i]?;
                 Some(along(AXES[i], entity, spring, mass))
             });
-            let of = *spring;
             // Silenced, because the game may have let go (despawned the entity) in the same tick.
-            commands
-                .entity(entity)
-                .queue_silenced(move |mut held: EntityWorldMut| {
-                    let springs = held.world_scope(|world| {
-                        springs.map(|spring| {
-                            let mut spring = world.spawn(spring?);
-                            if let Some(newtons) = of.max_force {
-                                spring.insert(MaxForce(newtons));
-                            }
-                            Some(spring.id())
-                        })
-                    });
-                    held.insert(Grip { springs, of });
-                });
+            let (mut grip, of) = (commands.entity(entity), *spring);
+            grip.queue_silenced(move |mut grip: EntityWorldMut| take_hold(&mut grip, of, springs));
         }
     }
+}
+
+/// Spawns the springs of a [`MouseSpring`].
+fn take_hold(held: &mut EntityWorldMut, of: MouseSpring, springs: [Option<impl Bundle>; 3]) {
+    let springs = held.world_scope(|world| {
+        springs.map(|spring| {
+            let mut spring = world.spawn(spring?);
+            if let Some(newtons) = of.max_force {
+                spring.insert(MaxForce(newtons));
+            }
+            Some(spring.id())
+        })
+    });
+    held.insert(Grip { springs, of });
 }
 
 /// Removes the fault of a [`MouseSpring`] when the component is removed.

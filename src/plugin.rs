@@ -8,7 +8,7 @@ use crate::input::strays::{Role, Strays};
 use crate::mouse_spring::{self, Grip, MouseSpring};
 use crate::readout::SpringReadout;
 use crate::scene::state::Scene;
-use crate::settings::CoiloverSettings;
+use crate::settings::{CoiloverSettings, MAX_ITERATIONS, MAX_MICROSTEPS, MAX_SUBSTEPS, RESOLVE};
 use bevy::ecs::query::ArchetypeFilter;
 use bevy::ecs::schedule::ScheduleLabel;
 use bevy::prelude::*;
@@ -28,10 +28,6 @@ pub struct CoiloverPlugin {
     /// Ticks per second that the plugin sets; `None` if it sets no rates.
     rate: Option<f64>,
 }
-
-/// Default of [`CoiloverSettings::resolve`], the most kicks per step of all stiff networks together: about half a
-/// millisecond.
-const RESOLVE: u32 = 1024;
 
 /// System sets of the plugin, in the order in which they run.
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -63,9 +59,9 @@ impl CoiloverPlugin {
                 resolve: RESOLVE,
                 extrapolation: false,
                 tolerance: None,
-                max_microsteps: 256,
-                max_iterations: 200,
-                max_substeps: 64,
+                max_microsteps: MAX_MICROSTEPS,
+                max_iterations: MAX_ITERATIONS,
+                max_substeps: MAX_SUBSTEPS,
                 schedule: schedule.intern(),
             },
             rate: None,

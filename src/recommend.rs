@@ -1,5 +1,7 @@
 //! How many micro-steps a spring needs.
 
+use crate::settings::MAX_MICROSTEPS;
+
 /// Standard gravity, m/s².
 const GRAVITY: f64 = 9.81;
 
@@ -10,7 +12,7 @@ const LENGTH: f64 = 1.0;
 const RESOLVED: f64 = 2.0;
 
 /// Largest result: the default of [`CoiloverSettings::max_microsteps`](crate::CoiloverSettings::max_microsteps).
-const MOST: f64 = 256.0;
+const MOST: f64 = MAX_MICROSTEPS as f64;
 
 /// Returns the number of micro-steps per engine step, for
 /// [`CoiloverPlugin::with_microsteps`](crate::CoiloverPlugin::with_microsteps), that keeps the added position error

@@ -5,6 +5,20 @@ use bevy::ecs::intern::Interned;
 use bevy::ecs::schedule::ScheduleLabel;
 use bevy::prelude::*;
 
+/// Default of [`CoiloverSettings::resolve`], the most kicks per step of all stiff networks together: about half a
+/// millisecond.
+pub(crate) const RESOLVE: u32 = 1024;
+
+/// Default of [`CoiloverSettings::max_microsteps`]: for one element, about a tenth of a millisecond. Pinned by
+/// `tolerance::tests::any_number_of_microsteps_keeps_below_the_cap`.
+pub(crate) const MAX_MICROSTEPS: u32 = 256;
+
+/// Default of [`CoiloverSettings::max_iterations`]. It bounds the time of a solve that converges slowly.
+pub(crate) const MAX_ITERATIONS: u32 = 200;
+
+/// Default of [`CoiloverSettings::max_substeps`]. It is enough for modes up to ω·dt = 96: stiffer ones are damped.
+pub(crate) const MAX_SUBSTEPS: u32 = 64;
+
 /// How the plugin runs. The public fields may be changed at any time.
 #[derive(Resource, Clone, Copy, Debug)]
 pub struct CoiloverSettings {

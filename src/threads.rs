@@ -14,6 +14,10 @@ static CORES: LazyLock<usize> =
 /// as waking a thread. Pinned by the benchmark `own/Lattice`.
 pub(crate) const PIECE: usize = 4096;
 
+/// Number of pieces of work per thread where the number of threads decides how work is cut. With several pieces, a thread that is
+/// done early can take work from others.
+pub(crate) const PER_THREAD: usize = 4;
+
 /// Number of threads that share work.
 pub(crate) fn count() -> usize {
     #[cfg(test)]

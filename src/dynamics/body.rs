@@ -306,7 +306,7 @@ impl Body {
     }
 
     /// Applies an angular impulse (N m s) without counting it as an element's.
-    pub(crate) fn apply_angular(&mut self, impulse: DVec3) {
+    fn apply_angular(&mut self, impulse: DVec3) {
         match self.spin {
             Spin::Ignored => {}
             Spin::Free { momentum } => {

@@ -7,7 +7,7 @@
 
 use super::body::Body;
 use super::element::{Element, End};
-use super::energy::{Energy, take};
+use super::energy::{Energy, ROUNDINGS, take};
 use super::resolution::RESOLVED;
 use bevy::math::DVec3;
 
@@ -23,7 +23,8 @@ const UNRESOLVED_SWAY: f64 = 0.002;
 /// gains a thousandth of this limit.
 const OWN: f64 = 0.1;
 
-/// Factor by which [`Bound::liveliest`] decreases in each step. It is forgotten within about ten seconds.
+/// Factor by which [`Bound::liveliest`] decreases in each step. It falls to a third in 550 steps, which are nine seconds at
+/// 60 steps per second.
 const REMEMBERED: f64 = 0.998;
 
 /// Greatest number of attempts to remove a surplus.
@@ -62,8 +63,8 @@ impl Bound {
         self.start = now;
         let change = now - self.last;
         let gift = if change.abs() < rounding || (change > 0.0 && !perturbed) {
-            // Rounding to the engine's f32 does not count. Nor does an unexplained gain: the engine just did not arrive
-            // exactly where it should.
+            // Rounding to the engine's f32 does not count. Nor does a gain if nothing else acted on the network: then the engine
+            // did not arrive exactly where it should.
             0.0
         } else {
             change
@@ -155,8 +156,8 @@ impl Bound {
         surplus <= sway && energy.sum() - self.start <= OWN * sway
     }
 
-    /// Slows all motion until the energy is within the bound, for a state whose energy without motion is. The motion of the
-    /// common centre of mass is kept unless an end with prescribed motion holds the network.
+    /// Slows all motion until the energy is within the bound. Without motion, the energy of the state must be within it. The
+    /// motion of the common centre of mass is kept unless an end with prescribed motion holds the network.
     pub(crate) fn slow(&mut self, elements: &[Element], bodies: &mut [Body], time: f64) {
         let energy = Energy::of(elements, bodies);
         let Some(most) = self.most(energy.stored, time) else {
@@ -257,9 +258,8 @@ fn energy_and_rounding(elements: &[Element], bodies: &[Body]) -> (Energy, f64) {
     let mut energy = Energy::of(&[], bodies);
     let mut rounding = 2.0 * unit * energy.motion;
     for element in elements {
-        // Rounding in four substeps at two ends.
         let (length, reach) = element.distance(bodies);
-        let off = 8.0 * unit * reach;
+        let off = ROUNDINGS * unit * reach;
         let elastic = element.elastic(length);
         energy.stored += elastic.energy;
         rounding += off * (elastic.force.abs() + elastic.stiffness * off);

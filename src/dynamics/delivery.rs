@@ -212,7 +212,8 @@ impl Schedule {
 }
 
 /// Number of times that the first guess is improved by a closed-form approximation of the engine's rule. This costs far less
-/// than to run the rule.
+/// than to run the rule. Pinned by
+/// `dynamics::tests::engine_substeps_reach_the_state_that_was_ordered`.
 const FORESEEN: usize = 2;
 
 /// Greatest number of corrections. Each leaves a thirtieth of the error.
@@ -221,7 +222,8 @@ const ROUNDS: usize = 6;
 /// Share of the cap on rotation that is planned with, because corrections may add a little.
 const CAUTION: f64 = 0.995;
 
-/// Error before a correction below which no further correction follows, rad.
+/// Error before a correction below which no further correction follows, rad. Pinned by
+/// `dynamics::tests::engine_substeps_reach_the_state_that_was_ordered`.
 const MISSED: f64 = 3e-7;
 
 /// Rotation vector of a small rotation. For an angle θ it is too short by θ⁵/213.

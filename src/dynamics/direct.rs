@@ -68,9 +68,10 @@ struct Motion {
 }
 
 impl Direct {
-    /// Numbers the unknowns of other bodies, of which is said whether they turn. They are numbered from the last body to the
-    /// first: neighbours in the network have near numbers, which makes the matrix narrow, and what all else hangs on, such as the
-    /// body of a car, is often the first body. Where it comes last, each wheel has entries only for itself and for it.
+    /// Numbers the unknowns of a new set of bodies. `turns` says of each body whether it turns. The numbers go from the last body
+    /// to the first. Neighbours in the network then have near numbers, which makes the matrix narrow. The body to which all others
+    /// are attached, such as that of a car, is often the first body, so its unknowns come last. Each wheel then has entries only
+    /// for itself and for the body of the car.
     pub(super) fn number(&mut self, turns: impl DoubleEndedIterator<Item = bool>) {
         self.unknowns = 0;
         self.places.clear();

@@ -3,7 +3,8 @@
 use super::body::{Body, Spin, Swing, turn};
 use super::guide::Guide;
 use super::law::{Drag, Elastic, Law};
-use super::line::Line;
+use super::line::{AT_ORIGIN, COINCIDENT, Line};
+use super::resolution::is_damper_stiff;
 use bevy::math::{DMat3, DQuat, DVec3};
 use std::sync::Arc;
 
@@ -236,7 +237,7 @@ impl Hold {
 
 /// Distance up to which two points count as coincident, because it may be rounding, m.
 pub(crate) fn rounding(a: DVec3, b: DVec3) -> f64 {
-    1e-9 * a.abs().max(b.abs()).max_element().max(1e-3)
+    COINCIDENT * a.abs().max(b.abs()).max_element().max(AT_ORIGIN)
 }
 
 /// Returns the vector from end A to end B, and whether it is longer than [`rounding`].
@@ -292,9 +293,8 @@ impl Element {
             .iter()
             .map(|h| h.inverse_mass_along(along, bodies))
             .sum();
-        // For a stiffer spring, its isotropic, implicit form matters more than an axis for the damper.
-        let resolved = self.stiffness * inverse_mass * step * step < 4.0;
-        self.stiff_damper = resolved && self.damping * inverse_mass * step > 0.5;
+        let z = self.stiffness * inverse_mass * step * step;
+        self.stiff_damper = is_damper_stiff(z, self.damping * inverse_mass * step);
     }
 
     /// Returns the line at this instant, or `None` if the ends coincide and no direction is known. The length between

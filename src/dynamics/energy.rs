@@ -4,6 +4,10 @@ use super::body::{Body, Spin};
 use super::element::Element;
 use bevy::math::DVec3;
 
+/// Greatest error of a length by rounding in one step, in units of rounding of the greatest coordinate of its ends: one unit in
+/// each of four substeps, which are Rapier's default, at each of two ends.
+pub(super) const ROUNDINGS: f64 = 8.0;
+
 /// Mechanical energy, J.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Energy {

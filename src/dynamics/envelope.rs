@@ -1,7 +1,7 @@
-//! Cholesky factorisation of a symmetric and positive definite matrix most of whose entries are zero. Of each row it keeps what
-//! stands between the first entry that is not zero and the diagonal: the envelope of the matrix, which its factor does not
-//! leave (George and Liu, Computer Solution of Large Sparse Positive Definite Systems, 1981, chapter 4). A chain whose bodies
-//! come in order costs as many operations as it has bodies; a full matrix would cost the cube of that.
+//! Cholesky factorisation of a symmetric and positive definite matrix most of whose entries are zero. Each row keeps the entries
+//! from its first nonzero entry to the diagonal. These entries are the envelope. The factor has no entries outside it (George and
+//! Liu, Computer Solution of Large Sparse Positive Definite Systems, 1981, chapter 4). The operations for a chain whose bodies come
+//! in order are proportional to the number of bodies; those for a full matrix are proportional to the cube of it.
 
 use bevy::math::DMat3;
 

@@ -6,10 +6,8 @@
 use super::body::Body;
 use super::element::{Element, End};
 use super::line::Line;
+use super::resolution::STRONG;
 use bevy::math::DVec3;
-
-/// c h/m from which on the energy of an element is checked.
-const STRONG: f64 = 0.5;
 
 /// Mechanical energy at the start of a step, in the frame of an end with prescribed motion.
 pub(crate) struct Guard {

@@ -7,7 +7,8 @@
 use super::body::{Body, Spin};
 use super::element::Element;
 use super::line::{Line, Motion};
-use super::poles::{Poles, RESOLVED_PHASE};
+use super::pair::{converges, is_resolved};
+use super::poles::Poles;
 
 /// The last coefficients. If no body turns, they are the same for every kick of a step.
 #[derive(Clone, Copy, Debug)]
@@ -202,12 +203,8 @@ fn map_lateral(
     line.push_across(bodies, (factor - 1.0) * motion.lateral);
 }
 
-fn is_resolved(z: f64) -> bool {
-    z < RESOLVED_PHASE * RESOLVED_PHASE
-}
-
-/// Whether a step resolves the element's oscillation and decay (up to `limit`), and the turning of its line.
-pub(crate) fn resolved(element: &Element, bodies: &[Body], step: f64, limit: f64) -> bool {
+/// Whether a step resolves the element's oscillation and decay, so that extrapolation converges, and the turning of its line.
+pub(crate) fn resolved(element: &Element, bodies: &[Body], step: f64) -> bool {
     let Some(line) = element.line(bodies) else {
         return false;
     };
@@ -215,5 +212,5 @@ pub(crate) fn resolved(element: &Element, bodies: &[Body], step: f64, limit: f64
     let Motion { lateral_square, .. } = line.motion(element, bodies, step);
     let turned = step * step * lateral_square;
     let decay = element.damping * line.inverse_mass * step;
-    z < limit * limit && decay < limit && (line.isotropic || turned < line.length * line.length)
+    converges(z, decay) && (line.isotropic || turned < line.length * line.length)
 }

@@ -4,6 +4,13 @@ use super::body::{Body, Spin, Swing};
 use super::element::{Element, Hold};
 use bevy::math::DVec3;
 
+/// Distance up to which two points count as coincident, as a share of their greatest coordinate. So short a distance may be
+/// rounding, and then it gives no direction.
+pub(super) const COINCIDENT: f64 = 1e-9;
+
+/// Coordinate up to which [`COINCIDENT`] does not shrink further, m. At the origin it would be zero.
+pub(super) const AT_ORIGIN: f64 = 1e-3;
+
 /// Velocity-dependent quantities of the line.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Motion {

@@ -15,6 +15,7 @@ use super::body::{Body, Spin, Swing};
 use super::element::{Element, End};
 use super::kick;
 use super::line::{Line, Motion};
+use super::resolution::STRONG;
 use super::strut::{NOBODY, Strut, Twists};
 use super::system::{Effort, System};
 use bevy::math::DVec3;
@@ -26,13 +27,12 @@ mod slipping;
 
 pub(super) use placement::{REVERSES, damper_placement, placement, settling, steep, together};
 
-/// (ω h)² of the stiffest mode up to which θ makes its frequency exact.
+/// (ω h)² of the stiffest mode up to which θ makes its frequency exact. Pinned by
+/// `networks::every_normal_mode_of_a_chain_has_its_frequency`.
 const PLACED: f64 = 9.0;
 
 /// (ω h)² up to which a law's slope at the present length is used, instead of the greatest slope ahead.
 const SMOOTH: f64 = 1.0;
-/// c h/m up to which the slope of a damping law is used, instead of [`steep`].
-const STEEP: f64 = 0.5;
 
 /// The coupled kick of a component, and its memory, which is kept from step to step.
 #[derive(Clone, Default)]
@@ -254,7 +254,7 @@ impl Network {
             let settle = settling(h2 * stiffest) * step;
             let others = step * bounds::of_others(&self.damping, line, row.braking);
             let mut c = drag.slope;
-            if c * step * line.inverse_mass > STEEP {
+            if c * step * line.inverse_mass > STRONG {
                 c = steep(drag, rate);
             }
             c += settle * k;

@@ -16,6 +16,7 @@ use super::law::Law;
 use super::network::{damper_placement, steep};
 use super::pair::{Pair, Separation};
 use super::poles::{RESOLVED_PHASE, UNRESOLVED_DECAY, decay_ratio};
+use super::resolution::STRONG;
 use bevy::math::DVec3;
 
 /// (ω h)² up to which the kick is used for a law without kinks.
@@ -23,8 +24,6 @@ const SMOOTH: f64 = 2.0;
 /// (ω h)² up to which the kick is used for a law with kinks. The energy of kicked motion oscillates a little, and at a kink
 /// the momentary difference would become permanent.
 const BENT: f64 = 0.04;
-/// c h/m up to which the kick is used.
-const LIGHT: f64 = 0.5;
 /// ω h that the energy-conserving steps aim at.
 const FINE: f64 = 0.2;
 /// Least and greatest number of energy-conserving steps in a micro-step.
@@ -79,7 +78,7 @@ impl<'a> NonlinearPair<'a> {
     /// cuts the damper or a part of it.
     fn light_damping(&self, length: f64, rate: f64, step: f64) -> Option<f64> {
         let drag = self.law.drag(length, self.rest_length(), rate);
-        let is_light = steep(drag, rate) * self.pair.inverse_mass * step < LIGHT;
+        let is_light = steep(drag, rate) * self.pair.inverse_mass * step < STRONG;
         let linear = self.law.drag.linear().unwrap_or(0.0);
         let is_whole = drag.force.abs() >= 0.999 * (linear * rate).abs();
         is_light.then(|| {

@@ -9,12 +9,9 @@ use super::law::Law;
 use super::line;
 use super::nonlinear_pair::NonlinearPair;
 use super::poles::{Poles, RESOLVED_PHASE};
-use super::resolution::EXTRAPOLATION_LIMIT;
+use super::resolution::{EXTRAPOLATION_LIMIT, STRONG, is_damper_stiff};
 use crate::functions::exp;
 use bevy::math::DVec3;
-
-/// c h/m from which on the energy of a step is checked; see [`super::guard`].
-const STRONG: f64 = 0.5;
 
 /// c h/m from which on energy-conserving steps would reverse the motion instead of stopping it. [`Pair::creep`] takes
 /// their place.
@@ -131,8 +128,8 @@ impl Pair {
     /// Stores on which side of end A end B is (see `Element::aim`). Returns direction and length of the line; none if the
     /// ends coincide.
     fn aim(&self, state: &mut Separation, step: f64) -> Option<(DVec3, f64)> {
-        let resolved = self.stiffness_number(step) < 4.0;
-        state.stiff_damper = resolved && self.damping * self.inverse_mass * step > 0.5;
+        let decay = self.damping * self.inverse_mass * step;
+        state.stiff_damper = is_damper_stiff(self.stiffness_number(step), decay);
         let length = state.d.length();
         if length <= self.rounding {
             return None;
@@ -382,6 +379,7 @@ pub(super) fn converges(z: f64, decay: f64) -> bool {
     z < EXTRAPOLATION_LIMIT * EXTRAPOLATION_LIMIT && decay < EXTRAPOLATION_LIMIT
 }
 
-fn is_resolved(z: f64) -> bool {
+/// Whether the frequency of a step with (ω h)² = `z` is exact.
+pub(super) fn is_resolved(z: f64) -> bool {
     z < RESOLVED_PHASE * RESOLVED_PHASE
 }

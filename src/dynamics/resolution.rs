@@ -6,8 +6,21 @@ use super::tolerance::Least;
 /// Phase per coarse step below which fourth-order extrapolation converges, rad.
 pub(super) const EXTRAPOLATION_LIMIT: f64 = 1.5;
 
-/// (ω h)² of the stiffest mode above which more micro-steps are needed to resolve it.
+/// (ω h)² of the stiffest mode above which more micro-steps are needed to resolve it. Pinned by
+/// `messages::what_cannot_be_followed_is_told_once`.
 pub(super) const RESOLVED: f64 = 4.0;
+
+/// c h/m from which a damper counts as strong. The energy of a lone element's step is then checked. A lone force law is not
+/// stepped by the kick. In a network, the steeper of a law's slope and secant counts. A spring of zero rest length has an axis.
+/// Pinned by `hard_cases::a_damper_passed_at_speed_only_takes_energy`.
+pub(super) const STRONG: f64 = 0.5;
+
+/// Whether a spring of zero rest length must have an axis, because its damper is strong. `z` is (ω h)² and `decay` is c h/m.
+/// For a stiffer spring, its isotropic, implicit form matters more than an axis for the damper.
+#[inline(always)]
+pub(super) fn is_damper_stiff(z: f64, decay: f64) -> bool {
+    z < RESOLVED && decay > STRONG
+}
 
 /// (ω h)² at which the micro-steps of a network follow its stiffest mode accurately. Frequencies are then right to a few
 /// parts in a million. The energy oscillates so little that the oscillation does not count as an energy gain. Pinned by

@@ -38,7 +38,8 @@ const STAGGERED: [f64; 2] = [0.05, 0.1];
 const SETTLING: f64 = 0.25;
 
 /// Least damping, as a share of h·stiffness. The engine divides by the damping, so it must not be zero. The resulting
-/// damping ratio of ω h / 4000 costs an undamped door 0.1 % of its amplitude in eight seconds. Pinned by `joints::door`.
+/// damping ratio of ω h / 4000 costs an undamped door 0.1 % of its amplitude in eight seconds. Pinned by
+/// `joints::a_door_on_its_hinge_swings_as_a_spring_in_tension_makes_it`.
 const LEAST: f64 = 5e-4;
 
 /// A force over one step that is linear in a length and its rate. For a torsion element, angles take the place of

@@ -104,17 +104,7 @@ impl Component {
         let accuracy = self.memory.caution.pass(time, accuracy);
         let is_shared = self.elements.len() > 1;
         if self.is_warm || is_shared && Points::can_be(&self.elements, &self.bodies) {
-            let Memory {
-                points,
-                max_iterations,
-                ..
-            } = &mut self.memory;
-            let points = points.get_or_insert_default();
-            if self.is_warm {
-                points.go_on(*max_iterations);
-            } else {
-                points.load_from(&self.elements, &self.bodies, *max_iterations);
-            }
+            self.fill_points();
             let outcome = self.advance_points(time, accuracy, |motion| {
                 controller.drive(motion, time, accuracy)
             });
@@ -141,6 +131,21 @@ impl Component {
         };
         outcome.capped |= !converged;
         outcome
+    }
+
+    /// Copies the state into the points that are solved in its place, unless they still have it.
+    fn fill_points(&mut self) {
+        let Memory {
+            points,
+            max_iterations,
+            ..
+        } = &mut self.memory;
+        let points = points.get_or_insert_default();
+        if self.is_warm {
+            points.go_on(*max_iterations);
+        } else {
+            points.load_from(&self.elements, &self.bodies, *max_iterations);
+        }
     }
 
     /// Exchanges the memory for copies of the state with that of the owner: before a step to lend it, and after the step to take
@@ -342,7 +347,7 @@ impl Motion for Component {
 
     fn is_resolved(&mut self, step: f64) -> bool {
         if self.is_alone() {
-            return kick::resolved(&self.elements[0], &self.bodies, step, EXTRAPOLATION_LIMIT);
+            return kick::resolved(&self.elements[0], &self.bodies, step);
         }
         let network = self.memory.network.get_or_insert_default();
         let (z, g) = network.bounds(&self.elements, &self.bodies, step);

@@ -124,7 +124,7 @@ impl System {
     pub(super) fn prepare(&mut self) {
         let struts = self.struts.iter().copied();
         self.direct.join(struts.clone().map(|strut| strut.bodies));
-        // Iterations for bodies that turn cost so much that even a few are many.
+        // Where bodies turn, iterations are so expensive that even a few cost more than a factorisation.
         self.is_direct = self.direct.is_cheaper();
         let bodies = |body: usize| Own {
             mass: self.mass[body],

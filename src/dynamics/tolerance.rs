@@ -31,8 +31,8 @@ impl Accuracy {
             resolve: 0,
             extrapolate: false,
             tolerance: None,
-            max_microsteps: 256,
-            max_iterations: 200,
+            max_microsteps: crate::settings::MAX_MICROSTEPS,
+            max_iterations: crate::settings::MAX_ITERATIONS,
         }
     }
 
@@ -152,7 +152,8 @@ pub(crate) fn velocity_counts(motion: f64, stiffened: f64) -> f64 {
     VELOCITY_COUNTS.min(omega.recip())
 }
 
-/// Number of steps between probes while the fewest micro-steps are enough.
+/// Number of steps between probes while the fewest micro-steps are enough. Pinned by
+/// `tolerance::tests::the_tolerance_is_kept_with_few_kicks`.
 const CALM: u32 = 24;
 /// Greatest number of steps between probes otherwise.
 const BUSY: u32 = 8;

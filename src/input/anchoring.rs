@@ -3,13 +3,10 @@
 use crate::element::{Anchors, WorldAnchors};
 use crate::input::named_ends::MOST_LEVELS;
 use crate::input::parts::{Acts, Parts, PartsItem};
-use crate::input::strays::who;
+use crate::input::strays::{GRACE, who};
 use bevy::ecs::entity::EntityHashMap;
 use bevy::ecs::system::SystemState;
 use bevy::prelude::*;
-
-/// Number of ticks that an end has to get its place before a warning is logged.
-const GRACE: u8 = 4;
 
 /// Elements whose points wait for a place of an end, with the number of ticks that they have waited.
 type Waiting<'s> = Local<'s, EntityHashMap<u8>>;

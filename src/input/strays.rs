@@ -11,8 +11,9 @@ use bevy::ecs::entity_disabling::Disabled;
 use bevy::ecs::query::Allow;
 use bevy::prelude::*;
 
-/// Number of ticks that an entity has to get its element.
-const GRACE: u8 = 4;
+/// Number of ticks that an entity has to get its element, or an end to get its place, before a warning is logged. Pinned by
+/// `strays::companions_without_an_element_are_told_once_for_each_entity`.
+pub(super) const GRACE: u8 = 4;
 
 /// What a stray component is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -144,8 +144,8 @@ impl ElementRow {
 
     /// The tension that the spring would have after the step, N, if parameters that the game changed before the step had changed
     /// evenly. `last` is the tension that it has. A winch that winds evenly changes the rest length at the beginning of each step
-    /// by as much as the load follows during the step. So tension leads by half of that change at first, and lags by as much at
-    /// last. The result is never beyond both these tensions.
+    /// by as much as the load follows during the step. So at the beginning of the step, the tension is ahead by half of the change,
+    /// and at the end, it is behind by as much. The result lies between the tension right after the change and `last`.
     pub(crate) fn even_tension(&self, last: f64) -> f64 {
         // A rope that has gone slack has no force.
         if !self.has(ElementFlags::LEADS) || last == 0.0 {

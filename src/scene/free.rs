@@ -205,7 +205,7 @@ fn advance(assemblies: &mut [Assembly], step: &Step, copies: &mut Vec<Copies>) {
     let worth = ready > 1 && load >= WORTH_SHARING;
     let threads = if worth { threads::count() } else { 1 };
     let each = if threads > 1 {
-        assemblies.len().div_ceil(4 * threads)
+        assemblies.len().div_ceil(threads::PER_THREAD * threads)
     } else {
         assemblies.len().max(1)
     };

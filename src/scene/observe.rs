@@ -67,7 +67,7 @@ pub(crate) fn share_of(rows: usize, worth: usize) -> usize {
     }
     match threads::count() {
         0 | 1 => rows,
-        threads => rows.div_ceil(4 * threads),
+        threads => rows.div_ceil(threads::PER_THREAD * threads),
     }
 }
 

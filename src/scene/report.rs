@@ -53,7 +53,8 @@ pub(crate) fn forget(entity: Entity, commands: &mut Commands) {
     });
 }
 
-/// Greatest number of elements that one message names.
+/// Greatest number of elements that one message names. Pinned by
+/// `messages::a_network_beyond_its_budget_is_told_in_one_message`.
 const MOST_NAMED: usize = 3;
 
 /// Reports elements whose vibration is too stiff to be followed, in one message for all that were found in a step.

@@ -10,9 +10,6 @@ use std::mem::take;
 /// by the benchmark `own/isolated/turning`.
 pub(crate) const WORTH_SHARING: usize = 256;
 
-/// Number of runs per thread. With several runs, a thread that is done early can take work from others.
-const RUNS: usize = 4;
-
 /// Indices into the rows of elements and of bodies.
 type Places = [usize; 2];
 
@@ -65,7 +62,7 @@ impl Runs {
                     break;
                 };
                 let apart = last[0] <= next[0] && last[1] <= next[1];
-                if apart && waiting >= all.div_ceil(RUNS * threads) {
+                if apart && waiting >= all.div_ceil(threads::PER_THREAD * threads) {
                     waiting = 0;
                     self.ends.push(End {
                         network: at + 1,

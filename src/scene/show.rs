@@ -20,8 +20,8 @@ const FOUND: ElementFlags = ElementFlags::TUNED
     .union(ElementFlags::CAPTURED)
     .union(ElementFlags::POSED);
 
-/// ω·dt of a micro-step above which an element's own vibration is not followed, rad. There a step of the closed form is half a
-/// period. Pinned by `what_cannot_be_followed_is_told_once`.
+/// ω·dt of a micro-step above which an element's own vibration is not followed, rad: the root of `RESOLVED` in
+/// `dynamics::resolution`, above which more micro-steps are needed. Pinned by `messages::what_cannot_be_followed_is_told_once`.
 const UNRESOLVED: f32 = 2.0;
 
 /// Components into which a captured rest length or angle and computed coefficients are written.

@@ -24,7 +24,8 @@ const HELD_REST: f32 = 2e-2;
 const CREEP: f32 = 1e-2;
 
 /// Time for which a body must rest before it may sleep, s. At a turning point with amplitude A and frequency ω a body rests for
-/// 2·REST/(A ω²), so a body that falls asleep has an acceleration below 2·REST/QUIET. Pinned by the same test.
+/// 2·REST/(A ω²), so a body that falls asleep has an acceleration below 2·REST/QUIET. Pinned by
+/// `sleeping::a_long_pendulum_on_a_stiff_spring_does_not_fall_asleep_at_its_turning_point`.
 const QUIET: f32 = 2.0;
 
 /// Change of a position that counts as rounding and not as motion, in units of the last place. A stiff spring answers a rounding

@@ -15,8 +15,8 @@ pub(crate) struct Stepped {
     pub worlds: Vec<Entity>,
     /// Whether some context is not stepped.
     pub some_rest: bool,
-    /// Bodies that the game puts to places and whose velocity the engine does not tell after this tick, by context and
-    /// handle, with their mean velocity (m/s) and angular velocity (rad/s) over the tick.
+    /// Mean velocity (m/s) and angular velocity (rad/s) over the tick of bodies that the game moves from place to place, by context
+    /// and handle. The engine's own velocities of these bodies are not valid after this tick.
     pub led: HashMap<(Entity, BodyId), [Vec3; 2]>,
     /// Simulated time of this tick, s, of each context that is not stepped for as long as the first one.
     pub times: EntityHashMap<f64>,

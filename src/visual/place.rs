@@ -9,12 +9,14 @@ use bevy::ecs::system::SystemParam;
 use bevy::math::{Mat3A, Vec3A};
 use bevy::prelude::*;
 
-/// An element that no camera sees is placed only once in this many frames. It is not left alone altogether, because it
-/// may cast a shadow into the picture. The visibility and the level of detail of an element in sight are updated as
-/// seldom: in between, it may be drawn a little too finely or too coarsely, or be placed in vain after it has gone out
-/// of sight. All are updated in the frame in which the views jump, and those in sight also in a frame in which a view is
-/// cut to another place, near enough to change their size in pixels.
-const SELDOM: u32 = 8;
+/// Number of frames in which an element that no camera sees is placed once, and a spiral turned once unless its shadow is in a
+/// picture. Elements out of sight are not left alone altogether, because they may come to cast a shadow into the picture.
+///
+/// The visibility and the level of detail of an element in sight are updated as seldom. In between, the element may be drawn a
+/// little too finely or too coarsely. After it has gone out of sight, it may be placed in vain. If the views jump, all elements
+/// are updated in that frame. If a view is cut to another place, elements in sight are updated where that changes their size in
+/// pixels.
+pub(super) const SELDOM: u32 = 8;
 
 /// Where an element is drawn.
 #[derive(Component, Clone, Copy, Debug, Default)]

@@ -2,6 +2,7 @@
 
 use super::bodies::Bodies;
 use super::made::Maker;
+use super::place::SELDOM;
 use super::shapes::{Finish, Shapes};
 use super::spiral;
 use super::torsion_coil::TorsionCoil;
@@ -20,9 +21,6 @@ use bevy::prelude::*;
 use bevy_rapier3d::prelude::{Collider, ColliderScale};
 use std::f32::consts::TAU;
 
-/// A spiral that no camera sees is turned only once in this many frames, unless its shadow is in a picture. It is not
-/// left alone altogether, because it may come to cast one.
-const SELDOM: u32 = 8;
 /// Size of what a spiral turns, if it cannot be measured, m.
 const SIZE: f32 = 0.5;
 /// Fineness of a round shape that is scaled unevenly, as in Rapier's plugin.

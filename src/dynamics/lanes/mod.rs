@@ -87,7 +87,7 @@ pub(crate) struct Stride {
 
 impl Lanes {
     /// Puts an element into a lane. It must have a rest length above zero and no strong damper, and the step must resolve
-    /// it; see `plain_poles`.
+    /// it; see `super::micro::Micro::poles`.
     #[inline(always)]
     pub(crate) fn take_in(
         &mut self,

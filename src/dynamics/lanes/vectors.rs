@@ -1,5 +1,6 @@
 //! Four numbers or four vectors side by side, for the processor's vector instructions.
 
+use crate::dynamics::line::{AT_ORIGIN, COINCIDENT};
 use bevy::math::DVec3;
 use pulp::Simd;
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Sub};
@@ -207,6 +208,6 @@ impl<S: Simd> Vectors<S> {
 /// Distance up to which two points count as coincident, m; see [`crate::dynamics::element::rounding`].
 #[inline(always)]
 pub(super) fn rounding<S: Simd>(simd: S, a: Vectors<S>, b: Vectors<S>) -> Four<S> {
-    let least = Four::all(simd, 1e-3);
-    Four::all(simd, 1e-9) * a.largest().max(b.largest()).max(least)
+    let least = Four::all(simd, AT_ORIGIN);
+    Four::all(simd, COINCIDENT) * a.largest().max(b.largest()).max(least)
 }

@@ -35,10 +35,10 @@ pub(crate) struct Drag {
 }
 
 impl Drag {
-    /// What is left of it at a rate if the sum of spring and damper has a least and a greatest value. The limits apply to the
-    /// sum, as in a slipping clutch. `spring` is the tension of the spring within them, and `uncut` that without them: the
-    /// damper first takes what is beyond the limit, and has no effect if that is more than its own force. Clamping is
-    /// monotone, so the force never adds energy.
+    /// The damping force that remains at a rate if the sum of spring and damper has a least and a greatest value. The limits apply
+    /// to the sum, as in a slipping clutch. `spring` is the tension of the spring within the limits, and `uncut` that without them.
+    /// The damper first balances the part of `uncut` that is beyond a limit. If that part is more than the damper's own force, the
+    /// damper has no effect. Clamping is monotone, so the force never adds energy.
     pub(super) fn within(
         self,
         [least, greatest]: [f64; 2],

@@ -37,11 +37,13 @@ pub(in crate::dynamics) fn braking(element: &Element, length: f64, rate: f64) ->
 }
 
 /// c h/m of all dampers at a body together, above which damping at the speed in the middle of the step would throw the body back,
-/// although each damper alone would not.
+/// although each damper alone would not. Pinned by
+/// `networks::ten_dampers_side_by_side_stop_a_body_as_one_does`.
 pub(in crate::dynamics) const REVERSES: f64 = 2.0;
 
 /// Ratio of the other dampers at a body to one of them, above which that one is too weak to throw the body back. Placed by them,
-/// it would only become less exact.
+/// it would only become less exact. Pinned by
+/// `networks::ten_dampers_side_by_side_stop_a_body_as_one_does`.
 const MANY: f64 = 32.0;
 
 /// c h/m that places a damper in the step, where its own is `own` and that of the other dampers at its ends is `others`.

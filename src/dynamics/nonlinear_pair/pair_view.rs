@@ -2,7 +2,7 @@
 
 use super::NonlinearPair;
 use crate::dynamics::body::{Body, Spin};
-use crate::dynamics::element::{Element, End};
+use crate::dynamics::element::{Element, End, rounding};
 use crate::dynamics::guide::Guide;
 use crate::dynamics::kick::Memo;
 use crate::dynamics::pair::{Pair, Separation};
@@ -40,7 +40,6 @@ impl PairView {
                 (body.position, body.velocity, body.acceleration, w)
             }
         });
-        let scale = a.0.abs().max(b.0.abs()).max_element();
         let start = Separation::new(b.0 - a.0, b.1 - a.1, element.direction);
         let pair = Pair {
             stiffness: 0.0,
@@ -48,7 +47,7 @@ impl PairView {
             rest_length: element.rest_length,
             inverse_mass: a.3 + b.3,
             outside: b.2 - a.2,
-            rounding: 1e-9 * scale.max(1e-3),
+            rounding: rounding(a.0, b.0),
         };
         (pair.inverse_mass > 0.0).then_some(Self {
             pair,

@@ -1,7 +1,7 @@
 //! Measures the energy of a network of points for its [bound](crate::dynamics::bound).
 
 use super::{Line, Points, State, Wire};
-use crate::dynamics::energy::Energy;
+use crate::dynamics::energy::{Energy, ROUNDINGS};
 use crate::threads::{PIECE, share};
 use bevy::math::DVec3;
 use std::ops::Range;
@@ -52,9 +52,8 @@ impl Survey {
         };
         let stretch = line.length.abs() - wire.rest_length;
         self.energy.stored += 0.5 * wire.stiffness * stretch * stretch;
-        // Rounding in four substeps at two ends.
         let [a, b] = wire.of(&points.positions);
-        let off = 8.0 * UNIT * a.abs().max(b.abs()).max_element();
+        let off = ROUNDINGS * UNIT * a.abs().max(b.abs()).max_element();
         let force = wire.stiffness * (line.length - wire.rest_length);
         self.rounding += off * (force.abs() + wire.stiffness * off);
         let [a, b] = wire.ends;

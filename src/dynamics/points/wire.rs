@@ -2,6 +2,7 @@
 
 use super::state::State;
 use crate::dynamics::element::rounding;
+use crate::dynamics::resolution::is_damper_stiff;
 use bevy::math::DVec3;
 
 /// One element.
@@ -67,8 +68,8 @@ impl Wire {
         if self.damping > 0.0 && self.rest_length == 0.0 {
             let [a, b] = self.inverse_masses(points);
             let inverse_mass = a + b;
-            let resolved = self.stiffness * inverse_mass * step * step < 4.0;
-            self.stiff_damper = resolved && self.damping * inverse_mass * step > 0.5;
+            let z = self.stiffness * inverse_mass * step * step;
+            self.stiff_damper = is_damper_stiff(z, self.damping * inverse_mass * step);
         }
     }
 

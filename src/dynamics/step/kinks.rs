@@ -9,22 +9,27 @@ use crate::dynamics::element::Element;
 use crate::dynamics::resolution::predicted_travel;
 use std::f64::consts::PI;
 
-/// ω h of micro-steps near a kink.
+/// ω h of micro-steps near a kink. Pinned by
+/// `laws::blows::a_ball_between_two_springs_with_stops_keeps_its_energy_and_goes_as_on_one`.
 const FINE: f64 = 0.5;
-/// Greatest number of micro-steps in a step near a kink.
+/// Greatest number of micro-steps in a step near a kink. Pinned by
+/// `laws::blows::a_ball_between_two_springs_with_stops_keeps_its_energy_and_goes_as_on_one`.
 const MOST: f64 = 20.0;
-/// ω h above which micro-steps near a kink bring no improvement.
+/// ω h above which micro-steps near a kink bring no improvement. Pinned by
+/// `laws::blows::a_ball_between_two_springs_with_stops_keeps_its_energy_and_goes_as_on_one`.
 const COARSE: f64 = 1.0;
 
 /// Greatest number of elements of a network that takes micro-steps for kinks. With more elements, one impact is a small
 /// share of the energy, and some element is at a kink in every step.
 const FEW: usize = 64;
 
-/// Relative change of stiffness at a kink above which energy would be lost there.
+/// Relative change of stiffness at a kink above which energy would be lost there. Pinned by
+/// `laws::blows::a_ball_between_two_springs_with_stops_keeps_its_energy_and_goes_as_on_one`.
 const SHARP: f64 = 0.1;
 
 /// Time after an impact for which kicks conserve the energy of kinked laws, s. The energy of ordinary kicks oscillates a
-/// little, and frequent changes between both kinds of kick would accumulate that.
+/// little, and frequent changes between both kinds of kick would accumulate that. Pinned by
+/// `laws::blows::a_ball_between_two_springs_with_stops_keeps_its_energy_and_goes_as_on_one`.
 const KEPT: f64 = 0.5;
 
 /// How long steps near kinks still need special treatment.

@@ -13,7 +13,7 @@ const LONGEST: f64 = 4.0 * MOST as f64;
 const STRONGEST: f64 = MOST as f64 * MOST as f64;
 /// Greatest rate of a length, m/s: [`LONGEST`] within a short step.
 const FASTEST: f64 = 1e16;
-/// Longest substep of an engine, s.
+/// Longest substep of an engine, and longest time of a [`Rest`], s.
 const SLOWEST: f64 = 10.0;
 
 /// Whether the magnitude of `x` is at most `most`. That of NaN is not.
@@ -61,7 +61,7 @@ impl Kept {
 }
 
 impl KeptElement {
-    /// The numbers that acted last. Where they are none that an element may have, those of its component, `given`.
+    /// The numbers that acted last. A number that no element may have is replaced by that of the component, `given`.
     pub(crate) fn numbers_or(&self, given: Numbers) -> Numbers {
         let of = |kept: f32, given| {
             if kept >= 0.0 && is_number(kept) {

@@ -109,9 +109,6 @@ pub(crate) struct Way {
 /// Number of elements from which on several threads are worth their start-up time. Pinned by the benchmark `own/isolated`.
 const WORTH_SHARING: usize = 1024;
 
-/// Number of pieces per thread. With several pieces, a thread that is done early can take work from others.
-const PIECES: usize = 4;
-
 /// Number of pieces into which `elements` lone elements are divided.
 pub(crate) fn pieces(elements: usize) -> usize {
     if elements < WORTH_SHARING {
@@ -119,7 +116,7 @@ pub(crate) fn pieces(elements: usize) -> usize {
     }
     match threads::count() {
         0 | 1 => 1,
-        threads => PIECES * threads,
+        threads => threads::PER_THREAD * threads,
     }
 }
 

@@ -17,7 +17,7 @@ use crate::input::check::{Fault, Parameters};
 use crate::input::companions::Companions;
 use crate::input::parts::{Acts, IsElement, Parts};
 use crate::readout::SpringReadout;
-use crate::settings::CoiloverSettings;
+use crate::settings::{CoiloverSettings, MAX_ITERATIONS, MAX_MICROSTEPS, MAX_SUBSTEPS};
 use bevy::ecs::entity::EntityHashSet;
 use bevy::ecs::schedule::ScheduleLabel;
 use bevy::ecs::system::SystemParam;
@@ -120,9 +120,9 @@ impl Lab {
                 resolve: 1,
                 extrapolation: false,
                 tolerance: None,
-                max_microsteps: 256,
-                max_iterations: 200,
-                max_substeps: 64,
+                max_microsteps: MAX_MICROSTEPS,
+                max_iterations: MAX_ITERATIONS,
+                max_substeps: MAX_SUBSTEPS,
                 schedule: FixedUpdate.intern(),
             },
             spare: Spare::default(),

@@ -170,7 +170,7 @@ impl BodyRow {
     }
 
     /// Whether something other than the engine's step may have moved the body. `at` is its centre of mass now.
-    pub(crate) fn was_displaced(&self, at: DVec3) -> bool {
+    fn was_displaced(&self, at: DVec3) -> bool {
         !self.has(BodyFlags::NOTED) || self.rare.now.0 != at
     }
 

@@ -34,7 +34,7 @@ bitflags! {
         const TOLD_UNRESOLVED = 1 << 12;
         /// The game changed its parameters before this step, and with them its force: see `RareElement::jump`.
         const JUMPED = 1 << 13;
-        /// The game did so before the last step, so the readout must tell the force of an even change.
+        /// The game changed its parameters before the last step. The readout must give the force that an even change would leave.
         const LEADS = 1 << 14;
         /// It did not act in its last step, as of a fault that solving found. So its energy was no part of its component's.
         const INERT = 1 << 15;

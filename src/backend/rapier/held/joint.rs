@@ -117,9 +117,11 @@ fn ordered_damping(stiffness: f32, wanted: f32, substep: f32) -> f32 {
     best.1
 }
 
-/// Number of neighbouring f32 numbers to try.
+/// Number of neighbouring f32 numbers to try. Pinned by
+/// `joint::tests::what_rapier_makes_of_the_order_is_what_was_wanted`.
 const NEIGHBOURS: usize = 64;
-/// Relative error of the stiffness that is small enough.
+/// Relative error of the stiffness that is small enough. Pinned by
+/// `joint::tests::what_rapier_makes_of_the_order_is_what_was_wanted`.
 const EXACT: f64 = 3e-7;
 
 #[cfg(test)]

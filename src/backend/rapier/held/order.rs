@@ -26,11 +26,13 @@ const SWIFTEST: f64 = 1e7;
 /// Pinned by `ground::mixed`.
 const TURNS: f64 = 1e-3;
 
-/// Share of the step by which a force is taken ahead that is fixed at the start of the step: from the midpoint rule, which keeps
-/// energy, to the implicit rule, which damps what a step cannot follow. Pinned by `ground::mixed`: below a half, energy is gained.
+/// Share of the step by which a force that is fixed at the start of the step is taken ahead. The first share is that of the
+/// midpoint rule, which keeps energy. The last is that of the implicit rule, which damps what a step cannot follow. Pinned by
+/// `ground::mixed`: below a half, energy is gained.
 const AHEAD: [f64; 2] = [0.5, 1.0];
 
-/// (ω·dt)² up to which such a force follows the midpoint rule, and from which on the implicit rule. Pinned by `ground::mixed`.
+/// (ω·dt)² up to which a force that is fixed at the start of the step follows the midpoint rule, and from which on it follows the
+/// implicit rule. Pinned by `ground::mixed`.
 const FOLLOWED: [f64; 2] = [1.0, 4.0];
 
 /// Stiffness · dt² · [`Order::axis_mobility`] up to which a spring along an axis of the world follows the length that Rapier
@@ -287,11 +289,7 @@ impl Order {
     }
 
     /// See the field of this name.
-    pub(crate) fn axis_mobility(
-        element: &Element,
-        line: &Line,
-        bodies: &[Body],
-    ) -> [Option<f64>; 2] {
+    fn axis_mobility(element: &Element, line: &Line, bodies: &[Body]) -> [Option<f64>; 2] {
         let Guide::World(axis) = element.guide else {
             return [None; 2];
         };

@@ -6,6 +6,7 @@ use crate::backend::rapier::held::linkage::{Holding, inverse_mass};
 use crate::backend::rapier::held::order::Order;
 use crate::dynamics::body::Body;
 use crate::dynamics::guide::Guide;
+use crate::dynamics::line::Line;
 use crate::dynamics::pieces::Pieces;
 use crate::input::check::Fault;
 use crate::scene::element::element;
@@ -150,36 +151,12 @@ impl Plan {
         }
         let is_touched = |b: usize| bodies[b].has(BodyFlags::TOUCHED);
         let touched = row.all_movable().any(is_touched);
-        let by = [0, 1].map(|end| {
-            row.movable(end).map_or((false, false), |b| {
-                let body = &bodies[b];
-                let is = |flag| body.has(flag);
-                (is(BodyFlags::JOINTED), is(BodyFlags::PRESSED))
-            })
-        });
+        self.find_leeway(row, &line, members, bodies, all);
         let inside = row.inside.get_or_insert_default();
         inside.context = members
             .bodies
             .first()
             .map(|b| bodies[*b as usize].rare.context);
-        if by != [(false, false); 2] {
-            // The engine finds contacts only within a step, so the result before the first step is provisional.
-            let masses = line.holds.map(|hold| {
-                let body = hold.body.map(|body| &self.bodies[body]);
-                body.map_or(0.0, |body| (body.inverse_mass + body.inertia).element_sum())
-            });
-            if inside.leeway.is_due(by, masses, inside.rates.is_some()) {
-                let on = |body: usize| handle(bodies[members.bodies[body] as usize].id);
-                inside.leeway.left = inverse_mass(&line, on, all);
-                inside.leeway.jointed = if by[0].0 || by[1].0 {
-                    let contacts = false;
-                    inverse_mass(&line, on, Holding { contacts, ..all }) / line.inverse_mass
-                } else {
-                    1.0
-                };
-            }
-            row.inverse_mass = inside.leeway.left;
-        }
         let mut order = Order::new(
             e,
             inside,
@@ -190,6 +167,44 @@ impl Plan {
         );
         order.apart = self.jointed && !touched;
         self.orders.push(order);
+    }
+
+    /// Finds how far joints and contacts let an element move its ends, where they hold one.
+    fn find_leeway(
+        &self,
+        row: &mut ElementRow,
+        line: &Line,
+        members: &Members,
+        bodies: &[BodyRow],
+        all: Holding,
+    ) {
+        let by = [0, 1].map(|end| {
+            row.movable(end).map_or((false, false), |b| {
+                let body = &bodies[b];
+                let is = |flag| body.has(flag);
+                (is(BodyFlags::JOINTED), is(BodyFlags::PRESSED))
+            })
+        });
+        if by == [(false, false); 2] {
+            return;
+        }
+        let inside = row.inside.get_or_insert_default();
+        // The engine finds contacts only within a step, so the result before the first step is provisional.
+        let masses = line.holds.map(|hold| {
+            let body = hold.body.map(|body| &self.bodies[body]);
+            body.map_or(0.0, |body| (body.inverse_mass + body.inertia).element_sum())
+        });
+        if inside.leeway.is_due(by, masses, inside.rates.is_some()) {
+            let on = |body: usize| handle(bodies[members.bodies[body] as usize].id);
+            inside.leeway.left = inverse_mass(line, on, all);
+            inside.leeway.jointed = if by[0].0 || by[1].0 {
+                let contacts = false;
+                inverse_mass(line, on, Holding { contacts, ..all }) / line.inverse_mass
+            } else {
+                1.0
+            };
+        }
+        row.inverse_mass = inside.leeway.left;
     }
 
     /// Marks bodies that may creep: bodies that contacts press, that hang in balance, or that joints carry along. A body of the

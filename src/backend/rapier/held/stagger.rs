@@ -35,9 +35,9 @@ pub(crate) fn stagger(
     set_velocities(&moved, step, members, bodies, engine);
 }
 
-/// Takes back half of what forces that the game has just changed will do in the next substep, of `substep` seconds: in the half
-/// substep before the change, the force was still the old one. Otherwise a winch that lowers a load would have it fall too far, and
-/// do work that no ledger has. Pinned by `ground::winch`.
+/// Takes back half of the impulse that a change of force by the game gives in the next substep, of `substep` seconds. In the half
+/// substep before the change, the force was still the old one. With the whole impulse, a load that a winch lowers would fall too
+/// far, and the winch would do work that no ledger has. Pinned by `ground::winch`.
 pub(crate) fn absorb_jumps(
     plan: &Plan,
     substep: f64,

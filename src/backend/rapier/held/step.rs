@@ -190,14 +190,7 @@ impl Scene {
             }
             return self.meets_soon(g, view, step, engine, &solver.pushes);
         }
-        let left = clear.saturating_sub(1);
-        for b in members.bodies {
-            // The counter is mostly zero already, and a row that is not written need not go back to memory.
-            let row = &mut bodies[*b as usize];
-            if row.clear != left {
-                row.clear = left;
-            }
-        }
+        count_down(clear, members.bodies, bodies);
         held
     }
 
@@ -254,6 +247,18 @@ pub(crate) fn add_up(elements: &[ElementRow], bodies: &mut [BodyRow]) {
                 None => f64::from(row.numbers.stiffness),
             };
             bodies[body].rare.stiffness += stiffness;
+        }
+    }
+}
+
+/// Counts the steps for which bodies can hit nothing: one fewer than `clear`.
+fn count_down(clear: u8, members: &[u32], bodies: &mut [BodyRow]) {
+    let left = clear.saturating_sub(1);
+    for b in members {
+        // The counter is mostly zero already, and a row that is not written need not go back to memory.
+        let row = &mut bodies[*b as usize];
+        if row.clear != left {
+            row.clear = left;
         }
     }
 }

@@ -5,8 +5,8 @@ use crate::backend::rapier::held::plan::Plan;
 use crate::dynamics::pieces::Piece;
 
 /// Number of sweeps per substep for a tense component without joints of the game, or a component with joints in which a one-sided
-/// force acts. With two sweeps the bridge still trembles; with one, stiff ropes that fall on the ground gain energy
-/// (`ground::ropes`). Sweeps cost little compared with the set-up of joints in each substep.
+/// force acts. With two sweeps the bridge of `ground::play` still trembles. With one, stiff ropes that fall on the ground gain
+/// energy (`ground::ropes`). Sweeps cost little compared with the set-up of joints in each substep.
 const TENSE_SWEEPS: usize = 4;
 /// Number of sweeps per substep for a component without joints of the game in which a one-sided force acts. With four, a chain of
 /// all but rigid stops that falls on the ground reaches 16 m/s (`ground::ropes`).

@@ -14,7 +14,7 @@ use bevy_rapier3d::rapier::dynamics::{RigidBody as RapierBody, RigidBodyHandle};
 use bevy_rapier3d::rapier::geometry::{ColliderHandle, ColliderSet, ContactPair, NarrowPhase};
 
 /// How long a body counts as held after its last contact, s. So a hopping wheel or a drumming foot does not change between
-/// the two solvers in every step. Pinned by `ground::drumming`.
+/// the two solvers in every step.
 const LINGER: f32 = 0.1;
 
 /// All solid colliders of a context, to find contacts of bodies that the engine has not stepped yet. The engine finds contacts
@@ -133,7 +133,7 @@ impl<'a> Surroundings<'a> {
     }
 
     /// Whether a joint that this crate did not make acts on a body.
-    pub(crate) fn is_jointed(&self, handle: RigidBodyHandle) -> bool {
+    fn is_jointed(&self, handle: RigidBodyHandle) -> bool {
         if !self.any_joints {
             return false;
         }

@@ -244,7 +244,7 @@ fn take_back_shares(
 }
 
 /// Removes the joints of a component from the engine, and restores the solver iterations of its bodies.
-pub(crate) fn leave(
+fn leave(
     members: &Members,
     elements: &mut [ElementRow],
     bodies: &mut [BodyRow],
