@@ -5,8 +5,8 @@ use bevy::ecs::intern::Interned;
 use bevy::ecs::schedule::ScheduleLabel;
 use bevy::prelude::*;
 
-/// Default of [`CoiloverSettings::resolve`], the most kicks per step of all stiff networks together: about half a
-/// millisecond.
+/// Default of [`CoiloverSettings::resolve`], the most kicks per step of all stiff networks together: about half a millisecond.
+/// Pinned by `stiff_by_default::a_heavy_body_behind_a_light_one_keeps_its_phase`.
 pub(crate) const RESOLVE: u32 = 1024;
 
 /// Default of [`CoiloverSettings::max_microsteps`]: for one element, about a tenth of a millisecond. Pinned by
@@ -16,7 +16,8 @@ pub(crate) const MAX_MICROSTEPS: u32 = 256;
 /// Default of [`CoiloverSettings::max_iterations`]. It bounds the time of a solve that converges slowly.
 pub(crate) const MAX_ITERATIONS: u32 = 200;
 
-/// Default of [`CoiloverSettings::max_substeps`]. It is enough for modes up to ω·dt = 96: stiffer ones are damped.
+/// Default of [`CoiloverSettings::max_substeps`]. It is enough for modes up to ω·dt = 96: stiffer ones are damped. Pinned by
+/// `quarter_car::sag_and_motion_are_those_of_the_chassis_on_a_fixed_base`.
 pub(crate) const MAX_SUBSTEPS: u32 = 64;
 
 /// How the plugin runs. The public fields may be changed at any time.

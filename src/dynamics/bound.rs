@@ -8,23 +8,24 @@
 use super::body::Body;
 use super::element::{Element, End};
 use super::energy::{Energy, ROUNDINGS, take};
-use super::resolution::RESOLVED;
+use super::thresholds::RESOLVED;
 use bevy::math::DVec3;
 
 /// Tolerance of the energy check, as a share of kinetic and stored energy. Energy at the ends of second-order steps is not
-/// constant, but oscillates within bounds.
+/// constant, but oscillates within bounds. Pinned by
+/// `bound::tests::energy_may_sway_by_two_per_cent_or_by_a_fifth_of_one_where_the_step_is_too_long`.
 const SWAY: f64 = 0.02;
 
 /// Tolerance of the energy check where the step does not resolve the stiffest mode, as a share of kinetic and stored
-/// energy. There the step is the implicit midpoint rule, whose energy hardly oscillates.
+/// energy. There the step is the implicit midpoint rule, whose energy hardly oscillates. Pinned by the same test.
 const UNRESOLVED_SWAY: f64 = 0.002;
 
 /// Energy gain of one step up to which a surplus need not be removed yet, as a share of the tolerance. Rounding in one step
-/// gains a thousandth of this limit.
+/// gains a thousandth of this limit. Pinned by `bound::tests::a_surplus_waits_only_where_the_step_itself_gained_little`.
 const OWN: f64 = 0.1;
 
 /// Factor by which [`Bound::liveliest`] decreases in each step. It falls to a third in 550 steps, which are nine seconds at
-/// 60 steps per second.
+/// 60 steps per second. Pinned by `bound::tests::what_turns_back_may_sway_as_it_did_in_the_seconds_before`.
 const REMEMBERED: f64 = 0.998;
 
 /// Greatest number of attempts to remove a surplus.
@@ -293,6 +294,57 @@ fn power(elements: &[Element], bodies: &[Body]) -> f64 {
 mod tests {
     use super::super::tests::{element, point};
     use super::*;
+
+    /// Duration of a step, s.
+    const DT: f64 = 1.0 / 60.0;
+
+    /// A bound of 100 J, of which all is lively.
+    fn hundred(z: f64) -> Bound {
+        let mut bound = Bound::default();
+        bound.start(100.0, 0.0, 0.0, false);
+        bound.see(z);
+        bound
+    }
+
+    fn moving(motion: f64) -> Energy {
+        Energy {
+            motion,
+            ..Energy::default()
+        }
+    }
+
+    #[test]
+    fn energy_may_sway_by_two_per_cent_or_by_a_fifth_of_one_where_the_step_is_too_long() {
+        for (z, within, beyond) in [(1.0, 101.0, 104.0), (100.0, 100.1, 101.0)] {
+            let mut bound = hundred(z);
+            assert!(bound.is_kept(&moving(within), 0.0, DT), "(ω h)² {z}");
+            assert!(!bound.is_kept(&moving(beyond), 0.0, DT), "(ω h)² {z}");
+        }
+    }
+
+    #[test]
+    fn what_turns_back_may_sway_as_it_did_in_the_seconds_before() {
+        let mut bound = hundred(1.0);
+        bound.finish(&moving(100.0), DT);
+        let at_rest = |place: f64| Energy {
+            place,
+            ..Energy::default()
+        };
+        for (steps, may) in [(60, true), (1200, false)] {
+            for _ in 0..steps {
+                bound.start(100.0, 0.0, 0.0, false);
+                bound.finish(&at_rest(100.0), DT);
+            }
+            assert_eq!(bound.is_kept(&at_rest(101.0), 0.0, DT), may);
+        }
+    }
+
+    #[test]
+    fn a_surplus_waits_only_where_the_step_itself_gained_little() {
+        let bound = hundred(1.0);
+        assert!(bound.may_wait(&moving(100.1), 1.0));
+        assert!(!bound.may_wait(&moving(100.5), 1.0));
+    }
 
     #[test]
     fn what_is_slowed_stays_on_its_rail_and_keeps_its_momentum() {

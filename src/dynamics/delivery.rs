@@ -216,7 +216,8 @@ impl Schedule {
 /// `dynamics::tests::engine_substeps_reach_the_state_that_was_ordered`.
 const FORESEEN: usize = 2;
 
-/// Greatest number of corrections. Each leaves a thirtieth of the error.
+/// Greatest number of corrections. Each leaves a thirtieth of the error. Pinned by
+/// `dynamics::tests::engine_substeps_reach_the_state_that_was_ordered`.
 const ROUNDS: usize = 6;
 
 /// Share of the cap on rotation that is planned with, because corrections may add a little.

@@ -4,7 +4,8 @@ use super::envelope::Envelope;
 use super::strut::{Strut, cross};
 use bevy::math::{DMat3, DVec3};
 
-/// Number of unknowns up to which a factorisation is cheaper than iterations, whatever the network looks like.
+/// Number of unknowns up to which a factorisation is cheaper than iterations, whatever the network looks like. Pinned by
+/// `direct::tests::sixteen_bodies_that_are_all_joined_are_factorised_and_twenty_are_not`.
 const SMALL: usize = 96;
 
 /// Width of the matrix up to which a factorisation is cheaper than iterations for any number of unknowns: the number of entries
@@ -289,5 +290,17 @@ mod tests {
         assert!(is_factorised(1000, 8, false));
         assert!(!is_factorised(100, 30, false));
         assert!(!is_factorised(30, 30, true));
+    }
+
+    #[test]
+    fn sixteen_bodies_that_are_all_joined_are_factorised_and_twenty_are_not() {
+        let is_factorised = |count: usize| {
+            let mut direct = Direct::default();
+            direct.number((0..count).map(|_| true));
+            direct.join((0..count).flat_map(|b| (0..b).map(move |a| [a, b])));
+            direct.is_cheaper()
+        };
+        assert!(is_factorised(16));
+        assert!(!is_factorised(20));
     }
 }

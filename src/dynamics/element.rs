@@ -4,7 +4,7 @@ use super::body::{Body, Spin, Swing, turn};
 use super::guide::Guide;
 use super::law::{Drag, Elastic, Law};
 use super::line::{AT_ORIGIN, COINCIDENT, Line};
-use super::resolution::is_damper_stiff;
+use super::thresholds::is_damper_stiff;
 use bevy::math::{DMat3, DQuat, DVec3};
 use std::sync::Arc;
 

@@ -17,15 +17,18 @@ const UNNOTICED: f64 = 1e-4;
 /// `stiff_by_default::a_stiff_mode_costs_nothing_until_it_is_struck`.
 const SMALL: f64 = 2e-3;
 
-/// Least number of micro-steps for which an attempt with fewer pays.
+/// Least number of micro-steps for which an attempt with fewer pays. Pinned by
+/// `excited::tests::a_few_kicks_are_taken_without_an_attempt`.
 const WORTH: u32 = 8;
 
 /// Share of the allowed difference below which the next attempt begins with half as many micro-steps. The error then
-/// grows by a factor of four. The margin beyond that prevents frequent changes of the number.
+/// grows by a factor of four. The margin beyond that prevents frequent changes of the number. Pinned by
+/// `excited::tests::a_mode_is_followed_with_as_few_kicks_as_show_that_it_is_at_rest`.
 const FAR_BELOW: f64 = 0.1;
 
 /// Greatest number of steps between attempts that fail. Each of these takes up to seven eighths of the kicks of a step in vain.
-/// Once in 17 steps, this is about a twentieth of all kicks.
+/// Once in 17 steps, this is about a twentieth of all kicks. Pinned by
+/// `excited::tests::a_struck_mode_costs_a_twentieth_more_than_all_kicks_and_its_rest_is_seen_soon`.
 const LONGEST_WAIT: u8 = 16;
 
 /// Memory of how finely a motion had to be followed.
@@ -99,5 +102,103 @@ pub(super) fn spread(displacements: impl Iterator<Item = DVec3>) -> f64 {
         0.5 * (most - least).length()
     } else {
         0.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dynamics::tolerance::Least;
+
+    /// A motion that ends off by `error`/count², m, where it is taken in so many micro-steps.
+    #[derive(Default)]
+    struct Mode {
+        error: f64,
+        at: f64,
+        saved: [f64; 3],
+    }
+
+    impl Motion for Mode {
+        fn save(&mut self, slot: usize) {
+            self.saved[slot] = self.at;
+        }
+
+        fn load(&mut self, slot: usize) {
+            self.at = self.saved[slot];
+        }
+
+        fn least(&mut self, _time: f64, _most: u32) -> Least {
+            Least {
+                count: 1,
+                suffice: true,
+            }
+        }
+
+        fn run(&mut self, _time: f64, count: u32) {
+            self.at = self.error / f64::from(count * count);
+        }
+
+        fn distance(&self, slot: usize) -> f64 {
+            (self.at - self.saved[slot]).abs()
+        }
+
+        fn travelled(&self, _slot: usize) -> f64 {
+            0.0
+        }
+
+        fn extrapolate(&mut self, _slot: usize) {}
+
+        fn is_resolved(&mut self, _step: f64) -> bool {
+            true
+        }
+    }
+
+    /// Kicks of a step of a second in `all` micro-steps or fewer. Two end states count as equal up to 0.1 mm.
+    fn kicks(excited: &mut Excited, mode: &mut Mode, all: u32) -> u32 {
+        excited.run(mode, 1.0, [1, all])
+    }
+
+    fn struck() -> Mode {
+        Mode {
+            error: 1e3,
+            ..Mode::default()
+        }
+    }
+
+    #[test]
+    fn a_struck_mode_costs_a_twentieth_more_than_all_kicks_and_its_rest_is_seen_soon() {
+        let (mut excited, mut mode) = (Excited::default(), struck());
+        let sum: u32 = (0..340).map(|_| kicks(&mut excited, &mut mode, 32)).sum();
+        assert!((340 * 32..340 * 35).contains(&sum), "{sum}");
+        mode.error = 0.0;
+        let until = (0..340).position(|_| kicks(&mut excited, &mut mode, 32) < 32);
+        assert!(until.is_some_and(|steps| steps <= 17), "{until:?}");
+    }
+
+    #[test]
+    fn a_mode_is_followed_with_as_few_kicks_as_show_that_it_is_at_rest() {
+        // The end states of four and eight micro-steps differ by a half of what is allowed, and then by a twentieth: there those
+        // of two and four differ by a fifth.
+        for (error, each) in [(1.0667e-3, 4 + 8), (1.0667e-4, 2 + 4)] {
+            let (mut excited, mut mode) = (Excited::default(), struck());
+            kicks(&mut excited, &mut mode, 32);
+            mode.error = error;
+            // One step without an attempt, and as many as it takes to settle.
+            let first: Vec<u32> = (0..4).map(|_| kicks(&mut excited, &mut mode, 32)).collect();
+            for _ in 0..10 {
+                let now = kicks(&mut excited, &mut mode, 32);
+                assert_eq!(now, each, "{error} after {first:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_few_kicks_are_taken_without_an_attempt() {
+        for all in [4, 7] {
+            assert_eq!(kicks(&mut Excited::default(), &mut struck(), all), all);
+        }
+        // With eight, rest is seen with one and two.
+        let mut calm = Mode::default();
+        assert_eq!(kicks(&mut Excited::default(), &mut calm, 8), 1 + 2);
     }
 }

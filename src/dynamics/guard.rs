@@ -6,7 +6,7 @@
 use super::body::Body;
 use super::element::{Element, End};
 use super::line::Line;
-use super::resolution::STRONG;
+use super::thresholds::STRONG;
 use bevy::math::DVec3;
 
 /// Mechanical energy at the start of a step, in the frame of an end with prescribed motion.

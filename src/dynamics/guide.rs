@@ -36,8 +36,8 @@ impl Guide {
     }
 }
 
-/// Least cos² of half the angle between the axes of both ends. Beyond it, within about a degree of half a turn, a twist is
-/// not defined.
+/// Least cos² of half the angle between the axes of both ends. Beyond it, within about a degree of half a turn, a twist is not
+/// defined. Pinned by `laws::torsion::a_rest_angle_is_taken_where_the_angle_has_a_meaning`.
 const UPRIGHT: f64 = 1e-4;
 
 impl Element {

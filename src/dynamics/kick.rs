@@ -7,8 +7,8 @@
 use super::body::{Body, Spin};
 use super::element::Element;
 use super::line::{Line, Motion};
-use super::pair::{converges, is_resolved};
 use super::poles::Poles;
+use super::thresholds::{converges, is_resolved};
 
 /// The last coefficients. If no body turns, they are the same for every kick of a step.
 #[derive(Clone, Copy, Debug)]

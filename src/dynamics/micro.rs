@@ -1,9 +1,9 @@
 //! Decides whether a lone element can be solved beside others in [`super::lanes`].
 
 use super::kick::Memo;
-use super::pair::{converges, is_watched, stiffness_number};
+use super::pair::stiffness_number;
 use super::poles::Poles;
-use super::resolution::RESOLVED;
+use super::thresholds::{RESOLVED, converges, is_watched};
 
 /// Micro-steps of a lone element that [`super::lanes`] may solve.
 #[derive(Clone, Copy)]

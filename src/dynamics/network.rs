@@ -15,9 +15,9 @@ use super::body::{Body, Spin, Swing};
 use super::element::{Element, End};
 use super::kick;
 use super::line::{Line, Motion};
-use super::resolution::STRONG;
 use super::strut::{NOBODY, Strut, Twists};
 use super::system::{Effort, System};
+use super::thresholds::STRONG;
 use bevy::math::DVec3;
 
 mod bounds;

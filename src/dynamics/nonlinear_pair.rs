@@ -16,21 +16,25 @@ use super::law::Law;
 use super::network::{damper_placement, steep};
 use super::pair::{Pair, Separation};
 use super::poles::{RESOLVED_PHASE, UNRESOLVED_DECAY, decay_ratio};
-use super::resolution::STRONG;
+use super::thresholds::STRONG;
 use bevy::math::DVec3;
 
-/// (ω h)² up to which the kick is used for a law without kinks.
+/// (ω h)² up to which the kick is used for a law without kinks. Pinned by
+/// `nonlinear_pair::tests::duffing_and_the_cubic_spring_keep_their_periods`.
 const SMOOTH: f64 = 2.0;
-/// (ω h)² up to which the kick is used for a law with kinks. The energy of kicked motion oscillates a little, and at a kink
-/// the momentary difference would become permanent.
+/// (ω h)² up to which the kick is used for a law with kinks. The energy of kicked motion oscillates a little, and at a kink the
+/// momentary difference would become permanent. Pinned by `nonlinear_pair::tests::no_law_gains_energy_at_any_step`.
 const BENT: f64 = 0.04;
-/// ω h that the energy-conserving steps aim at.
+/// ω h that the energy-conserving steps aim at. Pinned by
+/// `laws::one_way::a_strut_with_a_limit_and_a_damper_gives_a_cart_all_of_its_push`.
 const FINE: f64 = 0.2;
 /// Least and greatest number of energy-conserving steps in a micro-step.
 const PARTS: [f64; 2] = [2.0, 16.0];
-/// Number of iterations that estimate how far the motion can reach.
+/// Number of iterations that estimate how far the motion can reach. Pinned by
+/// `nonlinear_pair::tests::no_law_gains_energy_at_any_step`.
 const REACHES: usize = 6;
-/// Greatest number of bisections and secants that find the length at the end of a step.
+/// Greatest number of bisections and secants that find the length at the end of a step. Pinned by
+/// `nonlinear_pair::tests::no_law_gains_energy_at_any_step`.
 const TRIES: usize = 80;
 
 /// A pair under a force law, and its present state.

@@ -8,8 +8,8 @@ use super::kick::Memo;
 use super::law::Law;
 use super::line;
 use super::nonlinear_pair::NonlinearPair;
-use super::poles::{Poles, RESOLVED_PHASE};
-use super::resolution::{EXTRAPOLATION_LIMIT, STRONG, is_damper_stiff};
+use super::poles::Poles;
+use super::thresholds::{STRONG, converges, is_damper_stiff, is_resolved, is_watched};
 use crate::functions::exp;
 use bevy::math::DVec3;
 
@@ -17,7 +17,8 @@ use bevy::math::DVec3;
 /// their place.
 const FIERCE: f64 = 40.0;
 
-/// Energy gain of a step, as a share of kinetic and stored energy, above which the step is repeated.
+/// Energy gain of a step, as a share of kinetic and stored energy, above which the step is repeated. Pinned by
+/// `hard_cases::a_damper_passed_at_speed_only_takes_energy`.
 const GAIN: f64 = 0.02;
 
 /// An element, and the properties of its ends that are constant over an engine step.
@@ -367,19 +368,4 @@ impl Line {
 /// (ω h)².
 pub(super) fn stiffness_number(stiffness: f64, inverse_mass: f64, step: f64) -> f64 {
     stiffness * inverse_mass * step * step
-}
-
-/// Whether the energy of a step is checked. `damping` is c h/m, `stiffness_number` is (ω h)².
-pub(super) fn is_watched(damping: f64, stiffness_number: f64) -> bool {
-    damping >= STRONG || !is_resolved(stiffness_number)
-}
-
-/// Whether extrapolation converges for coarse micro-steps with (ω h)² = `z` and c h/m = `decay`.
-pub(super) fn converges(z: f64, decay: f64) -> bool {
-    z < EXTRAPOLATION_LIMIT * EXTRAPOLATION_LIMIT && decay < EXTRAPOLATION_LIMIT
-}
-
-/// Whether the frequency of a step with (ω h)² = `z` is exact.
-pub(super) fn is_resolved(z: f64) -> bool {
-    z < RESOLVED_PHASE * RESOLVED_PHASE
 }

@@ -17,7 +17,8 @@ use super::body::{Body, Spin};
 use super::element::{Element, End};
 use super::excited::spread;
 use super::guide::Guide;
-use super::resolution::{EXTRAPOLATION_LIMIT, network_steps};
+use super::resolution::network_steps;
+use super::thresholds::converges;
 use super::tolerance::{Least, Motion, velocity_counts};
 use crate::threads::{copy, each};
 use bar::{Bar, Load};
@@ -271,7 +272,7 @@ impl Motion for Points {
 
     fn is_resolved(&mut self, step: f64) -> bool {
         let (z, g) = self.bounds(step);
-        z < EXTRAPOLATION_LIMIT * EXTRAPOLATION_LIMIT && g < EXTRAPOLATION_LIMIT
+        converges(z, g)
     }
 }
 

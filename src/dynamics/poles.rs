@@ -14,7 +14,7 @@ pub(crate) const RESOLVED_PHASE: f64 = 2.5;
 /// a fifth of its energy in a step.
 pub(crate) const UNRESOLVED_DECAY: f64 = 0.01;
 
-/// Decay exponent per step below which one step is the exact flow.
+/// Decay exponent per step below which one step is the exact flow. Pinned by `decay::started_with_a_velocity_it_is_as_exact`.
 const RESOLVED_DECAY: f64 = 2.0;
 
 /// Coefficients of one step h for y″ = −ω²y − 2γy′ + a, with z = (ωh)² and g = γh.

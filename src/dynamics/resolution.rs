@@ -1,45 +1,28 @@
 //! Decides how many micro-steps a motion needs.
 
 use super::line::Motion;
+use super::thresholds::RESOLVED;
 use super::tolerance::Least;
-
-/// Phase per coarse step below which fourth-order extrapolation converges, rad.
-pub(super) const EXTRAPOLATION_LIMIT: f64 = 1.5;
-
-/// (ω h)² of the stiffest mode above which more micro-steps are needed to resolve it. Pinned by
-/// `messages::what_cannot_be_followed_is_told_once`.
-pub(super) const RESOLVED: f64 = 4.0;
-
-/// c h/m from which a damper counts as strong. The energy of a lone element's step is then checked. A lone force law is not
-/// stepped by the kick. In a network, the steeper of a law's slope and secant counts. A spring of zero rest length has an axis.
-/// Pinned by `hard_cases::a_damper_passed_at_speed_only_takes_energy`.
-pub(super) const STRONG: f64 = 0.5;
-
-/// Whether a spring of zero rest length must have an axis, because its damper is strong. `z` is (ω h)² and `decay` is c h/m.
-/// For a stiffer spring, its isotropic, implicit form matters more than an axis for the damper.
-#[inline(always)]
-pub(super) fn is_damper_stiff(z: f64, decay: f64) -> bool {
-    z < RESOLVED && decay > STRONG
-}
 
 /// (ω h)² at which the micro-steps of a network follow its stiffest mode accurately. Frequencies are then right to a few
 /// parts in a million. The energy oscillates so little that the oscillation does not count as an energy gain. Pinned by
 /// `stiff_by_default`.
 const FOLLOWED: f64 = 0.1;
 
-/// Greatest number of micro-steps that a network of any size takes to resolve a stiff mode, whatever the settings ask
-/// for.
+/// Greatest number of micro-steps that a network of any size takes to resolve a stiff mode, whatever the settings ask for.
+/// Pinned by `networks::chain_of_ten_and_lattice_of_six_follow_the_reference`.
 const EXTRA_STEPS: u32 = 4;
 
-/// Number of kicks of elements per step that a network may take to follow a mode that it resolves already. Few, because
-/// the error is small then.
+/// Number of kicks of elements per step that a network may take to follow a mode that it resolves already. Few, because the
+/// error is small then. Pinned by `dynamics::undamped::the_solver_alone_keeps_the_energy_of_a_box_on_four_springs`.
 const FEW_KICKS: usize = 16;
 
 /// Greatest number of micro-steps that resolve a lone element, whatever the settings ask for. It is enough for ω·dt = 64,
 /// and takes a microsecond. Pinned by `stiff_by_default::a_lone_spring_keeps_its_phase_at_any_stiffness`; more only cost time.
 const MOST_ALONE: u32 = 32;
 
-/// Distance up to which kinks of a law are looked for, as a multiple of the change of length in a step.
+/// Distance up to which kinks of a law are looked for, as a multiple of the change of length in a step. Pinned by
+/// `laws::blows::a_ball_between_two_springs_with_stops_keeps_its_energy_and_goes_as_on_one`.
 const AHEAD: f64 = 1.25;
 
 /// Micro-steps that resolve a lone element with (ω h)² = `z` over the whole step; one if they are more than

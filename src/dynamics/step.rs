@@ -9,7 +9,8 @@ use super::kick::{self, Memo};
 use super::network::Network;
 use super::nonlinear_pair::PairView;
 use super::points::Points;
-use super::resolution::{EXTRAPOLATION_LIMIT, lone_steps, network_steps};
+use super::resolution::{lone_steps, network_steps};
+use super::thresholds::converges;
 use super::tolerance::{
     Accuracy, Controller, Least, Method, Motion, Outcome, VELOCITY_COUNTS, velocity_counts,
 };
@@ -351,7 +352,6 @@ impl Motion for Component {
         }
         let network = self.memory.network.get_or_insert_default();
         let (z, g) = network.bounds(&self.elements, &self.bodies, step);
-        let resolved = z < EXTRAPOLATION_LIMIT * EXTRAPOLATION_LIMIT && g < EXTRAPOLATION_LIMIT;
-        resolved && !self.memory.kinks.are_near()
+        converges(z, g) && !self.memory.kinks.are_near()
     }
 }

@@ -140,7 +140,8 @@ pub(crate) trait Motion {
     fn is_resolved(&mut self, step: f64) -> bool;
 }
 
-/// Time over which a velocity error becomes a position error, s.
+/// Time over which a velocity error becomes a position error, s. Pinned by
+/// `tolerance::the_error_of_the_first_second_is_near_the_tolerance`.
 pub(crate) const VELOCITY_COUNTS: f64 = 0.15;
 
 /// Time over which velocity errors become position errors where springs reverse them, s. `motion` is the sum of mass ·

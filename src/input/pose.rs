@@ -9,7 +9,8 @@ use crate::input::companions::{Companion, Companions};
 use bevy::prelude::*;
 use std::sync::Arc;
 
-/// Greatest relative difference between the required tension and the tension that the law gives.
+/// Greatest relative difference between the required tension and the tension that the law gives. Pinned by
+/// `laws::hold::a_pose_that_cannot_be_held_is_a_fault_that_says_why`.
 const NEAR: f64 = 1e-3;
 
 impl Companions<'_, '_> {

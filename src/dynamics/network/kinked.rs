@@ -14,11 +14,14 @@ use crate::dynamics::body::Body;
 use crate::dynamics::element::Element;
 use bevy::math::DVec3;
 
-/// Greatest number of corrections.
+/// Greatest number of corrections. Pinned by
+/// `laws::blows::a_ball_between_two_springs_with_stops_keeps_its_energy_and_goes_as_on_one`.
 const ROUNDS: usize = 6;
-/// Force error at which corrections end, as a share of the greatest force.
+/// Force error at which corrections end, as a share of the greatest force. Pinned by
+/// `laws::blows::a_ball_between_two_springs_with_stops_keeps_its_energy_and_goes_as_on_one`.
 const RIGHT: f64 = 1e-7;
-/// (ω h)² up to which corrections surely converge.
+/// (ω h)² up to which corrections surely converge. Pinned by
+/// `laws::blows::a_ball_between_two_springs_with_stops_keeps_its_energy_and_goes_as_on_one`.
 const CONVERGES: f64 = 1.0;
 
 impl Network {

@@ -8,7 +8,8 @@ use crate::dynamics::network::placement;
 use crate::threads::{PIECE, share};
 use bevy::math::DVec3;
 
-/// (ω h)² of the stiffest mode below which the matrix is so well conditioned that a few iterations solve it.
+/// (ω h)² of the stiffest mode below which the matrix is so well conditioned that a few iterations solve it. Pinned by
+/// `points::tests::a_sheet_of_points_moves_as_one_of_bodies`.
 const SOFT: f64 = 9.0;
 
 impl Points {

@@ -2,7 +2,7 @@
 
 use super::state::State;
 use crate::dynamics::element::rounding;
-use crate::dynamics::resolution::is_damper_stiff;
+use crate::dynamics::thresholds::is_damper_stiff;
 use bevy::math::DVec3;
 
 /// One element.

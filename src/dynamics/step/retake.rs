@@ -17,7 +17,8 @@ const FINER: u32 = 4;
 /// `stiff_by_default::a_long_bridge_falls_as_it_should`.
 const MOST: u32 = 16;
 
-/// Time for which finer micro-steps are kept, or not tried again if they gained energy too, s.
+/// Time for which finer micro-steps are kept, or not tried again if they gained energy too, s. Pinned by
+/// `retake::tests::finer_microsteps_are_kept_for_half_a_second`.
 const STAYS: f64 = 0.5;
 
 /// Whether a network gained energy recently, and the number of micro-steps that avoided it.
@@ -80,5 +81,23 @@ impl Component {
                 return kept;
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn finer_microsteps_are_kept_for_half_a_second() {
+        let mut caution = Caution {
+            left: STAYS,
+            microsteps: 16,
+        };
+        let step = 1.0 / 60.0;
+        let fine = (0..600)
+            .take_while(|_| caution.pass(step, Accuracy::exactly(1)).microsteps == 16)
+            .count();
+        assert!((20..60).contains(&fine), "{fine} steps");
     }
 }

@@ -9,7 +9,8 @@ use bevy_rapier3d::rapier::dynamics::RigidBody as RapierBody;
 /// `ground::nets`.
 const STIFF: f64 = 0.3;
 
-/// Prediction distance, in steps of the body's present motion.
+/// Prediction distance, in steps of the body's present motion. Pinned by
+/// `ground::bounce::a_pair_that_bounces_for_long_wins_nothing`.
 const AHEAD: f32 = 1.5;
 
 /// Makes Rapier look ahead for contacts of a body if it has colliders and stiff springs. `time` is the duration of an engine

@@ -13,8 +13,8 @@ use crate::scene::held::{Along, Inside, SoftJoint, Turn, Wanted};
 use crate::scene::rows::{ElementRow, Held};
 use bevy::math::{DMat3, DQuat, DVec3, Quat, Vec3};
 
-/// Least damping of a joint, in units of mass / substep. It counts as none, but must not be zero because the engine divides
-/// by it.
+/// Least damping of a joint, in units of mass / substep. It counts as none, but must not be zero because the engine divides by
+/// it. Pinned by `joints::a_door_on_its_hinge_swings_as_a_spring_in_tension_makes_it`.
 const NOTHING: f64 = 1e-6;
 
 /// Bound on the impulse of an element, as the change of speed of its ends in one substep, m/s or rad/s. It is far above the

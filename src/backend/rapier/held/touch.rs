@@ -13,8 +13,8 @@ use bevy_rapier3d::prelude::RapierContextJoints;
 use bevy_rapier3d::rapier::dynamics::{RigidBody as RapierBody, RigidBodyHandle};
 use bevy_rapier3d::rapier::geometry::{ColliderHandle, ColliderSet, ContactPair, NarrowPhase};
 
-/// How long a body counts as held after its last contact, s. So a hopping wheel or a drumming foot does not change between
-/// the two solvers in every step.
+/// How long a body counts as held after its last contact, s. So a hopping wheel or a drumming foot does not change between the
+/// two solvers in every step. Pinned by `ground::bounce::rapier_solves_a_soft_spring_from_the_step_in_which_its_ball_lands`.
 const LINGER: f32 = 0.1;
 
 /// All solid colliders of a context, to find contacts of bodies that the engine has not stepped yet. The engine finds contacts

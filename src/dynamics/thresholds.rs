@@ -1,0 +1,38 @@
+//! Numbers above which a step does not resolve what moves, or must be watched.
+
+use super::poles::RESOLVED_PHASE;
+
+/// Phase per coarse step below which fourth-order extrapolation converges, rad. Pinned by
+/// `dynamics::tests::elastic_pendulum_follows_the_reference_at_each_setting`.
+const EXTRAPOLATION_LIMIT: f64 = 1.5;
+
+/// (ω h)² of the stiffest mode above which more micro-steps are needed to resolve it. Pinned by
+/// `messages::what_cannot_be_followed_is_told_once`.
+pub(super) const RESOLVED: f64 = 4.0;
+
+/// c h/m from which a damper counts as strong. The energy of a lone element's step is then checked. A lone force law is not
+/// stepped by the kick. In a network, the steeper of a law's slope and secant counts. A spring of zero rest length has an axis.
+/// Pinned by `hard_cases::a_damper_passed_at_speed_only_takes_energy`.
+pub(super) const STRONG: f64 = 0.5;
+
+/// Whether a spring of zero rest length must have an axis, because its damper is strong. `z` is (ω h)² and `decay` is c h/m.
+/// For a stiffer spring, its isotropic, implicit form matters more than an axis for the damper.
+#[inline(always)]
+pub(super) fn is_damper_stiff(z: f64, decay: f64) -> bool {
+    z < RESOLVED && decay > STRONG
+}
+
+/// Whether the energy of a step is checked. `damping` is c h/m, `stiffness_number` is (ω h)².
+pub(super) fn is_watched(damping: f64, stiffness_number: f64) -> bool {
+    damping >= STRONG || !is_resolved(stiffness_number)
+}
+
+/// Whether extrapolation converges for coarse micro-steps with (ω h)² = `z` and c h/m = `decay`.
+pub(super) fn converges(z: f64, decay: f64) -> bool {
+    z < EXTRAPOLATION_LIMIT * EXTRAPOLATION_LIMIT && decay < EXTRAPOLATION_LIMIT
+}
+
+/// Whether the frequency of a step with (ω h)² = `z` is exact.
+pub(super) fn is_resolved(z: f64) -> bool {
+    z < RESOLVED_PHASE * RESOLVED_PHASE
+}
