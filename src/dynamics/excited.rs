@@ -108,70 +108,29 @@ pub(super) fn spread(displacements: impl Iterator<Item = DVec3>) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dynamics::tolerance::Least;
+    use crate::dynamics::tolerance::tests::{Model, STEP};
 
-    /// A motion that ends off by `error`/count², m, where it is taken in so many micro-steps.
-    #[derive(Default)]
-    struct Mode {
-        error: f64,
-        at: f64,
-        saved: [f64; 3],
+    /// A motion that ends off by `error`/count² m/s, where a step of [`STEP`] is taken in so many micro-steps.
+    fn mode(error: f64) -> Model {
+        Model::new((error, 0.0))
     }
 
-    impl Motion for Mode {
-        fn save(&mut self, slot: usize) {
-            self.saved[slot] = self.at;
-        }
-
-        fn load(&mut self, slot: usize) {
-            self.at = self.saved[slot];
-        }
-
-        fn least(&mut self, _time: f64, _most: u32) -> Least {
-            Least {
-                count: 1,
-                suffice: true,
-            }
-        }
-
-        fn run(&mut self, _time: f64, count: u32) {
-            self.at = self.error / f64::from(count * count);
-        }
-
-        fn distance(&self, slot: usize) -> f64 {
-            (self.at - self.saved[slot]).abs()
-        }
-
-        fn travelled(&self, _slot: usize) -> f64 {
-            0.0
-        }
-
-        fn extrapolate(&mut self, _slot: usize) {}
-
-        fn is_resolved(&mut self, _step: f64) -> bool {
-            true
-        }
+    fn struck() -> Model {
+        mode(1e3)
     }
 
-    /// Kicks of a step of a second in `all` micro-steps or fewer. Two end states count as equal up to 0.1 mm.
-    fn kicks(excited: &mut Excited, mode: &mut Mode, all: u32) -> u32 {
-        excited.run(mode, 1.0, [1, all])
-    }
-
-    fn struck() -> Mode {
-        Mode {
-            error: 1e3,
-            ..Mode::default()
-        }
+    /// Kicks of a step in `all` micro-steps or fewer. Two end states count as equal up to 0.1 mm/s.
+    fn kicks(excited: &mut Excited, mode: &mut Model, all: u32) -> u32 {
+        excited.run(mode, STEP, [1, all])
     }
 
     #[test]
     fn a_struck_mode_costs_a_twentieth_more_than_all_kicks_and_its_rest_is_seen_soon() {
-        let (mut excited, mut mode) = (Excited::default(), struck());
-        let sum: u32 = (0..340).map(|_| kicks(&mut excited, &mut mode, 32)).sum();
+        let (mut excited, mut struck) = (Excited::default(), struck());
+        let sum: u32 = (0..340).map(|_| kicks(&mut excited, &mut struck, 32)).sum();
         assert!((340 * 32..340 * 35).contains(&sum), "{sum}");
-        mode.error = 0.0;
-        let until = (0..340).position(|_| kicks(&mut excited, &mut mode, 32) < 32);
+        let mut calm = mode(0.0);
+        let until = (0..340).position(|_| kicks(&mut excited, &mut calm, 32) < 32);
         assert!(until.is_some_and(|steps| steps <= 17), "{until:?}");
     }
 
@@ -180,9 +139,8 @@ mod tests {
         // The end states of four and eight micro-steps differ by a half of what is allowed, and then by a twentieth: there those
         // of two and four differ by a fifth.
         for (error, each) in [(1.0667e-3, 4 + 8), (1.0667e-4, 2 + 4)] {
-            let (mut excited, mut mode) = (Excited::default(), struck());
-            kicks(&mut excited, &mut mode, 32);
-            mode.error = error;
+            let (mut excited, mut mode) = (Excited::default(), mode(error));
+            kicks(&mut excited, &mut struck(), 32);
             // One step without an attempt, and as many as it takes to settle.
             let first: Vec<u32> = (0..4).map(|_| kicks(&mut excited, &mut mode, 32)).collect();
             for _ in 0..10 {
@@ -198,7 +156,6 @@ mod tests {
             assert_eq!(kicks(&mut Excited::default(), &mut struck(), all), all);
         }
         // With eight, rest is seen with one and two.
-        let mut calm = Mode::default();
-        assert_eq!(kicks(&mut Excited::default(), &mut calm, 8), 1 + 2);
+        assert_eq!(kicks(&mut Excited::default(), &mut mode(0.0), 8), 1 + 2);
     }
 }

@@ -383,4 +383,4 @@ fn cheapest(
 }
 
 #[cfg(test)]
-mod tests;
+pub(super) mod tests;

@@ -1,10 +1,10 @@
 use super::*;
 
 /// A timestep, s.
-const STEP: f64 = 1.0 / 240.0;
+pub(in crate::dynamics) const STEP: f64 = 1.0 / 240.0;
 
 /// A motion whose error is C/n² + D/n⁴ per second in steps of [`STEP`].
-struct Model {
+pub(in crate::dynamics) struct Model {
     errors: (f64, f64),
     now: f64,
     slots: [f64; 3],
@@ -12,7 +12,7 @@ struct Model {
 }
 
 impl Model {
-    fn new(errors: (f64, f64)) -> Self {
+    pub(in crate::dynamics) fn new(errors: (f64, f64)) -> Self {
         Self {
             errors,
             now: 0.0,
