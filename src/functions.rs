@@ -5,9 +5,9 @@
 //! and quaternions use the functions of Bevy, which the same feature makes equal everywhere too.
 
 #[cfg(feature = "enhanced-determinism")]
-pub(crate) use libm::{asin, atan, atan2, cos, exp, expm1 as exp_m1, sin, tanh};
+pub(crate) use libm::{asin, atan, atan2, cbrt, cos, exp, expm1 as exp_m1, sin, tanh};
 #[cfg(not(feature = "enhanced-determinism"))]
-pub(crate) use platform::{asin, atan, atan2, cos, exp, exp_m1, sin, tanh};
+pub(crate) use platform::{asin, atan, atan2, cbrt, cos, exp, exp_m1, sin, tanh};
 
 #[cfg(not(feature = "enhanced-determinism"))]
 mod platform {
@@ -21,6 +21,10 @@ mod platform {
 
     pub(crate) fn atan2(y: f64, x: f64) -> f64 {
         y.atan2(x)
+    }
+
+    pub(crate) fn cbrt(x: f64) -> f64 {
+        x.cbrt()
     }
 
     pub(crate) fn cos(x: f64) -> f64 {

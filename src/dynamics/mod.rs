@@ -14,6 +14,7 @@
 //! - [`delivery`] computes the impulse and force with which the engine arrives at the same state.
 //! - [`soft`] and [`pieces`] describe an element to the engine's own solver.
 
+mod arc;
 pub(crate) mod body;
 mod bound;
 mod conjugate;

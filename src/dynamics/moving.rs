@@ -1,5 +1,6 @@
 //! Lets [`super::tolerance`] advance a lone pair.
 
+use super::arc::HALVED;
 use super::kick::Memo;
 use super::pair::{Pair, Separation};
 use super::resolution::lone_steps;
@@ -64,7 +65,21 @@ impl Motion for Moving<'_> {
     }
 
     fn extrapolate(&mut self, slot: usize) {
-        self.state.towards(&self.saved(slot));
+        let coarse = self.saved(slot);
+        let times = if self.pair.has_axis(&coarse) {
+            HALVED
+        } else {
+            4.0
+        };
+        self.state.extrapolate(&coarse, times);
+    }
+
+    fn order(&self) -> i32 {
+        match self.pair.has_axis(&self.state) {
+            true if self.pair.damping > 0.0 => 3,
+            true => 4,
+            false => 2,
+        }
     }
 
     fn is_resolved(&mut self, step: f64) -> bool {

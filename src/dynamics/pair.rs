@@ -72,10 +72,10 @@ impl Separation {
         }
     }
 
-    /// Extrapolates by a third of the difference from a coarser solution.
-    pub(super) fn towards(&mut self, coarse: &Self) {
-        self.d += (self.d - coarse.d) / 3.0;
-        self.v += (self.v - coarse.v) / 3.0;
+    /// Extrapolates from a solution with half as many micro-steps, whose error is so many times as large.
+    pub(super) fn extrapolate(&mut self, coarse: &Self, times: f64) {
+        self.d += (self.d - coarse.d) / (times - 1.0);
+        self.v += (self.v - coarse.v) / (times - 1.0);
     }
 }
 
@@ -163,6 +163,11 @@ impl Pair {
         Some(self.along(state, length.recip() * state.d, length))
     }
 
+    /// Whether forces act along the line. Without an axis, the element is an isotropic oscillator.
+    pub(super) fn has_axis(&self, state: &Separation) -> bool {
+        self.rest_length != 0.0 || state.stiff_damper
+    }
+
     /// Splits the motion of the ends into parts along and across a line.
     fn along(&self, state: &Separation, direction: DVec3, length: f64) -> Line {
         let axial = state.v.dot(direction);
@@ -170,7 +175,7 @@ impl Pair {
         Line {
             direction,
             length,
-            isotropic: self.rest_length == 0.0 && !state.stiff_damper,
+            isotropic: !self.has_axis(state),
             axial,
             lateral,
             lateral_square: lateral.length_squared(),
@@ -178,28 +183,24 @@ impl Pair {
         }
     }
 
-    /// Applies the kick after the first half drift. The formulas are those of [`super::kick`].
+    /// Applies the kick after the first half drift.
     fn kick(&self, state: &mut Separation, poles: &Poles, step: f64) {
         let Some(line) = self.line(state) else {
             state.v += step * self.outside;
             return;
         };
-        let rate = line.backward_rate(step);
+        if !line.isotropic && line.length.abs() > self.rounding {
+            self.kick_in_arc(state, &line, poles, step);
+            return;
+        }
         if line.isotropic && !is_resolved(self.stiffness_number(step)) {
             // The line turns too fast to separate axial from lateral motion, so both lose the same share.
             state.v -= poles.loss * line.lateral;
         }
-        // The mean of before and after the kick makes the step time-symmetric.
-        let across = self.outside - line.pushed * line.direction;
-        let after = (line.lateral + step * across).length_squared();
-        let turning = 0.5 * (line.turning(line.lateral_square, step) + line.turning(after, step));
-        let outside = line.pushed + turning;
-        // The straight half drift has already lengthened the line by this amount.
-        let length = line.length - step * step / 8.0 * turning;
         let residual_acceleration =
-            self.stiffness * self.inverse_mass * (length - self.rest_length) - outside;
-        let total = -poles.restoring * residual_acceleration - poles.loss / step * rate;
-        state.v += step * (total - outside) * line.direction + step * self.outside;
+            self.stiffness * self.inverse_mass * (line.length - self.rest_length) - line.pushed;
+        let total = -poles.restoring * residual_acceleration - poles.loss / step * line.axial;
+        state.v += step * (total - line.pushed) * line.direction + step * self.outside;
     }
 
     /// Maps the velocity between the true and the stepped motion; see `kick::map_velocity`. `aimed` is the line that
@@ -219,7 +220,7 @@ impl Pair {
                 None => return,
             },
         };
-        let outside = line.pushed + line.turning(line.lateral_square, step);
+        let outside = line.pushed + self.turning_at_end(&line, step);
         let residual_acceleration =
             self.stiffness * self.inverse_mass * (line.length - self.rest_length) - outside;
         let z = self.stiffness_number(step);
@@ -233,6 +234,17 @@ impl Pair {
         if line.isotropic {
             state.v += (across - 1.0) * line.lateral;
         }
+    }
+
+    /// Centripetal acceleration |lateral|²/L at an end of the step, m/s². Bounded where the step does not resolve the turning of
+    /// the line.
+    fn turning_at_end(&self, line: &Line, step: f64) -> f64 {
+        let length = line.length;
+        if line.isotropic || length.abs() <= self.rounding {
+            return 0.0;
+        }
+        let turned = step * step / (length * length) * line.lateral_square;
+        line.lateral_square / (length * (0.25 * turned).max(1.0))
     }
 
     /// Whether a step resolves oscillation, decay, and the turning of the line.

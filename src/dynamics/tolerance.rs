@@ -2,9 +2,11 @@
 //!
 //! The error of n plain micro-steps is C₂/n². Extrapolation from m and 2m micro-steps has the error C₄/m⁴ and takes 3m
 //! kicks. Now and then a probe takes the step with m, 2m and 4m micro-steps, which gives both constants. Between probes,
-//! the cheaper plan that keeps the tolerance is used. The probe itself keeps its most exact result.
+//! the cheaper plan that keeps the tolerance is used. The probe itself keeps its most exact result. Motions of higher order
+//! need no extrapolation: their error is C₃/n³ or C₄/n⁴.
 
 use super::excited::Excited;
+use crate::functions::cbrt;
 
 /// Accuracy that is asked of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -133,9 +135,13 @@ pub(crate) trait Motion {
     /// Distance that bodies have moved relative to each other since the state in a slot, m. Changes of velocity count as
     /// in [`Self::distance`].
     fn travelled(&self, slot: usize) -> f64;
-    /// Adds a third of the difference from the state in a slot, which was reached with half as many micro-steps. This
-    /// removes the leading error, because the error has only even powers of the step.
+    /// Removes the leading error by the difference from the state in a slot, which was reached with half as many micro-steps.
+    /// A third of it is added where the error is of second order, with only even powers of the step.
     fn extrapolate(&mut self, slot: usize);
+    /// Power of the number of micro-steps with which the error of plain ones falls: 2, 3 or 4.
+    fn order(&self) -> i32 {
+        2
+    }
     /// Whether a micro-step of `step` seconds resolves the motion, so that extrapolation converges.
     fn is_resolved(&mut self, step: f64) -> bool;
 }
@@ -166,7 +172,8 @@ const GROWTH: f64 = 2.0;
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Controller {
-    /// Error constants in steps of length `step`, m/s: of plain micro-steps, and of extrapolation where it converges.
+    /// Error constants in steps of length `step`, m/s: of plain micro-steps, and of extrapolation where it converges and these
+    /// are of second order.
     known: Option<(f64, Option<f64>)>,
     /// Length of the step to which `known` applies, s.
     step: f64,
@@ -211,17 +218,18 @@ impl Controller {
         let most = accuracy.most();
         // The budget is 0 here, because the error decides how fine the steps must be.
         let (least, cut) = accuracy.cap(motion.least(time, 0).count);
-        self.scale_to(time);
+        let order = motion.order();
+        self.scale_to(time, order);
         let mut outcome = match self.known.filter(|_| self.age > 0) {
             Some(known) => {
                 // A forged number must not put the next probe off for ever.
                 self.age = (self.age - 1).min(CALM);
-                let (plan, capped) = cheapest(known, tolerance, [least, most]);
+                let (plan, capped) = cheapest(known, order, tolerance, [least, most]);
                 // The motion may have changed since the probe.
                 let plan = plan.sound(motion, time);
                 Outcome {
                     microsteps: take(motion, time, plan),
-                    error: Some(time * error_of(known, plan)),
+                    error: Some(time * error_of(known, order, plan)),
                     capped,
                     ..Outcome::default()
                 }
@@ -234,10 +242,10 @@ impl Controller {
 
     /// Converts the error constants to steps of another length. They grow with the power of the length with which the
     /// errors fall with the number of micro-steps.
-    fn scale_to(&mut self, time: f64) {
+    fn scale_to(&mut self, time: f64, order: i32) {
         let ratio = time / std::mem::replace(&mut self.step, time);
         if let Some((plain, fine)) = self.known.as_mut().filter(|_| ratio != 1.0) {
-            *plain *= ratio.powi(2);
+            *plain *= ratio.powi(order);
             if let Some(fine) = fine {
                 *fine *= ratio.powi(4);
             }
@@ -252,9 +260,9 @@ impl Controller {
         tolerance: f64,
         [least, most]: [u32; 2],
     ) -> Outcome {
-        let before = self.known;
+        let (before, order) = (self.known, motion.order());
         let m = before.map_or(least, |known| {
-            match cheapest(known, tolerance, [least, most]).0 {
+            match cheapest(known, order, tolerance, [least, most]).0 {
                 Plan::Plain(n) => (n / 4).max(least),
                 Plan::Extrapolated(m) => (m / 2).max(least),
             }
@@ -266,11 +274,13 @@ impl Controller {
         motion.run(time, 2 * m);
         let mut kicks = 3 * m;
         let count = f64::from(m);
-        let plain = 4.0 / 3.0 * motion.distance(1) * count * count / time;
+        let times = 2_f64.powi(order);
+        let apart = times / (times - 1.0) * motion.distance(1);
+        let plain = apart * count.powi(order) / time;
         // Extrapolation takes at least 3·`least` kicks. Its error is not measured where as many plain micro-steps are
         // enough.
         let cheap = plain <= tolerance * f64::from(3 * least).powi(2);
-        if cheap || !motion.is_resolved(time / count) {
+        if cheap || order > 2 || !motion.is_resolved(time / count) {
             self.known = Some((plain, None));
         } else {
             motion.save(2);
@@ -284,20 +294,20 @@ impl Controller {
             self.known = Some((plain, Some(fine)));
         }
         let known = self.known.unwrap_or_default();
-        let (plan, capped) = cheapest(known, tolerance, [least, most]);
-        let calm = plan == Plan::Plain(least) && error_of(known, plan) < 0.25 * tolerance;
+        let (plan, capped) = cheapest(known, order, tolerance, [least, most]);
+        let calm = plan == Plan::Plain(least) && error_of(known, order, plan) < 0.25 * tolerance;
         let grows = known.0 > GROWTH * before.map_or(0.0, |known| known.0);
         self.put_off(grows, calm);
         let taken = match known.1 {
             Some(_) => Plan::Extrapolated(2 * m),
             None => Plan::Plain(2 * m),
         };
-        let mut error = error_of(known, taken);
+        let mut error = error_of(known, order, taken);
         if error > tolerance && taken != plan {
             // Even the most exact result of the probe is not good enough.
             motion.load(0);
             kicks += take(motion, time, plan);
-            error = error_of(known, plan);
+            error = error_of(known, order, plan);
         }
         Outcome {
             microsteps: kicks,
@@ -357,21 +367,27 @@ fn take(motion: &mut impl Motion, time: f64, plan: Plan) -> u32 {
 }
 
 /// Error of a plan, m/s.
-fn error_of((plain, fine): (f64, Option<f64>), plan: Plan) -> f64 {
+fn error_of((plain, fine): (f64, Option<f64>), order: i32, plan: Plan) -> f64 {
     match (plan, fine) {
         (Plan::Extrapolated(m), Some(fine)) => fine / f64::from(m).powi(4),
-        (Plan::Plain(n) | Plan::Extrapolated(n), _) => plain / f64::from(n).powi(2),
+        (Plan::Plain(n) | Plan::Extrapolated(n), _) => plain / f64::from(n).powi(order),
     }
 }
 
 /// Returns the plan with the fewest kicks that keeps the tolerance, and whether the cap prevents such a plan.
 fn cheapest(
     (plain, fine): (f64, Option<f64>),
+    order: i32,
     tolerance: f64,
     [least, most]: [u32; 2],
 ) -> (Plan, bool) {
     let wanted = |ratio: f64| (ratio.ceil().min(1e6) as u32).max(least);
-    let n = wanted((plain / tolerance).sqrt());
+    let ratio = plain / tolerance;
+    let n = wanted(match order {
+        2 => ratio.sqrt(),
+        3 => cbrt(ratio),
+        _ => ratio.sqrt().sqrt(),
+    });
     let extrapolated = fine.map(|fine| wanted((fine / tolerance).sqrt().sqrt()));
     match extrapolated {
         Some(m) if 3 * m < n => (

@@ -1,6 +1,7 @@
 //! The micro-steps of [`crate::dynamics::pair`] for four plain elements at once.
 
 use super::vectors::{Four, Mask, Vectors};
+use crate::dynamics::arc::{HALVED, MOST_PULL, RESOLVED_SWEEP, ROUNDS, TILT};
 use pulp::Simd;
 
 /// Constants of the four elements and their micro-steps.
@@ -34,15 +35,15 @@ pub(super) struct Reached<S: Simd> {
 }
 
 impl<S: Simd> Reached<S> {
-    /// Extrapolates from the state that half as many micro-steps reached; see `pair::Separation::towards`. `odd` are lanes in
+    /// Extrapolates from the state that half as many micro-steps reached; see `pair::Separation::extrapolate`. `odd` are lanes in
     /// which that is wrong.
     #[inline(always)]
     pub(super) fn extrapolated(self, simd: S, coarse: &Self, odd: Mask<S>) -> Self {
-        let three = Four::all(simd, 3.0);
-        let d = self.d.plus(self.d.minus(coarse.d).over(three));
+        let less = Four::all(simd, HALVED - 1.0);
+        let d = self.d.plus(self.d.minus(coarse.d).over(less));
         Self {
             d,
-            v: self.v.plus(self.v.minus(coarse.v).over(three)),
+            v: self.v.plus(self.v.minus(coarse.v).over(less)),
             side: self.side,
             length: d.length(),
             met: self.met | coarse.met | odd,
@@ -87,12 +88,38 @@ impl<S: Simd> Run<S> {
         (length * length).at_most(coarse * coarse * lines.lateral_square)
     }
 
-    /// See `line::turning`.
+    /// See `Pair::turning_at_end`.
     #[inline(always)]
-    fn turning(&self, length: Four<S>, lateral_square: Four<S>) -> Four<S> {
-        let half = self.all(0.5) * self.all(self.step);
-        let reach = (length * length + half * half * lateral_square).sqrt();
-        (self.all(2.0) * lateral_square / (length.abs() + reach)).copysign(length)
+    fn turning_at_end(&self, length: Four<S>, lateral_square: Four<S>) -> Four<S> {
+        let turned = self.per_length(length) * lateral_square;
+        lateral_square / (length * (self.all(0.25) * turned).max(self.all(1.0)))
+    }
+
+    /// (h/L)².
+    #[inline(always)]
+    fn per_length(&self, length: Four<S>) -> Four<S> {
+        let step = self.all(self.step);
+        step * step / (length * length)
+    }
+
+    /// See `arc::tilt`.
+    #[inline(always)]
+    fn tilt(&self, pull: Four<S>) -> Four<S> {
+        let terms = TILT.iter().rev();
+        terms.fold(self.all(0.0), |sum, coefficient| {
+            (sum + self.all(*coefficient)) * pull
+        })
+    }
+
+    /// See `arc::fade`.
+    #[inline(always)]
+    fn fade(&self, sweep: Four<S>) -> Four<S> {
+        let [from, to] = RESOLVED_SWEEP;
+        let (none, all) = (self.all(0.0), self.all(1.0));
+        let beyond = (sweep - self.all(from)) / self.all(to - from);
+        let beyond = beyond.max(none).min(all);
+        let left = all - beyond * beyond;
+        left * left
     }
 
     /// See `line::backward_rate`.
@@ -103,6 +130,70 @@ impl<S: Simd> Run<S> {
         let before = (along * along + step * step * lines.lateral_square).sqrt();
         let flips = (along * length).at_most(self.all(0.0));
         flips.select(lines.axial, (length - before.copysign(along)) / step)
+    }
+
+    /// The kick; see `Pair::kick_in_arc`. Returns the separation and its velocity.
+    #[inline(always)]
+    fn kick(&self, v: Vectors<S>, direction: Vectors<S>, length: Four<S>) -> [Vectors<S>; 2] {
+        let all = |number| self.all(number);
+        let step = all(self.step);
+        let (half, one, two) = (all(0.5) * step, all(1.0), all(2.0));
+        let [restoring, loss, ..] = self.poles;
+        let lines = self.along(v, direction, length);
+        let braked = loss / step * self.backward_rate(&lines);
+        let across = self.outside.minus(direction.times(lines.pushed));
+        let per_length = self.per_length(length);
+
+        let gained = two * lines.lateral.dot(across);
+        let across_square = across.dot(across);
+        let lateral_square =
+            |time: Four<S>| lines.lateral_square + time * (gained + time * across_square);
+        let stretch = length - self.rest_length;
+        let middle = lines.axial + half * (lines.pushed - self.square * stretch);
+        let share = self.fade(per_length * (middle * middle + lateral_square(half)));
+        let pull_number = |pull: Four<S>| {
+            let number = step * step * (pull + braked) / length;
+            share * number.max(all(-MOST_PULL)).min(all(MOST_PULL))
+        };
+
+        let mut time = half;
+        for _ in 0..ROUNDS {
+            let turned = (per_length * lateral_square(time)).min(one);
+            let drifted = length - all(0.125) * turned * length;
+            let pull = self.square * (drifted - self.rest_length);
+            time = half - half * pull_number(pull) / all(6.0);
+        }
+        let lateral = lines.lateral.plus(across.times(time));
+        let lateral_square = lateral.dot(lateral);
+
+        let turned = per_length * lateral_square;
+        let within = turned.min(one);
+        let doubled = one + (one - within).sqrt();
+        let cosine = (all(0.5) * doubled).sqrt();
+        let turning = two * lateral_square / (length * doubled * turned.max(one));
+        let lessened = one - share * (one - cosine);
+        let pull = lessened * self.square * (cosine * length - self.rest_length);
+        let damped = all(0.5)
+            * share
+            * (loss * step / length * lateral.dot(self.outside) - (one - loss) * within * braked);
+        let total = damped - braked - restoring * (pull - turning) - turning;
+        let pushed_for = half * restoring;
+        let axial = lines.axial + pushed_for * lines.pushed + step * total;
+
+        let tangent = self.tilt(pull_number(pull)) * step / length;
+        let tilted = tangent * tangent * lateral_square;
+        let cos = (one - tilted) / (one + tilted);
+        let sin = two * tangent / (one + tilted);
+        let rotated = direction.times(cos).plus(lateral.times(sin));
+        let lateral = lateral
+            .times(cos)
+            .minus(direction.times(sin * lateral_square));
+        let axial = axial + (pushed_for - time) * self.outside.dot(rotated);
+        let velocity = rotated
+            .times(axial)
+            .plus(lateral)
+            .plus(self.outside.times(time));
+        [rotated.times(length), velocity]
     }
 
     /// ω²·stretch − a_out at the lengths; see `kick::residual_acceleration`.
@@ -123,39 +214,23 @@ impl<S: Simd> Run<S> {
         let run = self;
         let step = self.all(run.step);
         let half = self.all(0.5 * run.step);
-        let eighth = self.all(run.step * run.step / 8.0);
         let rounding = run.rounding;
-        let [restoring, loss, speed, skew] = run.poles;
-        let per_step = loss / step;
+        let [.., speed, skew] = run.poles;
 
         // Map to the stepped velocities.
         let mut met = length.at_most(rounding);
         let mut side = d.times(self.all(1.0) / length);
         let lines = run.along(v, side, length);
-        let outside = lines.pushed + run.turning(length, lines.lateral_square);
+        let outside = lines.pushed + run.turning_at_end(length, lines.lateral_square);
         let offset = skew * step * run.residual_acceleration(length, outside);
         let mapped = (lines.axial - offset) / speed;
         v = v.plus(side.times(mapped - lines.axial));
         for _ in 0..run.count {
             d = d.plus(v.times(half));
-            // The kick.
             let distance = d.length();
             met = met | distance.at_most(rounding);
             length = distance.copysign(d.dot(side));
-            let direction = d.times(self.all(1.0) / length);
-            let lines = run.along(v, direction, length);
-            let rate = run.backward_rate(&lines);
-            let across = run.outside.minus(direction.times(lines.pushed));
-            let after = lines.lateral.plus(across.times(step));
-            let turning = self.all(0.5)
-                * (run.turning(length, lines.lateral_square)
-                    + run.turning(length, after.dot(after)));
-            let outside = lines.pushed + turning;
-            let residual_acceleration =
-                run.residual_acceleration(length - eighth * turning, outside);
-            let total = -restoring * residual_acceleration - per_step * rate;
-            let pulled = direction.times(step * (total - outside));
-            v = v.plus(pulled.plus(run.outside.times(step)));
+            [d, v] = run.kick(v, d.times(self.all(1.0) / length), length);
             d = d.plus(v.times(half));
             length = d.length();
             met = met | length.at_most(rounding);
@@ -163,7 +238,7 @@ impl<S: Simd> Run<S> {
         }
         // Map back to the true velocities.
         let lines = run.along(v, side, length);
-        let outside = lines.pushed + run.turning(length, lines.lateral_square);
+        let outside = lines.pushed + run.turning_at_end(length, lines.lateral_square);
         let offset = skew * step * run.residual_acceleration(length, outside);
         let mapped = speed * lines.axial + offset;
         v = v.plus(side.times(mapped - lines.axial));

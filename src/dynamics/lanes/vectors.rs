@@ -69,6 +69,11 @@ impl<S: Simd> Four<S> {
     }
 
     #[inline(always)]
+    pub(super) fn min(self, other: Self) -> Self {
+        Self(self.1.min_f64s(self.0, other.0), self.1)
+    }
+
+    #[inline(always)]
     pub(super) fn copysign(self, sign: Self) -> Self {
         let simd = self.1;
         let bit = simd.and_f64s(sign.0, simd.splat_f64s(-0.0));

@@ -40,7 +40,7 @@ impl Motion for NonlinearPair<'_> {
     }
 
     fn extrapolate(&mut self, slot: usize) {
-        self.state.towards(&self.saved[slot]);
+        self.state.extrapolate(&self.saved[slot], 4.0);
     }
 
     /// Whether the motion is smooth, as extrapolation requires.
