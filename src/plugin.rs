@@ -18,10 +18,11 @@ use bevy_rapier3d::prelude::{PhysicsSet, TimestepMode};
 ///
 /// Add it together with `RapierPhysicsPlugin::<NoUserData>::default().in_fixed_schedule()`.
 ///
-/// One micro-step per engine step is enough for most scenes, and stiffer springs take more by themselves. The position
-/// error of anything that swings or turns falls with the square of the number of micro-steps, see
+/// One micro-step per engine step is enough for most scenes, and stiffer springs take more by themselves. Where elements
+/// share bodies, the position error of what swings or turns falls with the square of the number of micro-steps, see
 /// [`with_microsteps`](Self::with_microsteps). With [`with_extrapolation`](Self::with_extrapolation) it falls with the
-/// fourth power, for three times as many micro-steps.
+/// fourth power, for three times as many micro-steps. That of a lone element between the centres of two bodies falls
+/// with the fourth power by itself.
 #[derive(Clone, Copy, Debug)]
 pub struct CoiloverPlugin {
     settings: CoiloverSettings,
@@ -137,7 +138,7 @@ impl CoiloverPlugin {
         self
     }
 
-    /// Turns on fourth-order extrapolation in all steps in which it is valid; see [`CoiloverSettings::extrapolation`].
+    /// Turns on extrapolation in all steps in which it is valid; see [`CoiloverSettings::extrapolation`].
     pub const fn with_extrapolation(mut self) -> Self {
         self.settings.extrapolation = true;
         self

@@ -36,7 +36,8 @@ pub struct CoiloverSettings {
     /// motion is wrong. A lone element takes ω·dt/2 micro-steps, up to 32, whatever the budget. With a `tolerance`,
     /// this setting does not choose the micro-steps.
     pub resolve: u32,
-    /// Fourth-order extrapolation: a step is taken with n and with 2n micro-steps, and the two results are combined.
+    /// Extrapolation: a step is taken with n and with 2n micro-steps, and the two results are combined so that the error is of
+    /// fourth order. (A lone element between the centres of two bodies has this order anyway.)
     /// Where the motion is not resolved, the step is taken with 3n plain micro-steps instead. Where contacts or joints
     /// hold a body, this doubles the least number of solver substeps.
     pub extrapolation: bool,

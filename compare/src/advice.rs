@@ -17,15 +17,16 @@ pub fn section(scenes: &[(&Scene, Vec<Row>)]) -> String {
         "## How to choose\n\n\
          ω = √(k/m) is the spring's own angular frequency, dt the time step.\n\n\
          - **ω·dt up to 2.** With one micro-step, frequency and decay are right; a lone element's motion along its \
-         line is exact. The remaining error comes from turning. It falls with the square of the number of micro-steps \
-         and of the tick rate; micro-steps cost less.\n\
+         line is exact. The remaining error comes from turning. It falls with the fourth power of the number of \
+         micro-steps and of the tick rate (the third with damping), for elements that share or turn bodies with the \
+         square; micro-steps cost less.\n\
          - **ω·dt above 2.** The default follows the spring's own motion with more micro-steps: a lone element up to \
          ω·dt = 64, networks as far as a budget of time allows. The maps above show how far.\n\
-         - **Elements that share bodies** (chains, cloth, stars): three times as many micro-steps for the same \
-         error, or extrapolation, which is cheapest up to about ω·dt = 1.5 of the stiffest mode.\n\
+         - **Elements that share bodies** (chains, cloth, stars): more micro-steps, or extrapolation, which is \
+         cheapest up to about ω·dt = 1.5 of the stiffest mode.\n\
          - **Contacts** follow the engine's step, not ours: raise the tick rate for them.\n\n\
-         `recommend(stiffness, damping, mass, dt, tolerance)` returns the micro-steps of a lone element that swings \
-         over a metre. For ω·dt up to 2 and little damping:\n\n| steps per second |",
+         `recommend(stiffness, damping, mass, dt, tolerance)` returns the micro-steps of elements that share bodies \
+         and swing over a metre. A lone one needs a single micro-step. For ω·dt up to 2 and little damping:\n\n| steps per second |",
     );
     for tolerance in TOLERANCES {
         let _ = write!(text, " {tolerance:e} m/s |");

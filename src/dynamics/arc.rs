@@ -16,8 +16,7 @@
 //! not drift. `arc::tests` checks orders, uniform rotation, angular momentum, and energy.
 
 use super::pair::{Line, Pair, Separation};
-use super::poles::Poles;
-use super::thresholds::is_resolved;
+use bevy::math::DVec3;
 
 /// Square of the way of an end per length of the line, within a micro-step, up to which the turning is resolved and from which on
 /// it is not. Beyond the first, the corrections fade out, because near a close passage they would change the energy for good.
@@ -64,81 +63,151 @@ fn fade(sweep: f64) -> f64 {
     left * left
 }
 
+/// What acts along the line, per effective mass.
+pub(super) struct Along<E> {
+    /// Returns the pull of the spring at a length, m/s², and its slope, 1/s².
+    pub elastic: E,
+    /// Deceleration by the damper, m/s².
+    pub braked: f64,
+    /// Share of the rate along the line that the damper takes in the step.
+    pub loss: f64,
+    /// Whether the step resolves the oscillation along the line.
+    pub resolved: bool,
+}
+
+/// The middle of a kick, which is the same backwards in time.
+struct Middle<'a> {
+    line: &'a Line,
+    /// Acceleration across the line from everything but the element, m/s².
+    across: DVec3,
+    step: f64,
+    /// (h/L)².
+    per_length: f64,
+    /// Pull of the spring at the length of the line, m/s², and its slope, 1/s².
+    pull: [f64; 2],
+    braked: f64,
+    /// The share of the corrections that counts.
+    share: f64,
+}
+
+impl<'a> Middle<'a> {
+    fn new<E: Fn(f64) -> [f64; 2]>(
+        line: &'a Line,
+        across: DVec3,
+        step: f64,
+        along: &Along<E>,
+    ) -> Self {
+        let mut middle = Self {
+            line,
+            across,
+            step,
+            per_length: step * step / (line.length * line.length),
+            pull: (along.elastic)(line.length),
+            braked: along.braked,
+            share: 0.0,
+        };
+        if along.resolved {
+            let half = 0.5 * step;
+            let axial = line.axial + half * (line.pushed - middle.pull[0]);
+            let square = axial * axial + middle.lateral_square(half);
+            middle.share = fade(middle.per_length * square);
+        }
+        middle
+    }
+
+    /// Square of the velocity across the line after the outside acceleration has acted for so long, m²/s².
+    fn lateral_square(&self, time: f64) -> f64 {
+        let gained = 2.0 * self.line.lateral.dot(self.across);
+        self.line.lateral_square + time * (gained + time * self.across.dot(self.across))
+    }
+
+    /// h²·F/L, as far as it counts, under the pull of the spring.
+    fn number(&self, pull: f64) -> f64 {
+        let number = self.step * self.step * (pull + self.braked) / self.line.length;
+        self.share * number.clamp(-MOST_PULL, MOST_PULL)
+    }
+
+    /// Time for which the outside acceleration acts before the rotation, and again after it, s.
+    fn time(&self) -> f64 {
+        let half = 0.5 * self.step;
+        let [pull, slope] = self.pull;
+        let mut time = half;
+        for _ in 0..ROUNDS {
+            // The straight half drift has lengthened the line by about this.
+            let turned = (self.per_length * self.lateral_square(time)).min(1.0);
+            let drifted = 0.125 * turned * self.line.length;
+            time = half - half * self.number(pull - slope * drifted) / 6.0;
+        }
+        time
+    }
+}
+
 impl Pair {
-    /// Applies the kick after the first half drift, for a line of some length that has an axis.
-    pub(super) fn kick_in_arc(
+    /// Applies the kick after the first half drift, for a line that does not turn or has no axis. `restoring` is that of
+    /// [`Self::kick_in_arc`].
+    pub(super) fn kick_straight<E: Fn(f64) -> [f64; 2]>(
         &self,
         state: &mut Separation,
         line: &Line,
-        poles: &Poles,
         step: f64,
+        along: &Along<E>,
+        restoring: impl FnOnce(f64) -> f64,
     ) {
+        let [pull, slope] = (along.elastic)(line.length);
+        let total = -restoring(slope) * (pull - line.pushed) - along.braked;
+        state.v += step * (total - line.pushed) * line.direction + step * self.outside;
+    }
+
+    /// Applies the kick after the first half drift, for a line that has an axis. `restoring` returns the coefficient
+    /// of [`super::poles::Poles`] for the slope of the spring.
+    pub(super) fn kick_in_arc<E: Fn(f64) -> [f64; 2]>(
+        &self,
+        state: &mut Separation,
+        line: &Line,
+        step: f64,
+        along: &Along<E>,
+        restoring: impl FnOnce(f64) -> f64,
+    ) {
+        if line.length.abs() <= self.rounding {
+            return self.kick_straight(state, line, step, along, restoring);
+        }
         let Line {
             direction,
             length,
             axial,
-            lateral,
             pushed,
             ..
         } = *line;
-        let half = 0.5 * step;
-        let square = self.stiffness * self.inverse_mass;
-        let braked = poles.loss / step * line.backward_rate(step);
         let across = self.outside - pushed * direction;
-        let per_length = step * step / (length * length);
-
-        // How far the corrections count. It depends on the middle of the kick, so that it is the same backwards.
-        let gained = 2.0 * lateral.dot(across);
-        let across_square = across.dot(across);
-        let lateral_square =
-            |time: f64| line.lateral_square + time * (gained + time * across_square);
-        let middle = axial + half * (pushed - square * (length - self.rest_length));
-        let sweep = per_length * (middle * middle + lateral_square(half));
-        let share = if is_resolved(self.stiffness_number(step)) {
-            fade(sweep)
-        } else {
-            0.0
-        };
-        let pull_number = |pull: f64| {
-            let number = step * step * (pull + braked) / length;
-            share * number.clamp(-MOST_PULL, MOST_PULL)
-        };
-
-        // The outside acceleration acts half before and half after the rotation, for this time.
-        let mut time = half;
-        for _ in 0..ROUNDS {
-            let turned = (per_length * lateral_square(time)).min(1.0);
-            let drifted = length - 0.125 * turned * length;
-            let pull = square * (drifted - self.rest_length);
-            time = half - half * pull_number(pull) / 6.0;
-        }
-        let lateral = lateral + time * across;
+        let middle = Middle::new(line, across, step, along);
+        let (time, share) = (middle.time(), middle.share);
+        let lateral = line.lateral + time * across;
         let lateral_square = lateral.dot(lateral);
 
-        // In uniform rotation, the line of the middle is longer than the radius by this cosine.
-        let turned = per_length * lateral_square;
+        // In uniform rotation, the radius is shorter by this cosine than the line of the middle.
+        let turned = middle.per_length * lateral_square;
         let within = turned.min(1.0);
         let doubled = 1.0 + (1.0 - within).sqrt();
         let cosine = (0.5 * doubled).sqrt();
         let turning = 2.0 * lateral_square / (length * doubled * turned.max(1.0));
-        let lessened = 1.0 - share * (1.0 - cosine);
-        let pull = lessened * square * (cosine * length - self.rest_length);
+        let [pull, slope] = (along.elastic)(cosine * length);
+        let pull = (1.0 - share * (1.0 - cosine)) * pull;
+        let (braked, loss) = (along.braked, along.loss);
         let damped = 0.5
             * share
-            * (poles.loss * step / length * lateral.dot(self.outside)
-                - (1.0 - poles.loss) * within * braked);
-        let total = damped - braked - poles.restoring * (pull - turning) - turning;
-        let pushed_for = half * poles.restoring;
+            * (loss * step / length * lateral.dot(self.outside) - (1.0 - loss) * within * braked);
+        let restoring = restoring(slope);
+        let total = damped - braked - restoring * (pull - turning) - turning;
+        let pushed_for = 0.5 * step * restoring;
         let axial = axial + pushed_for * pushed + step * total;
 
-        let tangent = tilt(pull_number(pull)) * step / length;
+        let tangent = tilt(middle.number(pull)) * step / length;
         let tilted = tangent * tangent * lateral_square;
         let cos = (1.0 - tilted) / (1.0 + tilted);
         let sin = 2.0 * tangent / (1.0 + tilted);
         let rotated = cos * direction + sin * lateral;
         let lateral = cos * lateral - sin * lateral_square * direction;
-        let pushed = self.outside.dot(rotated);
-        let axial = axial + (pushed_for - time) * pushed;
+        let axial = axial + (pushed_for - time) * self.outside.dot(rotated);
         state.d = length * rotated;
         state.v = axial * rotated + lateral + time * self.outside;
     }

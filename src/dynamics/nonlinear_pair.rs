@@ -11,12 +11,14 @@ mod pair_view;
 
 pub(crate) use pair_view::PairView;
 
+use super::arc::Along;
 use super::kick::Memo;
 use super::law::Law;
 use super::network::{damper_placement, steep};
 use super::pair::{Pair, Separation};
 use super::poles::{RESOLVED_PHASE, UNRESOLVED_DECAY, decay_ratio};
 use super::thresholds::STRONG;
+use crate::functions::exp_m1;
 use bevy::math::DVec3;
 
 /// (ω h)² up to which the kick is used for a law without kinks. Pinned by
@@ -44,6 +46,8 @@ pub(crate) struct NonlinearPair<'a> {
     pub state: Separation,
     /// Duration of the whole step, s.
     pub time: f64,
+    /// Whether all micro-steps of the last step were kicks.
+    kicked: bool,
     memo: &'a mut Memo,
     saved: [Separation; 3],
 }
@@ -62,6 +66,7 @@ impl<'a> NonlinearPair<'a> {
             law,
             state,
             time: 0.0,
+            kicked: false,
             memo,
             saved: [state; 3],
         }
@@ -160,6 +165,7 @@ impl<'a> NonlinearPair<'a> {
                 self.state = before;
             }
         }
+        self.kicked = false;
         let ahead = (before.d + step * before.v).length();
         let stiffest = self.law.stiffest([from, ahead], self.rest_length());
         let z = stiffest * self.pair.inverse_mass * step * step;
@@ -191,27 +197,27 @@ impl<'a> NonlinearPair<'a> {
     }
 
     fn kick(&mut self, step: f64) {
-        let (pair, rest) = (self.pair, self.rest_length());
+        let (pair, law, rest) = (self.pair, self.law, self.rest_length());
         let Some(line) = pair.line(&self.state) else {
             self.state.v += step * pair.outside;
             return;
         };
         let rate = line.backward_rate(step);
-        let across = pair.outside - line.pushed * line.direction;
-        let after = (line.lateral + step * across).length_squared();
-        let turning = 0.5 * (line.turning(line.lateral_square, step) + line.turning(after, step));
-        let outside = line.pushed + turning;
-        let length = line.length - step * step / 8.0 * turning;
-        let elastic = self.law.elastic(length, rest);
-        let drag = self.law.drag(length, rest, rate);
-        let weight = pair.inverse_mass * step;
-        let damped = drag.slope * weight;
-        let z = elastic.stiffness * weight * step;
-        let [restoring, _] = self.memo.of_kick(z, damped / 2.0);
-        // A damper alone is solved exactly for its present slope: x(1 − e^(−s))/s for a force x of slope s.
-        let braked = drag.force * pair.inverse_mass * decay_ratio(damped);
-        let total = -restoring * (elastic.force * pair.inverse_mass - outside) - braked;
-        self.state.v += step * (total - outside) * line.direction + step * pair.outside;
+        let drag = law.drag(line.length, rest, rate);
+        let damped = drag.slope * pair.inverse_mass * step;
+        let along = Along {
+            elastic: |length| {
+                let elastic = law.elastic(length, rest);
+                [elastic.force, elastic.stiffness].map(|x| x * pair.inverse_mass)
+            },
+            // A damper alone is solved exactly for its present slope: x(1 − e^(−s))/s for a force x of slope s.
+            braked: drag.force * pair.inverse_mass * decay_ratio(damped),
+            loss: -exp_m1(-damped),
+            resolved: true,
+        };
+        let memo = &mut *self.memo;
+        let restoring = |slope: f64| memo.of_kick(slope * step * step, damped / 2.0)[0];
+        pair.kick_in_arc(&mut self.state, &line, step, &along, restoring);
     }
 
     /// Maps the axial velocity between the true and the stepped motion, as in [`super::pair`].
@@ -224,7 +230,7 @@ impl<'a> NonlinearPair<'a> {
         let z = elastic.stiffness * weight * step;
         // Only linear damping, because a slope that depends on speed would differ before and after the map.
         let [speed, skew] = self.memo.of_map(z, damping * weight / 2.0);
-        let outside = line.pushed + line.turning(line.lateral_square, step);
+        let outside = line.pushed + self.pair.turning_at_end(&line, step);
         let residual_acceleration = elastic.force * self.pair.inverse_mass - outside;
         let axial = to(line.axial, skew * step * residual_acceleration, speed);
         self.state.v += (axial - line.axial) * line.direction;

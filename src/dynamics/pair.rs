@@ -4,6 +4,7 @@
 //! solved: it moves like one point with the effective mass, under the difference of the external accelerations. This is
 //! the method of [`super::kick`] without arms and inertia, at a fraction of the cost.
 
+use super::arc::Along;
 use super::kick::Memo;
 use super::law::Law;
 use super::line;
@@ -189,18 +190,24 @@ impl Pair {
             state.v += step * self.outside;
             return;
         };
-        if !line.isotropic && line.length.abs() > self.rounding {
-            self.kick_in_arc(state, &line, poles, step);
-            return;
-        }
-        if line.isotropic && !is_resolved(self.stiffness_number(step)) {
+        let resolved = is_resolved(self.stiffness_number(step));
+        if line.isotropic && !resolved {
             // The line turns too fast to separate axial from lateral motion, so both lose the same share.
             state.v -= poles.loss * line.lateral;
         }
-        let residual_acceleration =
-            self.stiffness * self.inverse_mass * (line.length - self.rest_length) - line.pushed;
-        let total = -poles.restoring * residual_acceleration - poles.loss / step * line.axial;
-        state.v += step * (total - line.pushed) * line.direction + step * self.outside;
+        let (square, rest) = (self.stiffness * self.inverse_mass, self.rest_length);
+        let along = Along {
+            elastic: |length| [square * (length - rest), square],
+            braked: poles.loss / step * line.backward_rate(step),
+            loss: poles.loss,
+            resolved,
+        };
+        let restoring = |_| poles.restoring;
+        if line.isotropic {
+            self.kick_straight(state, &line, step, &along, restoring);
+        } else {
+            self.kick_in_arc(state, &line, step, &along, restoring);
+        }
     }
 
     /// Maps the velocity between the true and the stepped motion; see `kick::map_velocity`. `aimed` is the line that
@@ -238,7 +245,7 @@ impl Pair {
 
     /// Centripetal acceleration |lateral|²/L at an end of the step, m/s². Bounded where the step does not resolve the turning of
     /// the line.
-    fn turning_at_end(&self, line: &Line, step: f64) -> f64 {
+    pub(super) fn turning_at_end(&self, line: &Line, step: f64) -> f64 {
         let length = line.length;
         if line.isotropic || length.abs() <= self.rounding {
             return 0.0;
@@ -360,14 +367,6 @@ impl Pair {
 }
 
 impl Line {
-    /// Centripetal acceleration |lateral|²/L, m/s². Bounded where the step does not resolve the turning of the line.
-    pub(super) fn turning(&self, lateral_square: f64, step: f64) -> f64 {
-        if self.isotropic || lateral_square == 0.0 {
-            return 0.0;
-        }
-        line::turning(self.length, lateral_square, step)
-    }
-
     /// Mean rate of the length over the step that ends here, m/s. With this rate, damping is of second order.
     pub(super) fn backward_rate(&self, step: f64) -> f64 {
         if self.isotropic {

@@ -44,9 +44,10 @@ fn plugin(microsteps: u32) -> CoiloverPlugin {
 }
 
 #[test]
-fn soft_pendulum_swings_as_the_reference_and_microsteps_are_second_order() {
-    let one = check("k 50, 1 micro-step", SOFT, plugin(1), 2.5e-3);
-    let four = check("k 50, 4 micro-steps", SOFT, plugin(4), 2.5e-4);
+fn soft_pendulum_swings_as_the_reference() {
+    // The engine's single precision sets the limit, so more micro-steps win nothing.
+    check("k 50, 1 micro-step", SOFT, plugin(1), 5e-5);
+    check("k 50, 4 micro-steps", SOFT, plugin(4), 5e-5);
     check("k 50, 16 micro-steps", SOFT, plugin(16), 5e-5);
     check(
         "k 50, extrapolated",
@@ -54,13 +55,11 @@ fn soft_pendulum_swings_as_the_reference_and_microsteps_are_second_order() {
         plugin(1).with_extrapolation(),
         3e-5,
     );
-    let ratio = one / four;
-    assert!((12.0..=20.0).contains(&ratio), "ratio {ratio}");
 }
 
 #[test]
 fn damped_pendulum_swings_as_the_reference() {
-    check("k 500 c 5, 1 micro-step", DAMPED, plugin(1), 18e-3);
+    check("k 500 c 5, 1 micro-step", DAMPED, plugin(1), 2e-4);
     check("k 500 c 5, 16 micro-steps", DAMPED, plugin(16), 1e-4);
     check(
         "k 500 c 5, extrapolated",

@@ -148,8 +148,8 @@ impl<S: Simd> Run<S> {
         let across_square = across.dot(across);
         let lateral_square =
             |time: Four<S>| lines.lateral_square + time * (gained + time * across_square);
-        let stretch = length - self.rest_length;
-        let middle = lines.axial + half * (lines.pushed - self.square * stretch);
+        let pull = self.square * (length - self.rest_length);
+        let middle = lines.axial + half * (lines.pushed - pull);
         let share = self.fade(per_length * (middle * middle + lateral_square(half)));
         let pull_number = |pull: Four<S>| {
             let number = step * step * (pull + braked) / length;
@@ -159,9 +159,8 @@ impl<S: Simd> Run<S> {
         let mut time = half;
         for _ in 0..ROUNDS {
             let turned = (per_length * lateral_square(time)).min(one);
-            let drifted = length - all(0.125) * turned * length;
-            let pull = self.square * (drifted - self.rest_length);
-            time = half - half * pull_number(pull) / all(6.0);
+            let drifted = all(0.125) * turned * length;
+            time = half - half * pull_number(pull - self.square * drifted) / all(6.0);
         }
         let lateral = lines.lateral.plus(across.times(time));
         let lateral_square = lateral.dot(lateral);
@@ -172,7 +171,7 @@ impl<S: Simd> Run<S> {
         let cosine = (all(0.5) * doubled).sqrt();
         let turning = two * lateral_square / (length * doubled * turned.max(one));
         let lessened = one - share * (one - cosine);
-        let pull = lessened * self.square * (cosine * length - self.rest_length);
+        let pull = lessened * (self.square * (cosine * length - self.rest_length));
         let damped = all(0.5)
             * share
             * (loss * step / length * lateral.dot(self.outside) - (one - loss) * within * braked);

@@ -1,6 +1,7 @@
 //! How a tolerance and extrapolation step a lone element with a force law.
 
 use super::NonlinearPair;
+use crate::dynamics::arc::HALVED;
 use crate::dynamics::tolerance::{Least, Motion, VELOCITY_COUNTS};
 
 impl Motion for NonlinearPair<'_> {
@@ -24,6 +25,7 @@ impl Motion for NonlinearPair<'_> {
         self.time = time;
         let step = time / f64::from(count);
         self.note_side();
+        self.kicked = true;
         let resolved = self.is_resolved_in_reach(step);
         for _ in 0..count {
             self.microstep(step, resolved);
@@ -40,7 +42,8 @@ impl Motion for NonlinearPair<'_> {
     }
 
     fn extrapolate(&mut self, slot: usize) {
-        self.state.extrapolate(&self.saved[slot], 4.0);
+        let times = if self.kicked { HALVED } else { 4.0 };
+        self.state.extrapolate(&self.saved[slot], times);
     }
 
     /// Whether the motion is smooth, as extrapolation requires.
