@@ -221,9 +221,10 @@ impl Study for Turning {
         let mut text = format!(
             "## Lone elements that turn: micro-steps or extrapolation\n\n\
              Along its line a step of a lone element is exact. Its error is of fourth order in the turning of the line between \
-             the centres of two bodies, and of second order where it turns its bodies, as in the dumbbell. Is it cheaper to take more micro-steps, or to extrapolate? In a scene of one spring the frame costs so much that \
-             both look alike. Here {COPIES} copies of each scene are timed in one frame, which is whole and divided by \
-             {COPIES}; errors are those of one copy.\n\n\
+             the centres of two bodies, and of second order where it turns its bodies, as in the dumbbell. Is it cheaper to \
+             take more micro-steps, or to extrapolate? In a scene of one spring the frame costs so much that both look \
+             alike. Here {COPIES} copies of each scene are timed in one frame, which is whole and divided by {COPIES}; \
+             errors are those of one copy.\n\n\
              ![Error against time of one element](speed_vs_error/turning.svg)\n\n\
              For each error, the cheapest setting at 30 to 240 steps a second, in µs per 1/60 s of the scene:\n\n\
              | scene | within | fixed micro-steps | extrapolated | extrapolated : fixed |\n|---|---|---|---|---|\n"

@@ -209,7 +209,7 @@ fn advice(now: &Snapshot, facts: &Facts) -> Vec<Sentence> {
     } else {
         let error = error_per_second(stiffness, damping, load.mass, dt, microsteps);
         let text = format!(
-            "With {microsteps} micro-step{} a step, swinging adds an error of about {} a second.",
+            "With {microsteps} micro-step{} a step, swinging adds an error of at most about {} a second.",
             if microsteps == 1 { "" } else { "s" },
             metres(error)
         );
@@ -300,7 +300,7 @@ pub(crate) mod tests {
         assert!(text.contains("Resolved: ω·dt is 0.37"), "{text}");
         assert!(text.contains("End A is fixed; end B moves."), "{text}");
         assert!(text.contains("Damping ratio 0.11"), "{text}");
-        assert!(text.contains("adds an error of about 377.8 µm"), "{text}");
+        assert!(text.contains("adds an error of at most about 377.8 µm"), "{text}");
         assert!(text.contains("recommend: 1 micro-step for 1 mm"), "{text}");
     }
 
