@@ -300,7 +300,10 @@ pub(crate) mod tests {
         assert!(text.contains("Resolved: ω·dt is 0.37"), "{text}");
         assert!(text.contains("End A is fixed; end B moves."), "{text}");
         assert!(text.contains("Damping ratio 0.11"), "{text}");
-        assert!(text.contains("adds an error of at most about 377.8 µm"), "{text}");
+        assert!(
+            text.contains("adds an error of at most about 377.8 µm"),
+            "{text}"
+        );
         assert!(text.contains("recommend: 1 micro-step for 1 mm"), "{text}");
     }
 
