@@ -18,13 +18,13 @@
 use super::pair::{Line, Pair, Separation};
 use bevy::math::DVec3;
 
-/// Square of the way of an end per length of the line, within a micro-step, up to which the turning is resolved and from which on
-/// it is not. Beyond the first, the corrections fade out, because near a close passage they would change the energy for good.
-/// Pinned by `arc::tests::close_passages_do_not_add_up_in_the_energy`.
-pub(super) const RESOLVED_SWEEP: [f64; 2] = [0.25, 1.0];
+/// Square of h·s/L up to which the turning is resolved, and from which on it is not: about 0.3 and 0.6 rad in a micro-step. In
+/// between, the corrections fade out, because near a close passage they would change the energy for good. The share that counts
+/// must depend only on what is the same backwards. Pinned by `arc::tests::close_passages_do_not_add_up_in_the_energy`.
+pub(super) const RESOLVED_TURN: [f64; 2] = [0.1, 0.4];
 
-/// Greatest magnitude of h²·F/L that counts. The series of [`tilt`] converges up to 4, slowly at the end. A sweep below 1 all but
-/// implies it; beyond it are only ends that arrive so fast that the pull stops them within half a micro-step.
+/// Greatest magnitude of h²·F/L that counts. The series of [`tilt`] converges up to 4, slowly at the end. Beyond the bound are
+/// only lines that the pull makes shorter or longer by their whole length within a micro-step.
 pub(super) const MOST_PULL: f64 = 2.0;
 
 /// Factor by which the error falls if the number of micro-steps is doubled, without damping. Extrapolation uses it. Pinned by
@@ -57,10 +57,10 @@ fn tilt(pull: f64) -> f64 {
     terms.fold(0.0, |sum, coefficient| (sum + coefficient) * pull)
 }
 
-/// The share of the corrections that counts, where an end moves by the square root of `sweep` lengths of the line.
-fn fade(sweep: f64) -> f64 {
-    let [from, to] = RESOLVED_SWEEP;
-    let beyond = ((sweep - from) / (to - from)).clamp(0.0, 1.0);
+/// The share of the corrections that counts where (h·s/L)² is `turned`.
+fn fade(turned: f64) -> f64 {
+    let [from, to] = RESOLVED_TURN;
+    let beyond = ((turned - from) / (to - from)).clamp(0.0, 1.0);
     let left = 1.0 - beyond * beyond;
     left * left
 }
@@ -109,10 +109,7 @@ impl<'a> Middle<'a> {
             share: 0.0,
         };
         if along.resolved {
-            let half = 0.5 * step;
-            let axial = line.axial + half * (line.pushed - middle.pull[0]);
-            let square = axial * axial + middle.lateral_square(half);
-            middle.share = fade(middle.per_length * square);
+            middle.share = fade(middle.per_length * middle.lateral_square(0.5 * step));
         }
         middle
     }

@@ -1,7 +1,7 @@
 //! The micro-steps of [`crate::dynamics::pair`] for four plain elements at once.
 
 use super::vectors::{Four, Mask, Vectors};
-use crate::dynamics::arc::{HALVED, MOST_PULL, RESOLVED_SWEEP, ROUNDS, TILT};
+use crate::dynamics::arc::{HALVED, MOST_PULL, RESOLVED_TURN, ROUNDS, TILT};
 use pulp::Simd;
 
 /// Constants of the four elements and their micro-steps.
@@ -113,10 +113,10 @@ impl<S: Simd> Run<S> {
 
     /// See `arc::fade`.
     #[inline(always)]
-    fn fade(&self, sweep: Four<S>) -> Four<S> {
-        let [from, to] = RESOLVED_SWEEP;
+    fn fade(&self, turned: Four<S>) -> Four<S> {
+        let [from, to] = RESOLVED_TURN;
         let (none, all) = (self.all(0.0), self.all(1.0));
-        let beyond = (sweep - self.all(from)) / self.all(to - from);
+        let beyond = (turned - self.all(from)) / self.all(to - from);
         let beyond = beyond.max(none).min(all);
         let left = all - beyond * beyond;
         left * left
@@ -149,8 +149,7 @@ impl<S: Simd> Run<S> {
         let lateral_square =
             |time: Four<S>| lines.lateral_square + time * (gained + time * across_square);
         let pull = self.square * (length - self.rest_length);
-        let middle = lines.axial + half * (lines.pushed - pull);
-        let share = self.fade(per_length * (middle * middle + lateral_square(half)));
+        let share = self.fade(per_length * lateral_square(half));
         let pull_number = |pull: Four<S>| {
             let number = step * step * (pull + braked) / length;
             share * number.max(all(-MOST_PULL)).min(all(MOST_PULL))
