@@ -264,7 +264,7 @@ fn each_scene_ends_in_the_bits_that_are_noted() {
             0x06e0_bdb2_fa99_1309,
         ),
         ("cloth", cloth, default(), 0xda74_07b5_537e_ee00),
-        ("laws", laws, default(), 0x4535_dba6_0c02_7742),
+        ("laws", laws, default(), 0x0dfa_79b2_6dc6_be7f),
         ("wound up", wound_up, default(), 0x82da_e584_1524_338c),
         (
             "on the ground",
