@@ -114,36 +114,27 @@ mod tests {
     use std::path::Path;
 
     #[test]
-    fn recommended_microsteps_are_those_of_the_measured_table() {
+    fn a_lone_pendulum_needs_no_more_micro_steps_than_resolve_its_spring() {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/speed_vs_error");
         let mut seen = 0;
-        for (scene, stiffness, damping) in [
-            ("pendulum-soft", 50.0, 0.0),
-            ("pendulum-damped", 500.0, 5.0),
-            ("pendulum-stiff", 5e4, 100.0),
+        for (scene, stiffness) in [
+            ("pendulum-soft", 50.0),
+            ("pendulum-damped", 500.0),
+            ("pendulum-stiff", 5e4),
         ] {
             for row in Table::open(&folder, scene).rows {
-                let (Dial::Microsteps(n), error) = (row.setting.dial, row.strayed.error) else {
+                let Dial::Microsteps(n) = row.setting.dial else {
                     continue;
                 };
-                let dt = row.setting.dt() as f32;
-                // Skips rows where single precision dominates the error, and springs that `n` micro-steps do
-                // not resolve: there the default takes more micro-steps by itself.
-                if error < 1e-4
-                    || row.setting.rate > 120
-                    || f32::sqrt(stiffness) * dt > 2.0 * n as f32
-                {
+                let phase = f32::sqrt(stiffness) * row.setting.dt() as f32;
+                if row.setting.rate < 60 || phase > 2.0 * n as f32 {
                     continue;
                 }
-                let told = recommend(stiffness, damping, 1.0, dt, error as f32 / 10.0);
-                assert!(
-                    (n..=2 * n + 1).contains(&told),
-                    "{scene} at {} Hz: {n} gave {error:e} m, recommended {told}",
-                    row.setting.rate
-                );
+                let error = row.strayed.error;
+                assert!(error < 2e-4, "{scene}, {n} micro-steps: {error:.1e} m");
                 seen += 1;
             }
         }
-        assert!(seen >= 12, "{seen} rows");
+        assert!(seen > 10, "{seen} rows");
     }
 }
