@@ -37,15 +37,13 @@ pub(super) const HALVED: f64 = 16.0;
 pub(super) const ROUNDS: usize = 2;
 
 /// Coefficients of q, q², … in [`tilt`]. Pinned by `arc::tests::uniform_rotation_is_exact`.
-pub(super) const TILT: [f64; 8] = [
+pub(super) const TILT: [f64; 6] = [
     1.0 / 24.0,
     7.0 / 480.0,
     19.0 / 4_480.0,
     859.0 / 725_760.0,
     20_897.0 / 63_866_880.0,
     125_011.0 / 1_383_782_400.0,
-    74_624_437.0 / 2_988_969_984_000.0,
-    2_457_750_121.0 / 355_687_428_096_000.0,
 ];
 
 /// Tangent of half the rotation that a micro-step lacks, as a multiple of h·s/L, for h²·F/L = `pull`.
@@ -60,7 +58,7 @@ fn tilt(pull: f64) -> f64 {
 /// The share of the corrections that counts where (h·s/L)² is `turned`.
 fn fade(turned: f64) -> f64 {
     let [from, to] = RESOLVED_TURN;
-    let beyond = ((turned - from) / (to - from)).clamp(0.0, 1.0);
+    let beyond = ((turned - from) * (1.0 / (to - from))).clamp(0.0, 1.0);
     let left = 1.0 - beyond * beyond;
     left * left
 }
@@ -83,6 +81,8 @@ struct Middle<'a> {
     /// Acceleration across the line from everything but the element, m/s².
     across: DVec3,
     step: f64,
+    /// 1/L, 1/m.
+    inverse_length: f64,
     /// (h/L)².
     per_length: f64,
     /// Pull of the spring at the length of the line, m/s², and its slope, 1/s².
@@ -99,11 +99,14 @@ impl<'a> Middle<'a> {
         step: f64,
         along: &Along<E>,
     ) -> Self {
+        let inverse_length = 1.0 / line.length;
+        let per_length = step * inverse_length;
         let mut middle = Self {
             line,
             across,
             step,
-            per_length: step * step / (line.length * line.length),
+            inverse_length,
+            per_length: per_length * per_length,
             pull: (along.elastic)(line.length),
             braked: along.braked,
             share: 0.0,
@@ -122,7 +125,7 @@ impl<'a> Middle<'a> {
 
     /// h²·F/L, as far as it counts, under the pull of the spring.
     fn number(&self, pull: f64) -> f64 {
-        let number = self.step * self.step * (pull + self.braked) / self.line.length;
+        let number = self.step * self.step * (pull + self.braked) * self.inverse_length;
         self.share * number.clamp(-MOST_PULL, MOST_PULL)
     }
 
@@ -135,7 +138,7 @@ impl<'a> Middle<'a> {
             // The straight half drift has lengthened the line by about this.
             let turned = (self.per_length * self.lateral_square(time)).min(1.0);
             let drifted = 0.125 * turned * self.line.length;
-            time = half - half * self.number(pull - slope * drifted) / 6.0;
+            time = half - half * self.number(pull - slope * drifted) * (1.0 / 6.0);
         }
         time
     }
@@ -188,22 +191,24 @@ impl Pair {
         let within = turned.min(1.0);
         let doubled = 1.0 + (1.0 - within).sqrt();
         let cosine = (0.5 * doubled).sqrt();
-        let turning = 2.0 * lateral_square / (length * doubled * turned.max(1.0));
+        let inverse = middle.inverse_length;
+        let turning = 2.0 * lateral_square * inverse / (doubled * turned.max(1.0));
         let [pull, slope] = (along.elastic)(cosine * length);
         let pull = (1.0 - share * (1.0 - cosine)) * pull;
         let (braked, loss) = (along.braked, along.loss);
         let damped = 0.5
             * share
-            * (loss * step / length * lateral.dot(self.outside) - (1.0 - loss) * within * braked);
+            * (loss * step * inverse * lateral.dot(self.outside) - (1.0 - loss) * within * braked);
         let restoring = restoring(slope);
         let total = damped - braked - restoring * (pull - turning) - turning;
         let pushed_for = 0.5 * step * restoring;
         let axial = axial + pushed_for * pushed + step * total;
 
-        let tangent = tilt(middle.number(pull)) * step / length;
+        let tangent = tilt(middle.number(pull)) * step * inverse;
         let tilted = tangent * tangent * lateral_square;
-        let cos = (1.0 - tilted) / (1.0 + tilted);
-        let sin = 2.0 * tangent / (1.0 + tilted);
+        let scale = 1.0 / (1.0 + tilted);
+        let cos = (1.0 - tilted) * scale;
+        let sin = 2.0 * tangent * scale;
         let rotated = cos * direction + sin * lateral;
         let lateral = cos * lateral - sin * lateral_square * direction;
         let axial = axial + (pushed_for - time) * self.outside.dot(rotated);

@@ -116,7 +116,7 @@ impl<S: Simd> Run<S> {
     fn fade(&self, turned: Four<S>) -> Four<S> {
         let [from, to] = RESOLVED_TURN;
         let (none, all) = (self.all(0.0), self.all(1.0));
-        let beyond = (turned - self.all(from)) / self.all(to - from);
+        let beyond = (turned - self.all(from)) * self.all(1.0 / (to - from));
         let beyond = beyond.max(none).min(all);
         let left = all - beyond * beyond;
         left * left
@@ -132,17 +132,21 @@ impl<S: Simd> Run<S> {
         flips.select(lines.axial, (length - before.copysign(along)) / step)
     }
 
-    /// The kick; see `Pair::kick_in_arc`. Returns the separation and its velocity.
+    /// The kick; see `Pair::kick_in_arc`, whose code it follows line by line in one function. Returns the separation and its
+    /// velocity.
     #[inline(always)]
-    fn kick(&self, v: Vectors<S>, direction: Vectors<S>, length: Four<S>) -> [Vectors<S>; 2] {
+    fn kick(&self, v: Vectors<S>, d: Vectors<S>, length: Four<S>) -> [Vectors<S>; 2] {
         let all = |number| self.all(number);
         let step = all(self.step);
         let (half, one, two) = (all(0.5) * step, all(1.0), all(2.0));
         let [restoring, loss, ..] = self.poles;
+        let inverse = one / length;
+        let direction = d.times(inverse);
         let lines = self.along(v, direction, length);
         let braked = loss / step * self.backward_rate(&lines);
         let across = self.outside.minus(direction.times(lines.pushed));
-        let per_length = self.per_length(length);
+        let per_length = step * inverse;
+        let per_length = per_length * per_length;
 
         let gained = two * lines.lateral.dot(across);
         let across_square = across.dot(across);
@@ -151,7 +155,7 @@ impl<S: Simd> Run<S> {
         let pull = self.square * (length - self.rest_length);
         let share = self.fade(per_length * lateral_square(half));
         let pull_number = |pull: Four<S>| {
-            let number = step * step * (pull + braked) / length;
+            let number = step * step * (pull + braked) * inverse;
             share * number.max(all(-MOST_PULL)).min(all(MOST_PULL))
         };
 
@@ -159,7 +163,7 @@ impl<S: Simd> Run<S> {
         for _ in 0..ROUNDS {
             let turned = (per_length * lateral_square(time)).min(one);
             let drifted = all(0.125) * turned * length;
-            time = half - half * pull_number(pull - self.square * drifted) / all(6.0);
+            time = half - half * pull_number(pull - self.square * drifted) * all(1.0 / 6.0);
         }
         let lateral = lines.lateral.plus(across.times(time));
         let lateral_square = lateral.dot(lateral);
@@ -168,20 +172,21 @@ impl<S: Simd> Run<S> {
         let within = turned.min(one);
         let doubled = one + (one - within).sqrt();
         let cosine = (all(0.5) * doubled).sqrt();
-        let turning = two * lateral_square / (length * doubled * turned.max(one));
+        let turning = two * lateral_square * inverse / (doubled * turned.max(one));
         let lessened = one - share * (one - cosine);
         let pull = lessened * (self.square * (cosine * length - self.rest_length));
         let damped = all(0.5)
             * share
-            * (loss * step / length * lateral.dot(self.outside) - (one - loss) * within * braked);
+            * (loss * step * inverse * lateral.dot(self.outside) - (one - loss) * within * braked);
         let total = damped - braked - restoring * (pull - turning) - turning;
         let pushed_for = half * restoring;
         let axial = lines.axial + pushed_for * lines.pushed + step * total;
 
-        let tangent = self.tilt(pull_number(pull)) * step / length;
+        let tangent = self.tilt(pull_number(pull)) * step * inverse;
         let tilted = tangent * tangent * lateral_square;
-        let cos = (one - tilted) / (one + tilted);
-        let sin = two * tangent / (one + tilted);
+        let scale = one / (one + tilted);
+        let cos = (one - tilted) * scale;
+        let sin = two * tangent * scale;
         let rotated = direction.times(cos).plus(lateral.times(sin));
         let lateral = lateral
             .times(cos)
@@ -228,7 +233,7 @@ impl<S: Simd> Run<S> {
             let distance = d.length();
             met = met | distance.at_most(rounding);
             length = distance.copysign(d.dot(side));
-            [d, v] = run.kick(v, d.times(self.all(1.0) / length), length);
+            [d, v] = run.kick(v, d, length);
             d = d.plus(v.times(half));
             length = d.length();
             met = met | length.at_most(rounding);
