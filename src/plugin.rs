@@ -257,21 +257,25 @@ fn set_rates(app: &mut App, hertz: f64) {
 
 /// Watches for components that do nothing because their entity has no element, so that a warning can be logged.
 fn notice_strays(app: &mut App) {
-    use crate::input::strays::notice;
+    use crate::input::strays::{kind, notice};
     macro_rules! companions {
         ([$($law:ident: $kind:ident),*] [$($other:ident: $other_kind:ident),*]) => {
-            $(notice::<$kind>(app, Role::Companion);)*
-            $(notice::<$other_kind>(app, Role::Companion);)*
+            [
+                $(kind::<$kind>(app),)*
+                $(kind::<$other_kind>(app),)*
+                kind::<Anchors>(app),
+                kind::<WorldAnchors>(app),
+                kind::<EndNames>(app),
+            ]
         };
     }
-    with_companions!(companions);
-    notice::<Anchors>(app, Role::Companion);
-    notice::<WorldAnchors>(app, Role::Companion);
-    notice::<EndNames>(app, Role::Companion);
+    let companions = with_companions!(companions);
+    notice(app, Role::Companion, companions);
     #[cfg(feature = "visual")]
     {
-        notice::<crate::Coil>(app, Role::Look);
-        notice::<crate::Telescope>(app, Role::Look);
-        notice::<crate::TorsionCoil>(app, Role::Spiral);
+        let looks = [kind::<crate::Coil>(app), kind::<crate::Telescope>(app)];
+        notice(app, Role::Look, looks);
+        let spirals = [kind::<crate::TorsionCoil>(app)];
+        notice(app, Role::Spiral, spirals);
     }
 }

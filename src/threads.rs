@@ -2,8 +2,8 @@
 
 use bevy::tasks::ComputeTaskPool;
 use std::num::NonZeroUsize;
-use std::sync::LazyLock;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{LazyLock, Mutex, PoisonError};
 use std::thread::available_parallelism;
 
 /// Number of processor cores. More threads than cores would only wait for each other.
@@ -31,7 +31,10 @@ pub(crate) fn count() -> usize {
 
 /// Calls `work` on each piece, on all threads if there is more than one piece. This wakes other threads and makes a few
 /// allocations, so cut the work into pieces only where that is worth it.
-pub(crate) fn share<T: Send>(pieces: impl ExactSizeIterator<Item = T>, work: impl Fn(T) + Sync) {
+pub(crate) fn share<T: Send>(
+    pieces: impl ExactSizeIterator<Item = T> + Send,
+    work: impl Fn(T) + Sync,
+) {
     beside(|| {}, pieces, work);
 }
 
@@ -61,7 +64,7 @@ pub(crate) fn copy<T: Copy + Send + Sync>(to: &mut Vec<T>, from: &[T]) {
 
 /// Whether `is_so` holds for all pieces.
 pub(crate) fn all<T: Send>(
-    pieces: impl ExactSizeIterator<Item = T>,
+    pieces: impl ExactSizeIterator<Item = T> + Send,
     is_so: impl Fn(T) -> bool + Sync,
 ) -> bool {
     let so = AtomicBool::new(true);
@@ -76,20 +79,36 @@ pub(crate) fn all<T: Send>(
 /// Calls `first` on this thread and `work` on each piece: at the same time if there are several pieces and threads.
 pub(crate) fn beside<T: Send>(
     first: impl FnOnce(),
-    mut pieces: impl ExactSizeIterator<Item = T>,
+    pieces: impl ExactSizeIterator<Item = T> + Send,
     work: impl Fn(T) + Sync,
 ) {
-    if pieces.len() <= 1 || count() == 1 {
+    let helpers = count().min(pieces.len()).saturating_sub(1);
+    if helpers == 0 {
         first();
-        pieces.by_ref().for_each(work);
+        pieces.for_each(work);
         return;
     }
-    let work = &work;
+    let pieces = Mutex::new(pieces);
+    // The lock is free again before the work on a piece begins.
+    let next = || pieces.lock().unwrap_or_else(PoisonError::into_inner).next();
+    let mut first = Some(first);
+    on_threads(
+        helpers,
+        &mut || first.take().into_iter().for_each(|first| first()),
+        &|| std::iter::from_fn(next).for_each(&work),
+    );
+}
+
+/// Calls `first` and then `work` on this thread, and `work` on other threads as well, once for each of `helpers`.
+///
+/// It is not generic on purpose: the scope of a task pool is much code, and there would be a copy of it for each kind of work.
+fn on_threads(helpers: usize, first: &mut dyn FnMut(), work: &(dyn Fn() + Sync)) {
     ComputeTaskPool::get().scope(|scope| {
-        for piece in pieces {
-            scope.spawn(async move { work(piece) });
+        for _ in 0..helpers {
+            scope.spawn(async move { work() });
         }
         first();
+        work();
     });
 }
 

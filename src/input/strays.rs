@@ -4,6 +4,7 @@
 
 use crate::compat::Added;
 use crate::input::parts::{IsElement, IsLinear};
+use bevy::ecs::component::ComponentId;
 use bevy::ecs::entity::{EntityHashMap, EntityHashSet};
 #[cfg(feature = "visual")]
 use bevy::ecs::entity_disabling::Disabled;
@@ -105,11 +106,21 @@ pub(crate) fn who(entity: Entity, name: Option<&Name>) -> String {
     name.map_or_else(|| entity.to_string(), |name| format!("{name}, {entity}"))
 }
 
-/// Makes an app notice a component of this type on an entity without a suitable element.
-pub(crate) fn notice<C: Component>(app: &mut App, role: Role) {
+/// Id of a type of component, and its name in messages.
+pub(crate) type Kind = (ComponentId, &'static str);
+
+/// Returns the kind of the component `C`.
+pub(crate) fn kind<C: Component>(app: &mut App) -> Kind {
     let path = std::any::type_name::<C>();
     let name = path.rsplit("::").next().unwrap_or(path);
-    let observer = move |added: Added<C>,
+    (app.world_mut().register_component::<C>(), name)
+}
+
+/// Makes an app notice components of these kinds on an entity without a suitable element.
+pub(crate) fn notice(app: &mut App, role: Role, kinds: impl Into<Vec<Kind>>) {
+    let kinds = kinds.into();
+    let ids: Vec<ComponentId> = kinds.iter().map(|kind| kind.0).collect();
+    let observer = move |added: Added<()>,
                          elements: Query<(), IsElement>,
                          linear: Query<(), IsLinear>,
                          mut strays: ResMut<Strays>| {
@@ -137,11 +148,17 @@ pub(crate) fn notice<C: Component>(app: &mut App, role: Role) {
             Role::Look => &mut stray.looks,
             Role::Spiral => &mut stray.spirals,
         };
-        if !list.contains(&name) {
-            list.push(name);
+        // All that was added at once.
+        for id in added.trigger().components {
+            if let Some((_, name)) = kinds.iter().find(|kind| kind.0 == *id)
+                && !list.contains(name)
+            {
+                list.push(name);
+            }
         }
     };
-    app.add_observer(observer);
+    app.world_mut()
+        .spawn(Observer::new(observer).with_components(ids));
 }
 
 /// Whether there is anything to check.

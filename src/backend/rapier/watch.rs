@@ -68,29 +68,33 @@ pub(crate) fn any_news(scene: Res<Scene>, mut news: News) -> bool {
     seen || scene.news.load(Ordering::Relaxed)
 }
 
-/// Adds the observers to an app.
+/// Adds the observers to an app. Each of them observes a list of components, for an observer of its own for each component would
+/// be compiled as often.
 pub(crate) fn watch(app: &mut App) {
-    macro_rules! elements {
-        ($($element:ident),*) => {$(lost::<$element>(app);)*};
+    let world = app.world_mut();
+    macro_rules! ids {
+        ($($component:ident),*) => {[$(world.register_component::<$component>()),*]};
+    }
+    macro_rules! of_laws {
+        ([$($law:ident: $kind:ident),*] $others:tt) => {ids!($($kind),*)};
     }
     // Entities that the scene does not know need no observer: a new element changes the count of elements, and missing
     // ends of an inert element are looked for in every tick.
-    with_elements!(elements);
-    lost::<Anchors>(app);
-    lost::<RapierRigidBodyHandle>(app);
-    lost::<RapierContextEntityLink>(app);
-    lost::<RigidBodyDisabled>(app);
-    lost::<Disabled>(app);
-    unloaded::<SpringLoad>(app);
-    unloaded::<ExternalForce>(app);
-    macro_rules! companions {
-        ([$($law:ident: $kind:ident),*] $others:tt) => {$(left::<$kind>(app);)*};
-    }
-    with_companions!(companions);
-    came::<RapierRigidBodyHandle>(app);
-    came::<RapierContextEntityLink>(app);
-    came::<RigidBodyDisabled>(app);
-    came::<Disabled>(app);
+    let elements = with_elements!(ids);
+    let bodies = ids![
+        RapierRigidBodyHandle,
+        RapierContextEntityLink,
+        RigidBodyDisabled,
+        Disabled
+    ];
+    let others = ids![Anchors];
+    let lost = elements.into_iter().chain(bodies).chain(others);
+    world.spawn(Observer::new(lose).with_components(lost));
+    world.spawn(Observer::new(come).with_components(bodies));
+    let loads = ids![SpringLoad, ExternalForce];
+    world.spawn(Observer::new(unload).with_components(loads));
+    let laws = with_companions!(of_laws);
+    world.spawn(Observer::new(leave).with_components(laws));
 }
 
 /// Marks the scene as disturbed if it is `concerned`. While a snapshot is restored there is no scene resource, and nothing is to
@@ -104,31 +108,23 @@ fn notice(scene: Option<ResMut<Scene>>, concerned: impl Fn(&Scene) -> bool) {
 }
 
 /// Observes that a body or an element gets a component.
-fn came<C: Component>(app: &mut App) {
-    app.add_observer(|on: Inserted<C>, scene: Option<ResMut<Scene>>| {
-        notice(scene, |scene| scene.knows(on.entity));
-    });
+fn come(on: Inserted<()>, scene: Option<ResMut<Scene>>) {
+    notice(scene, |scene| scene.knows(on.entity));
 }
 
 /// Observes that an element or a body loses a component.
-fn lost<C: Component>(app: &mut App) {
-    app.add_observer(|on: Removed<C>, scene: Option<ResMut<Scene>>| {
-        notice(scene, |scene| scene.knows(on.entity));
-    });
+fn lose(on: Removed<()>, scene: Option<ResMut<Scene>>) {
+    notice(scene, |scene| scene.knows(on.entity));
 }
 
 /// Observes that a body that elements can move loses a component.
-fn unloaded<C: Component>(app: &mut App) {
-    app.add_observer(|on: Removed<C>, scene: Option<ResMut<Scene>>| {
-        notice(scene, |scene| scene.body_row(on.entity).is_some());
-    });
+fn unload(on: Removed<()>, scene: Option<ResMut<Scene>>) {
+    notice(scene, |scene| scene.body_row(on.entity).is_some());
 }
 
 /// Observes that an element loses a companion component.
-fn left<C: Component>(app: &mut App) {
-    app.add_observer(|on: Removed<C>, scene: Option<ResMut<Scene>>| {
-        if let Some(mut scene) = scene.filter(|scene| scene.row_of.contains_key(&on.entity)) {
-            scene.touched.push(on.entity);
-        }
-    });
+fn leave(on: Removed<()>, scene: Option<ResMut<Scene>>) {
+    if let Some(mut scene) = scene.filter(|scene| scene.row_of.contains_key(&on.entity)) {
+        scene.touched.push(on.entity);
+    }
 }
