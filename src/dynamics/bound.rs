@@ -28,7 +28,8 @@ const OWN: f64 = 0.1;
 /// 60 steps per second. Pinned by `bound::tests::what_turns_back_may_sway_as_it_did_in_the_seconds_before`.
 const REMEMBERED: f64 = 0.998;
 
-/// Greatest number of attempts to remove a surplus.
+/// Greatest number of attempts to remove a surplus. Pinned by
+/// `energy::tests::a_surplus_is_taken_from_a_chain_at_once_though_each_element_disturbs_its_neighbours`.
 const ROUNDS: usize = 4;
 
 /// The energy that a network may have.

@@ -164,18 +164,20 @@ impl Schedule {
             };
             direct = self.reach(summed - self.time * spin - own[0], wanted - spin - own[1]);
         }
-        let eased = self.capped(direct, spin, CAUTION * cap);
+        let eased = self.capped(direct, spin, cap);
         if eased == direct {
             let delivery = refined(direct, 1.0, &|angle, change| self.reach(angle, change));
             if self.capped(delivery, spin, cap) == delivery {
                 return delivery;
             }
         }
-        // With the cap, only the rotation is corrected. The velocity is what results.
-        refined(eased, 0.0, &|angle, _| Delivery {
+        // With the cap, only the rotation is corrected. The velocity is what results. The corrections may have added a little
+        // speed.
+        let corrected = refined(eased, 0.0, &|angle, _| Delivery {
             jump: angle * self.per_time,
             rate: DVec3::ZERO,
-        })
+        });
+        self.capped(corrected, spin, cap)
     }
 
     /// Returns the rotation (rad) and the change of angular velocity (rad/s) that the engine's gyroscopic term adds. The
@@ -219,9 +221,6 @@ const FORESEEN: usize = 2;
 /// Greatest number of corrections. Each leaves a thirtieth of the error. Pinned by
 /// `dynamics::tests::engine_substeps_reach_the_state_that_was_ordered`.
 const ROUNDS: usize = 6;
-
-/// Share of the cap on rotation that is planned with, because corrections may add a little.
-const CAUTION: f64 = 0.995;
 
 /// Error before a correction below which no further correction follows, rad. Pinned by
 /// `dynamics::tests::engine_substeps_reach_the_state_that_was_ordered`.

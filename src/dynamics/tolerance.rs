@@ -164,10 +164,10 @@ pub(crate) fn velocity_counts(motion: f64, stiffened: f64) -> f64 {
 /// Number of steps between probes while the fewest micro-steps are enough. Pinned by
 /// `tolerance::tests::the_tolerance_is_kept_with_few_kicks`.
 const CALM: u32 = 24;
-/// Greatest number of steps between probes otherwise.
+/// Greatest number of steps between probes otherwise. Pinned by `tolerance::tests::a_motion_that_becomes_wild_is_probed_sooner`.
 const BUSY: u32 = 8;
 
-/// Growth of the error between two probes above which the next probe comes sooner.
+/// Growth of the error between two probes above which the next probe comes sooner. Pinned by the same test.
 const GROWTH: f64 = 2.0;
 
 /// Memory of a motion's errors.

@@ -20,7 +20,8 @@ const MOST: f64 = 20.0;
 const COARSE: f64 = 1.0;
 
 /// Greatest number of elements of a network that takes micro-steps for kinks. With more elements, one impact is a small
-/// share of the energy, and some element is at a kink in every step.
+/// share of the energy, and some element is at a kink in every step. Pinned by
+/// `kinks::tests::a_rope_of_few_pieces_takes_microsteps_as_it_becomes_taut_and_a_net_of_many_none`.
 const FEW: usize = 64;
 
 /// Relative change of stiffness at a kink above which energy would be lost there. Pinned by
@@ -98,5 +99,59 @@ impl Component {
                 law.part(line.length + way, rest) != here.0
                     && (there - here.1).abs() > SHARP * there.max(here.1)
             })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dynamics::element::End;
+    use crate::dynamics::law::DragLaw;
+    use crate::dynamics::law::{Law, Recipe, SpringForce, Stop};
+    use crate::dynamics::tests::{element, point};
+    use bevy::math::DVec3;
+    use std::sync::Arc;
+
+    /// A slack rope of `count` pieces of 1 m and 1 kN/m, of which the first is pulled taut at 1 m/s.
+    fn rope(count: usize) -> Component {
+        let law = Arc::new(Law::new(Recipe {
+            spring: SpringForce::Polynomial {
+                pull: [1e3, 0.0, 0.0],
+                push: [0.0; 3],
+            },
+            drag: DragLaw::Linear(0.0),
+            preload: 0.0,
+            limits: [0.0, f64::INFINITY],
+            most: f64::INFINITY,
+            travel: [f64::NEG_INFINITY, f64::INFINITY],
+            stop: Stop::default(),
+        }));
+        let mut bodies: Vec<_> = (0..=count)
+            .map(|at| point(1.0, DVec3::X * 0.999 * at as f64, DVec3::ZERO))
+            .collect();
+        bodies[0].velocity = DVec3::NEG_X;
+        let elements = (0..count).map(|at| {
+            let [a, b] = [at, at + 1].map(|index| End::Body {
+                index,
+                arm: DVec3::ZERO,
+            });
+            let mut piece = element(a, b, 1e3, 0.0, 1.0);
+            piece.law = Some(law.clone());
+            piece
+        });
+        Component {
+            elements: elements.collect(),
+            bodies,
+            ..Component::default()
+        }
+    }
+
+    #[test]
+    fn a_rope_of_few_pieces_takes_microsteps_as_it_becomes_taut_and_a_net_of_many_none() {
+        let (omega, time) = (2000_f64.sqrt(), 1.0 / 60.0);
+        for (count, is_fine) in [(1, true), (30, true), (300, false)] {
+            let steps = rope(count).steps_at_bends((omega * time).powi(2), time);
+            assert_eq!(steps > 1, is_fine, "{count} pieces: {steps} micro-steps");
+        }
     }
 }

@@ -9,7 +9,8 @@ use crate::dynamics::bound::Bound;
 use crate::dynamics::energy::Energy;
 use crate::dynamics::tolerance::{Accuracy, Motion, Outcome};
 
-/// Factor by which each repetition increases the number of micro-steps.
+/// Factor by which each repetition increases the number of micro-steps. Pinned by
+/// `retake::tests::a_step_that_gained_energy_becomes_only_as_fine_as_it_must`.
 const FINER: u32 = 4;
 
 /// Greatest number of micro-steps of a repeated step if the budget is less. They hardly make the step of a stiff network
@@ -87,6 +88,9 @@ impl Component {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::dynamics::element::End;
+    use crate::dynamics::tests::{element, point};
+    use bevy::math::DVec3;
 
     #[test]
     fn finer_microsteps_are_kept_for_half_a_second() {
@@ -99,5 +103,42 @@ mod tests {
             .take_while(|_| caution.pass(step, Accuracy::exactly(1)).microsteps == 16)
             .count();
         assert!((20..60).contains(&fine), "{fine} steps");
+    }
+
+    /// Micro-steps that four masses in a row on three stiff springs take in ten seconds of a wild flight.
+    fn microsteps(stiffness: f64, speed: f64) -> u32 {
+        let mut bodies: Vec<_> = (0..4)
+            .map(|at| point(1.0, DVec3::X * f64::from(at), DVec3::NEG_Y * 9.81))
+            .collect();
+        bodies[0].velocity = DVec3::Y * speed;
+        bodies[2].velocity = DVec3::NEG_Y * speed;
+        bodies[3].velocity = DVec3::Z * speed;
+        let elements = (0..3).map(|at| {
+            let [a, b] = [at, at + 1].map(|index| End::Body {
+                index,
+                arm: DVec3::ZERO,
+            });
+            element(a, b, stiffness, 0.0, 1.0)
+        });
+        let mut row = Component {
+            elements: elements.collect(),
+            bodies,
+            ..Component::default()
+        };
+        let accuracy = Accuracy {
+            resolve: 8,
+            ..Accuracy::exactly(1)
+        };
+        (0..600)
+            .map(|_| row.advance(1.0 / 60.0, accuracy).microsteps)
+            .sum()
+    }
+
+    #[test]
+    fn a_step_that_gained_energy_becomes_only_as_fine_as_it_must() {
+        for (stiffness, speed, most) in [(1e4, 30.0, 2500), (1e5, 10.0, 1500)] {
+            let taken = microsteps(stiffness, speed);
+            assert!(taken < most, "{stiffness} N/m at {speed} m/s: {taken}");
+        }
     }
 }

@@ -9,6 +9,8 @@ pub(in crate::dynamics) struct Model {
     now: f64,
     slots: [f64; 3],
     kicks: u32,
+    /// Whether extrapolation converges.
+    resolved: bool,
 }
 
 impl Model {
@@ -18,6 +20,7 @@ impl Model {
             now: 0.0,
             slots: [0.0; 3],
             kicks: 0,
+            resolved: true,
         }
     }
 }
@@ -50,7 +53,7 @@ impl Motion for Model {
         self.now += (self.now - self.slots[slot]) / 3.0;
     }
     fn is_resolved(&mut self, _: f64) -> bool {
-        true
+        self.resolved
     }
 }
 
@@ -113,4 +116,32 @@ fn any_number_of_microsteps_keeps_below_the_cap() {
         assert_eq!((model.kicks, outcome.microsteps), (256, 256));
         assert!(outcome.capped);
     }
+}
+
+/// Drives a motion that only plain micro-steps suit, with an error of `error(step)`/n² per second, for 240 steps. Returns its
+/// error as a multiple of what the tolerance allows in that time, and the kicks per step.
+fn driven(error: impl Fn(u32) -> f64) -> (f64, f64) {
+    let mut model = Model::new((0.0, 0.0));
+    model.resolved = false;
+    let (mut controller, tolerance) = (Controller::default(), 1e-2);
+    for step in 0..240 {
+        model.errors.0 = error(step);
+        controller.drive(&mut model, STEP, accuracy(tolerance));
+    }
+    let allowed = 240.0 * STEP * tolerance;
+    (model.now.abs() / allowed, f64::from(model.kicks) / 240.0)
+}
+
+#[test]
+fn a_motion_that_becomes_wild_is_probed_sooner() {
+    // Growth of the error in each of twenty steps out of eighty.
+    for (times, most_error, most_kicks) in [(1.0, 1.0001, 11.3), (1.1, 1.1, 28.0), (1.2, 1.3, 63.0)]
+    {
+        let (error, kicks) = driven(|step| f64::powi(times, (step % 80).min(20) as i32));
+        assert!(error < most_error, "grows by {times}: {error}");
+        assert!(kicks < most_kicks, "grows by {times}: {kicks} kicks");
+    }
+    // Ten times the error from one step to the next, until the next probe.
+    let (error, kicks) = driven(|step| if step % 60 < 30 { 1.0 } else { 10.0 });
+    assert!(error < 2.0 && kicks < 24.0, "{error}, {kicks} kicks");
 }
