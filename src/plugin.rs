@@ -260,7 +260,7 @@ fn notice_strays(app: &mut App) {
     use crate::input::strays::{kind, notice};
     macro_rules! companions {
         ([$($law:ident: $kind:ident),*] [$($other:ident: $other_kind:ident),*]) => {
-            [
+            vec![
                 $(kind::<$kind>(app),)*
                 $(kind::<$other_kind>(app),)*
                 kind::<Anchors>(app),
@@ -273,9 +273,9 @@ fn notice_strays(app: &mut App) {
     notice(app, Role::Companion, companions);
     #[cfg(feature = "visual")]
     {
-        let looks = [kind::<crate::Coil>(app), kind::<crate::Telescope>(app)];
+        let looks = vec![kind::<crate::Coil>(app), kind::<crate::Telescope>(app)];
         notice(app, Role::Look, looks);
-        let spirals = [kind::<crate::TorsionCoil>(app)];
+        let spirals = vec![kind::<crate::TorsionCoil>(app)];
         notice(app, Role::Spiral, spirals);
     }
 }

@@ -98,8 +98,8 @@ impl Body {
 #[cfg(test)]
 mod tests {
     use super::super::bound::Bound;
-    use super::super::element::End;
-    use super::super::tests::{element, point};
+    use super::super::step::Component;
+    use super::super::tests::{point, row};
     use super::*;
 
     const STEP: f64 = 1.0 / 60.0;
@@ -115,15 +115,7 @@ mod tests {
                 body
             })
             .collect();
-        let elements: Vec<Element> = (1..bodies.len())
-            .map(|at| {
-                let [a, b] = [at - 1, at].map(|index| End::Body {
-                    index,
-                    arm: DVec3::ZERO,
-                });
-                element(a, b, 1e3, 0.0, 1.0)
-            })
-            .collect();
+        let Component { elements, .. } = row(bodies.clone(), 1e3);
         let energy = Energy::of(&elements, &bodies);
         let mut bound = Bound::default();
         // Since it was as lively a moment ago, a little more than what it is to have left passes the check.

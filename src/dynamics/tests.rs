@@ -65,6 +65,17 @@ fn held(index: usize, arm: DVec3) -> End {
     End::Body { index, arm }
 }
 
+/// Bodies of which each is joined to the next, centre to centre, by a spring of this stiffness (N/m) and 1 m.
+pub(crate) fn row(bodies: Vec<Body>, stiffness: f64) -> Component {
+    let ends = (1..bodies.len()).map(|at| [at - 1, at].map(|index| held(index, DVec3::ZERO)));
+    let elements = ends.map(|[a, b]| element(a, b, stiffness, 0.0, 1.0));
+    Component {
+        elements: elements.collect(),
+        bodies,
+        ..default()
+    }
+}
+
 fn accuracy(microsteps: u32, extrapolate: bool) -> Accuracy {
     Accuracy {
         resolve: 1,

@@ -117,8 +117,7 @@ pub(crate) fn kind<C: Component>(app: &mut App) -> Kind {
 }
 
 /// Makes an app notice components of these kinds on an entity without a suitable element.
-pub(crate) fn notice(app: &mut App, role: Role, kinds: impl Into<Vec<Kind>>) {
-    let kinds = kinds.into();
+pub(crate) fn notice(app: &mut App, role: Role, kinds: Vec<Kind>) {
     let ids: Vec<ComponentId> = kinds.iter().map(|kind| kind.0).collect();
     let observer = move |added: Added<()>,
                          elements: Query<(), IsElement>,

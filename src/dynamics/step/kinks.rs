@@ -105,10 +105,9 @@ impl Component {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dynamics::element::End;
     use crate::dynamics::law::DragLaw;
     use crate::dynamics::law::{Law, Recipe, SpringForce, Stop};
-    use crate::dynamics::tests::{element, point};
+    use crate::dynamics::tests::{point, row};
     use bevy::math::DVec3;
     use std::sync::Arc;
 
@@ -130,20 +129,11 @@ mod tests {
             .map(|at| point(1.0, DVec3::X * 0.999 * at as f64, DVec3::ZERO))
             .collect();
         bodies[0].velocity = DVec3::NEG_X;
-        let elements = (0..count).map(|at| {
-            let [a, b] = [at, at + 1].map(|index| End::Body {
-                index,
-                arm: DVec3::ZERO,
-            });
-            let mut piece = element(a, b, 1e3, 0.0, 1.0);
+        let mut rope = row(bodies, 1e3);
+        for piece in &mut rope.elements {
             piece.law = Some(law.clone());
-            piece
-        });
-        Component {
-            elements: elements.collect(),
-            bodies,
-            ..Component::default()
         }
+        rope
     }
 
     #[test]

@@ -88,8 +88,7 @@ impl Component {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dynamics::element::End;
-    use crate::dynamics::tests::{element, point};
+    use crate::dynamics::tests::{point, row};
     use bevy::math::DVec3;
 
     #[test]
@@ -113,18 +112,7 @@ mod tests {
         bodies[0].velocity = DVec3::Y * speed;
         bodies[2].velocity = DVec3::NEG_Y * speed;
         bodies[3].velocity = DVec3::Z * speed;
-        let elements = (0..3).map(|at| {
-            let [a, b] = [at, at + 1].map(|index| End::Body {
-                index,
-                arm: DVec3::ZERO,
-            });
-            element(a, b, stiffness, 0.0, 1.0)
-        });
-        let mut row = Component {
-            elements: elements.collect(),
-            bodies,
-            ..Component::default()
-        };
+        let mut row = row(bodies, stiffness);
         let accuracy = Accuracy {
             resolve: 8,
             ..Accuracy::exactly(1)
