@@ -94,7 +94,11 @@ pub(crate) fn beside<T: Send>(
     let mut first = Some(first);
     on_threads(
         helpers,
-        &mut || first.take().into_iter().for_each(|first| first()),
+        &mut || {
+            if let Some(first) = first.take() {
+                first();
+            }
+        },
         &|| std::iter::from_fn(next).for_each(&work),
     );
 }

@@ -385,4 +385,4 @@ impl Law {
 }
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

@@ -1,6 +1,7 @@
 use super::*;
 
-fn recipe(pull: [f64; 3], push: [f64; 3]) -> Recipe {
+/// A spring with these polynomials, beside a damper of 3 N s/m.
+pub(crate) fn recipe(pull: [f64; 3], push: [f64; 3]) -> Recipe {
     Recipe {
         spring: SpringForce::Polynomial { pull, push },
         drag: DragLaw::Linear(3.0),

@@ -105,26 +105,15 @@ impl Component {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dynamics::law::DragLaw;
-    use crate::dynamics::law::{Law, Recipe, SpringForce, Stop};
+    use crate::dynamics::law::Law;
+    use crate::dynamics::law::tests::recipe;
     use crate::dynamics::tests::{point, row};
     use bevy::math::DVec3;
     use std::sync::Arc;
 
     /// A slack rope of `count` pieces of 1 m and 1 kN/m, of which the first is pulled taut at 1 m/s.
     fn rope(count: usize) -> Component {
-        let law = Arc::new(Law::new(Recipe {
-            spring: SpringForce::Polynomial {
-                pull: [1e3, 0.0, 0.0],
-                push: [0.0; 3],
-            },
-            drag: DragLaw::Linear(0.0),
-            preload: 0.0,
-            limits: [0.0, f64::INFINITY],
-            most: f64::INFINITY,
-            travel: [f64::NEG_INFINITY, f64::INFINITY],
-            stop: Stop::default(),
-        }));
+        let law = Arc::new(Law::new(recipe([1e3, 0.0, 0.0], [0.0; 3])));
         let mut bodies: Vec<_> = (0..=count)
             .map(|at| point(1.0, DVec3::X * 0.999 * at as f64, DVec3::ZERO))
             .collect();
