@@ -1,6 +1,7 @@
 //! Heavy balls that fall on a wide cloth of light points.
 
 use super::stand::*;
+use crate::dice::span;
 use crate::harness::*;
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
@@ -59,9 +60,10 @@ fn heavy_balls_on_a_wide_cloth_win_nothing() {
     }
     scene.lab.tick();
     let first = scene.energy();
-    let most = scene.most(15.0);
+    let seconds = span(15.0);
+    let most = scene.most(seconds);
     println!(
-        "cloth of 30 × 30 with three balls: E {:+.2} J of {first:.0} J at most, {:.2} m/s after 15 s",
+        "cloth of 30 × 30 with three balls: E {:+.2} J of {first:.0} J at most, {:.2} m/s after {seconds} s",
         most - first,
         scene.speed()
     );

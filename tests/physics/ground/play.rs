@@ -4,6 +4,7 @@ use super::bridge::bridge;
 use super::drive::{LAW, car};
 use super::ragdoll::{Muscle, ragdoll};
 use super::stand::{SceneSpring, Stand};
+use crate::dice::some;
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
@@ -18,7 +19,7 @@ fn drive(short: f32) -> Vec3 {
 #[test]
 fn a_car_that_drives_stands_as_high_in_the_tenth_minute_as_in_the_first() {
     let speed = 12.0;
-    for kind in ["ball", "cylinder"] {
+    for kind in some(["cylinder", "ball"]) {
         let mut car = car(CoiloverPlugin::default(), kind, 0.0, speed, LAW);
         for wheel in &car.wheels {
             let world = car.scene.lab.app.world_mut();
@@ -83,11 +84,11 @@ fn lift(scene: &Stand, rope: &SceneSpring) -> f64 {
 fn a_bridge_comes_to_rest_under_its_load() {
     // Without hinges the bridge falls by half a metre before its springs bear it. One in twelve
     // boxes of 46 to 55 kg slides off then.
-    for (k, load, hinged, still_after) in [
-        (2e4, 100.0, true, 2.0),
+    for (k, load, hinged, still_after) in some([
         (5e5, 100.0, true, 2.0),
+        (2e4, 100.0, true, 2.0),
         (5e5, 52.0, false, 3.0),
-    ] {
+    ]) {
         let mut scene = bridge(k, load, hinged);
         let world = scene.lab.app.world_mut();
         // This damps the stretching of the ropes at once. No rope damps swinging sideways.
