@@ -2,11 +2,27 @@
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::sync::Mutex;
 use std::time::SystemTime;
 
 /// Returns the root folder of the repository, which contains the examples.
 pub fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+}
+
+/// Does `what` for each of the scenes, two at a time, since an example uses one thread. Those that take longest come first.
+pub fn two_at_a_time<T: Sync>(scenes: &[T], what: impl Fn(&T) + Sync) {
+    let waiting = Mutex::new(scenes.iter());
+    let next = || waiting.lock().ok()?.next();
+    std::thread::scope(|both| {
+        for _ in 0..2 {
+            both.spawn(|| {
+                while let Some(scene) = next() {
+                    what(scene);
+                }
+            });
+        }
+    });
 }
 
 /// Returns the command that runs an example in the root folder. It uses the program built along with this one if that

@@ -3,8 +3,7 @@
 
 #![allow(missing_docs, reason = "a test")]
 
-use pictures::command;
-use std::sync::Mutex;
+use pictures::{command, two_at_a_time};
 
 /// Scenes, and the number of minutes that each is watched.
 const SCENES: [(&str, &str); 25] = [
@@ -39,17 +38,8 @@ const SCENES: [(&str, &str); 25] = [
 #[test]
 fn after_ten_minutes_nothing_has_left_the_picture_or_lies_askew() {
     let all = std::env::var("MINUTES").is_ok_and(|minutes| minutes == "all");
-    let waiting = Mutex::new(SCENES.iter());
-    let next = || waiting.lock().expect("no test has panicked").next();
-    // Two at a time: each uses one thread.
-    std::thread::scope(|both| {
-        for _ in 0..2 {
-            both.spawn(|| {
-                while let Some(&(scene, minutes)) = next() {
-                    watch(scene, if all { minutes } else { "1" });
-                }
-            });
-        }
+    two_at_a_time(&SCENES, |&(scene, minutes)| {
+        watch(scene, if all { minutes } else { "1" })
     });
 }
 

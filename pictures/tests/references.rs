@@ -5,10 +5,10 @@
 #![allow(missing_docs, reason = "a test")]
 
 use image::{RgbImage, imageops};
-use pictures::{command, root};
-use std::process::Stdio;
+use pictures::{command, root, two_at_a_time};
 
 const SCENES: [&str; 22] = [
+    "rope_bridge",
     "linear_spring",
     "nonlinear_spring",
     "spring_3d",
@@ -24,7 +24,6 @@ const SCENES: [&str; 22] = [
     "suspension",
     "drive",
     "flag",
-    "rope_bridge",
     "crane",
     "jelly",
     "catapult",
@@ -58,41 +57,34 @@ fn likeness(a: &RgbImage, b: &RgbImage) -> f64 {
 
 #[test]
 fn the_examples_look_as_they_did_and_their_checks_hold() {
-    let kept = root().join("pictures/references");
-    let shot =
-        |scene: &str| std::env::temp_dir().join(format!("{scene}_{}.png", std::process::id()));
-    // Two at a time: each uses one thread.
-    let seen = SCENES.chunks(2).flat_map(|pair| {
-        let begin = |scene: &&'static str| {
-            let mut seen = command(scene);
-            seen.arg("--small").arg("--screenshot").arg(shot(scene));
-            seen.stdout(Stdio::piped()).stderr(Stdio::piped());
-            (*scene, seen.spawn().expect("the example starts"))
-        };
-        pair.iter().map(begin).collect::<Vec<_>>()
-    });
-    for (scene, running) in seen {
-        let run = running.wait_with_output().expect("the example runs");
-        let told = String::from_utf8_lossy(&run.stdout);
-        assert!(run.status.success(), "{scene}: {told}");
-        let shot = shot(scene);
-        if !shot.exists() {
-            eprintln!("SKIPPED: {scene} finds no graphics adapter on this machine: {told}");
-            return;
-        }
-        let full = image::open(&shot).expect("a picture").to_rgb8();
-        let _ = std::fs::remove_file(&shot);
-        let seen = imageops::resize(&full, SIZE.0, SIZE.1, imageops::FilterType::Triangle);
-        let kept = kept.join(format!("{scene}.png"));
-        if std::env::var_os("UPDATE_REFERENCES").is_some() {
-            seen.save(&kept).expect("written");
-            continue;
-        }
-        let kept = image::open(&kept).expect("a reference").to_rgb8();
-        let alike = likeness(&seen, &kept);
-        println!("{scene}: {alike:.4} alike");
-        assert!(alike > ALIKE, "{scene}: only {alike:.4} alike");
+    two_at_a_time(&SCENES, |scene| looks_as_it_did(scene));
+}
+
+fn looks_as_it_did(scene: &str) {
+    let shot = std::env::temp_dir().join(format!("{scene}_{}.png", std::process::id()));
+    let mut example = command(scene);
+    let run = example.arg("--small").arg("--screenshot").arg(&shot);
+    let run = run.output().expect("the example runs");
+    let told = String::from_utf8_lossy(&run.stdout);
+    assert!(run.status.success(), "{scene}: {told}");
+    if !shot.exists() {
+        eprintln!("SKIPPED: {scene} finds no graphics adapter on this machine: {told}");
+        return;
     }
+    let full = image::open(&shot).expect("a picture").to_rgb8();
+    let _ = std::fs::remove_file(&shot);
+    let seen = imageops::resize(&full, SIZE.0, SIZE.1, imageops::FilterType::Triangle);
+    let kept = root()
+        .join("pictures/references")
+        .join(format!("{scene}.png"));
+    if std::env::var_os("UPDATE_REFERENCES").is_some() {
+        seen.save(&kept).expect("written");
+        return;
+    }
+    let kept = image::open(&kept).expect("a reference").to_rgb8();
+    let alike = likeness(&seen, &kept);
+    println!("{scene}: {alike:.4} alike");
+    assert!(alike > ALIKE, "{scene}: only {alike:.4} alike");
 }
 
 #[test]
