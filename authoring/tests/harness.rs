@@ -5,6 +5,7 @@ use bevy::prelude::*;
 use bevy::time::TimeUpdateStrategy;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
+use std::collections::HashSet;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -216,7 +217,7 @@ impl Stage {
 
 /// Text of a glTF file with these nodes and root extensions.
 pub fn gltf(nodes: serde_json::Value, extensions: serde_json::Value) -> String {
-    let children: Vec<u64> = nodes
+    let children: HashSet<u64> = nodes
         .as_array()
         .into_iter()
         .flatten()

@@ -16,6 +16,8 @@ const FRAMES: u32 = 48;
 const RATE: u32 = 20;
 /// Duration of a film of the last seconds, s.
 const LENGTH: u32 = 3;
+/// Number of updates in which the meshes and materials of a scene appear: of springs in its first step, of the rest before it.
+const APPEARING: u32 = 10;
 
 /// Writes the pictures. The exit code also tells whether the check holds.
 pub fn shoot(stage: &Stage, film: Film) -> AppExit {
@@ -111,15 +113,20 @@ fn save(picture: Image, path: &Path) -> Result<(), String> {
     std::fs::rename(unfinished, path).map_err(|e| e.to_string())
 }
 
-/// Advances by a number of fixed ticks, in one update if possible.
+/// Advances by a number of fixed ticks, in one update if possible. If not, the renderer takes part in the first updates, in
+/// which meshes and materials appear, and in the last one: even if it draws nothing, it takes longer than all else in an update.
 fn pass(app: &mut App, ticks: u32) {
-    let at_once = match app.world().contains_resource::<TickByTick>() {
-        true => 1,
-        false => ticks,
+    let (at_once, updates) = match app.world().contains_resource::<TickByTick>() {
+        true => (1, ticks),
+        false => (ticks, 1),
     };
     set_ticks(app, at_once);
-    for _ in 0..ticks.checked_div(at_once).unwrap_or(1) {
-        app.update();
+    for update in 0..updates {
+        if (APPEARING..updates.saturating_sub(1)).contains(&update) {
+            app.main_mut().update();
+        } else {
+            app.update();
+        }
     }
     set_ticks(app, 0);
 }

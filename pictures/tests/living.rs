@@ -1,5 +1,5 @@
 //! Checks that the examples still look as they should after ten minutes in their windows. Nothing is drawn: each
-//! example watches the positions of its bodies. Runs a minute of each by default, the whole time with `MINUTES=all`.
+//! example watches the positions of its bodies. Runs half a minute of each by default, the whole time with `MINUTES=all`.
 
 #![allow(missing_docs, reason = "a test")]
 
@@ -39,7 +39,7 @@ const SCENES: [(&str, &str); 25] = [
 fn after_ten_minutes_nothing_has_left_the_picture_or_lies_askew() {
     let all = std::env::var("MINUTES").is_ok_and(|minutes| minutes == "all");
     two_at_a_time(&SCENES, |&(scene, minutes)| {
-        watch(scene, if all { minutes } else { "1" })
+        watch(scene, if all { minutes } else { "0.5" })
     });
 }
 
