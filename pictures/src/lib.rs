@@ -10,7 +10,7 @@ pub fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
 }
 
-/// Does `what` for each of the scenes, two at a time, since an example uses one thread. Those that take longest come first.
+/// Does `what` for each of the scenes, two at a time, since an example uses one thread. Put those that take longest first.
 pub fn two_at_a_time<T: Sync>(scenes: &[T], what: impl Fn(&T) + Sync) {
     let waiting = Mutex::new(scenes.iter());
     let next = || waiting.lock().ok()?.next();
