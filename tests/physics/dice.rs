@@ -24,8 +24,8 @@ pub fn span(seconds: f64) -> f64 {
     seconds / each() as f64
 }
 
-/// For a list with every case in each of three ways: takes each case in one way, and goes through the ways in
-/// turn.
+/// For a list that has every case in three ways, one after the other: takes the first case in the first way, the
+/// second in the second, and so on. For any other list, it takes one entry of each three, at places that change.
 pub fn in_turn<T>(all: Vec<T>) -> Vec<T> {
     let ways = each();
     let taken = |(index, case)| (index % ways == index / ways % ways).then_some(case);
