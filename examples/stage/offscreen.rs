@@ -1,6 +1,6 @@
 //! Renders pictures without a window. The render tests use this file too.
 
-use bevy::app::ScheduleRunnerPlugin;
+use bevy::app::{ScheduleRunnerPlugin, TerminalCtrlCHandlerPlugin};
 use bevy::asset::RenderAssetUsages;
 use bevy::camera::{RenderTarget, Viewport};
 use bevy::image::Image;
@@ -43,6 +43,9 @@ pub fn app(width: u32, height: u32) -> (App, Handle<Image>) {
             })
             // A picture requested in one update shows that update.
             .disable::<PipelinedRenderingPlugin>()
+            // It only asks an app to end, and whoever calls `update` himself would have to look. Without it, Ctrl-C ends the
+            // program at once, as it should.
+            .disable::<TerminalCtrlCHandlerPlugin>()
             .disable::<LogPlugin>()
             .disable::<WinitPlugin>(),
         ScheduleRunnerPlugin::default(),

@@ -107,3 +107,54 @@ fn a_missing_coil_would_be_noticed() {
         assert!(alike < ALIKE, "{scene}: {alike:.4}");
     }
 }
+
+/// Sends the signal of Ctrl-C once the first picture of a film is there.
+#[cfg(target_os = "linux")]
+#[test]
+fn ctrl_c_ends_a_film_and_keeps_the_pictures_that_are_done() {
+    use std::process::Command;
+    use std::time::{Duration, Instant};
+
+    let folder = std::env::temp_dir().join(format!("film_{}", std::process::id()));
+    let example = command("linear_spring");
+    // Of programs that a script starts in the background, the shell has the signal ignored; `env` undoes this.
+    let mut film = Command::new("env")
+        .arg("--default-signal=INT")
+        .arg(example.get_program())
+        .args(example.get_args())
+        .args(["--small", "--frames"])
+        .arg(&folder)
+        .current_dir(root())
+        .spawn()
+        .expect("the example runs");
+    let pictures = || {
+        let files = std::fs::read_dir(&folder).into_iter().flatten().flatten();
+        let names = files.map(|file| file.path());
+        let done = names.filter(|name| !name.to_string_lossy().ends_with(".part.png"));
+        done.collect::<Vec<_>>()
+    };
+    while pictures().is_empty() {
+        if let Some(status) = film.try_wait().expect("a process") {
+            assert!(status.success());
+            eprintln!("SKIPPED: no graphics adapter on this machine");
+            return;
+        }
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    let signal = Command::new("kill")
+        .args(["-INT", &film.id().to_string()])
+        .status();
+    assert!(signal.expect("a signal").success());
+    let sent = Instant::now();
+    while film.try_wait().expect("a process").is_none() {
+        assert!(sent.elapsed() < Duration::from_secs(5), "it goes on");
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    let done = pictures();
+    println!("{} pictures", done.len());
+    assert!(done.len() < 48);
+    for picture in &done {
+        image::open(picture).expect("a whole picture");
+    }
+    let _ = std::fs::remove_dir_all(&folder);
+}
