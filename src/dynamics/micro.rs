@@ -3,7 +3,7 @@
 use super::kick::Memo;
 use super::pair::stiffness_number;
 use super::poles::Poles;
-use super::thresholds::{RESOLVED, converges, is_watched};
+use super::thresholds::{RESOLVED, converges, is_special};
 
 /// Micro-steps of a lone element that [`super::lanes`] may solve.
 #[derive(Clone, Copy)]
@@ -34,7 +34,7 @@ impl Micro {
         };
         let (z, decay) = numbers(self.step);
         let finer = self.may_resolve && z > RESOLVED;
-        if finer || is_watched(decay, z) || self.extrapolates && !converges(z, decay) {
+        if finer || is_special(decay, z) || self.extrapolates && !converges(z, decay) {
             return None;
         }
         let poles = coarse.poles(z, decay / 2.0);

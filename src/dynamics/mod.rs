@@ -43,6 +43,7 @@ mod resolution;
 pub(crate) mod soft;
 pub(crate) mod step;
 mod strut;
+mod surplus;
 mod system;
 mod thresholds;
 pub(crate) mod tolerance;

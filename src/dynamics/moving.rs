@@ -4,6 +4,7 @@ use super::arc::HALVED;
 use super::kick::Memo;
 use super::pair::{Pair, Separation};
 use super::resolution::lone_steps;
+use super::surplus;
 use super::tolerance::{Least, Motion, VELOCITY_COUNTS};
 use bevy::math::DVec3;
 
@@ -45,8 +46,11 @@ impl Motion for Moving<'_> {
     }
 
     fn run(&mut self, time: f64, count: u32) {
+        let start = self.state;
         self.pair
             .microsteps(&mut self.state, time, count, self.memo);
+        let times = [time, time / f64::from(count)];
+        surplus::remove(self.pair, &mut self.state, &start, times, self.memo);
     }
 
     fn distance(&self, slot: usize) -> f64 {

@@ -6,21 +6,10 @@
 
 use super::arc::Along;
 use super::kick::Memo;
-use super::law::Law;
 use super::line;
-use super::nonlinear_pair::NonlinearPair;
 use super::poles::Poles;
-use super::thresholds::{STRONG, converges, is_damper_stiff, is_resolved, is_watched};
-use crate::functions::exp;
+use super::thresholds::{converges, is_damper_stiff, is_resolved};
 use bevy::math::DVec3;
-
-/// c h/m from which on energy-conserving steps would reverse the motion instead of stopping it. [`Pair::creep`] takes
-/// their place.
-const FIERCE: f64 = 40.0;
-
-/// Energy gain of a step, as a share of kinetic and stored energy, above which the step is repeated. Pinned by
-/// `hard_cases::a_damper_passed_at_speed_only_takes_energy`.
-const GAIN: f64 = 0.02;
 
 /// An element, and the properties of its ends that are constant over an engine step.
 #[derive(Clone, Copy, Debug)]
@@ -91,14 +80,6 @@ impl Pair {
         memo.poles(self.stiffness_number(step), damping / 2.0)
     }
 
-    /// Whether the energy of a step is checked.
-    fn is_watched(&self, step: f64) -> bool {
-        is_watched(
-            self.damping * self.inverse_mass * step,
-            self.stiffness_number(step),
-        )
-    }
-
     pub(super) fn microsteps(
         &self,
         state: &mut Separation,
@@ -109,7 +90,6 @@ impl Pair {
         let step = time / f64::from(count);
         let poles = self.poles(step, memo);
         let mut aimed = self.aim(state, step);
-        let before = self.is_watched(step).then(|| (self.energy(state), *state));
         self.map(state, aimed, &poles, step, |axial, offset, speed| {
             ((axial - offset) / poles.speed, 1.0 / speed)
         });
@@ -122,9 +102,6 @@ impl Pair {
         self.map(state, aimed, &poles, step, |axial, offset, speed| {
             (poles.speed * axial + offset, speed)
         });
-        if let Some((Some(energy), start)) = before {
-            self.keep_energy(state, energy, &start, time, memo);
-        }
     }
 
     /// Stores on which side of end A end B is (see `Element::aim`). Returns direction and length of the line; none if the
@@ -265,104 +242,13 @@ impl Pair {
             && (line.isotropic || turned < line.length * line.length)
     }
 
-    /// Energy about the common centre of mass, J: kinetic, stored, and potential in the external forces.
-    fn energy(&self, state: &Separation) -> Option<f64> {
-        let stretch = self.line(state)?.length - self.rest_length;
-        let motion = 0.5 * state.v.length_squared() - self.outside.dot(state.d);
-        Some(0.5 * self.stiffness * stretch * stretch + motion / self.inverse_mass)
-    }
-
-    /// Repeats a step that gained too much energy because it resolves neither the oscillation nor the decay. The repeated
-    /// step is that of [`super::nonlinear_pair`], which conserves energy at any stiffness. It does not suit very strong
-    /// damping. There the motion along the line decays so fast that its exact solution is used. A surplus that remains is
-    /// removed from the axial motion.
-    fn keep_energy(
-        &self,
-        state: &mut Separation,
-        before: f64,
-        start: &Separation,
-        time: f64,
-        memo: &mut Memo,
-    ) {
-        let surplus = |state: &Separation| self.energy(state).map_or(0.0, |after| after - before);
-        let scale = before.abs().max(self.scale(start));
-        if surplus(state) <= 1e-9 * before.abs() {
-            return;
-        }
-        let damped = self.damping * self.inverse_mass * time;
-        if surplus(state) > GAIN * scale {
-            let kept = if damped < FIERCE {
-                let law = Law::linear(self.stiffness, self.damping);
-                let mut again = NonlinearPair::new(self, &law, *start, memo);
-                again.keep_energy(time);
-                again.state
-            } else {
-                self.creep(start, time)
-            };
-            if surplus(&kept) < surplus(state) {
-                *state = Separation {
-                    stiff_damper: start.stiff_damper,
-                    ..kept
-                };
-            }
-        }
-        let surplus = surplus(state);
-        if damped >= STRONG
-            && surplus > 1e-9 * before.abs()
-            && let Some(line) = self.line(state)
-        {
-            let rate = line.axial;
-            let left = (rate * rate - 2.0 * self.inverse_mass * surplus)
-                .max(0.0)
-                .sqrt();
-            state.v += (left.copysign(rate) - rate) * line.direction;
-        }
-    }
-
-    /// Returns the state after `time` seconds: the exact overdamped solution along the initial line, with uniform motion
-    /// across it.
-    fn creep(&self, start: &Separation, time: f64) -> Separation {
-        let Some(line) = self.line(start) else {
-            return *start;
-        };
-        let decay = 0.5 * self.damping * self.inverse_mass;
-        let square = self.stiffness * self.inverse_mass;
-        let spread = (decay * decay - square).max(0.0).sqrt();
-        let fast = decay + spread;
-        let slow = square / fast;
-        let stretch = line.length - self.rest_length;
-        // Stretch to which it creeps, or without a spring the speed of creep.
-        let (rest, flow) = if square > 0.0 {
-            (line.pushed / square, 0.0)
-        } else {
-            (0.0, line.pushed / fast)
-        };
-        let (away, rate) = (stretch - rest, line.axial - flow);
-        let [slowly, hastily] = [slow, fast].map(|rate| exp(-rate * time));
-        let (even, odd) = if spread * time > 1e-4 {
-            (0.5 * (slowly + hastily), 0.5 * (slowly - hastily) / spread)
-        } else {
-            (slowly, time * slowly)
-        };
-        let left = even * away + odd * (rate + decay * away);
-        let axial = flow + even * rate - odd * (decay * rate + square * away);
-        let moved = rest + flow * time + left - stretch;
-        let d = start.d + moved * line.direction + time * line.lateral;
-        let direction = d.try_normalize().filter(|_| d.length() > self.rounding);
-        Separation {
-            d,
-            v: axial * line.direction + line.lateral,
-            direction: direction.or(start.direction),
-            stiff_damper: start.stiff_damper,
-        }
-    }
-
-    /// Kinetic and stored energy, J.
-    fn scale(&self, state: &Separation) -> f64 {
-        let stored = self.line(state).map_or(0.0, |line| {
-            0.5 * self.stiffness * (line.length - self.rest_length).powi(2)
-        });
-        stored + 0.5 * state.v.length_squared() / self.inverse_mass
+    /// Kinetic and stored energy about the common centre of mass, J, and both together with the potential in the external
+    /// forces.
+    pub(super) fn energies(&self, state: &Separation) -> [f64; 2] {
+        let stretch = state.d.length() - self.rest_length;
+        let scale = 0.5
+            * (self.stiffness * stretch * stretch + state.v.length_squared() / self.inverse_mass);
+        [scale, scale - self.outside.dot(state.d) / self.inverse_mass]
     }
 }
 

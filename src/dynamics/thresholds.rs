@@ -10,7 +10,7 @@ const EXTRAPOLATION_LIMIT: f64 = 1.5;
 /// `messages::what_cannot_be_followed_is_told_once`.
 pub(super) const RESOLVED: f64 = 4.0;
 
-/// c h/m from which a damper counts as strong. The energy of a lone element's step is then checked. A lone force law is not
+/// c h/m from which a damper counts as strong. A lone element's step may then gain no energy at all. A lone force law is not
 /// stepped by the kick. In a network, the steeper of a law's slope and secant counts. A spring of zero rest length has an axis.
 /// Pinned by `hard_cases::a_damper_passed_at_speed_only_takes_energy`.
 pub(super) const STRONG: f64 = 0.5;
@@ -22,8 +22,9 @@ pub(super) fn is_damper_stiff(z: f64, decay: f64) -> bool {
     z < RESOLVED && decay > STRONG
 }
 
-/// Whether the energy of a step is checked. `damping` is c h/m, `stiffness_number` is (ω h)².
-pub(super) fn is_watched(damping: f64, stiffness_number: f64) -> bool {
+/// Whether a lone element needs more than the plain kick: its oscillation is not resolved, or its damper is strong. `damping` is
+/// c h/m, `stiffness_number` is (ω h)².
+pub(super) fn is_special(damping: f64, stiffness_number: f64) -> bool {
     damping >= STRONG || !is_resolved(stiffness_number)
 }
 

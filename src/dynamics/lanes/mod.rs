@@ -8,9 +8,10 @@ mod vectors;
 use super::delivery::Schedule;
 use super::points::FreePoint;
 use super::poles::Poles;
+use super::surplus::GAIN;
 use bevy::math::{DVec3, Vec3};
 use pulp::{Simd, WithSimd};
-use run::Run;
+use run::{Motion, Run};
 pub(crate) use vectors::LANES;
 use vectors::{Each, EachVector, Four, Vectors, get, put, rounding};
 
@@ -128,7 +129,7 @@ impl Lanes {
     }
 
     /// Returns the result for a lane. None for a special case that must be solved elsewhere: the ends met on the way, a
-    /// body may exceed the engine's cap on speeds, or the line turns too far for extrapolation.
+    /// body may exceed the engine's cap on speeds, the line turns too far for extrapolation, or the step gained energy.
     #[inline(always)]
     pub(crate) fn way(&self, lane: usize) -> Option<Way> {
         let Outcome {
@@ -164,56 +165,56 @@ impl Lanes {
     #[inline(always)]
     pub(crate) fn run<S: Simd>(&mut self, simd: S, stride: &Stride) {
         let time = stride.schedule.time;
-        let all = |number| Four::all(simd, number);
-        let [a, b] = [
-            Loaded::of(simd, &self.ends[0]),
-            Loaded::of(simd, &self.ends[1]),
-        ];
+        let a = Loaded::of(simd, &self.ends[0]);
+        let b = Loaded::of(simd, &self.ends[1]);
         let d = b.position.minus(a.position);
         let v = b.velocity.minus(a.velocity);
         let outside = b.acceleration.minus(a.acceleration);
         let inverse_mass = a.inverse_mass + b.inverse_mass;
-        let mass = all(1.0) / inverse_mass;
+        let mass = Four::all(simd, 1.0) / inverse_mass;
         let stiffness = Four::load(simd, &self.stiffness);
         let rest_length = Four::load(simd, &self.rest_length);
         let store = Store {
-            half: all(0.5),
+            half: Four::all(simd, 0.5),
             stiffness,
             rest_length,
             outside,
             mass,
         };
         let length = d.length();
-        let square = stiffness * inverse_mass;
-        let rounding = rounding(simd, a.position, b.position);
-        let run = |count: u32, poles: &[Each; 4]| Run {
+        let motion = Motion {
             simd,
-            step: time / f64::from(count),
-            count,
+            time,
             outside,
             rest_length,
-            square,
-            poles: poles.each_ref().map(|pole| Four::load(simd, pole)),
-            rounding,
+            square: stiffness * inverse_mass,
+            rounding: rounding(simd, a.position, b.position),
         };
         let [poles, half_poles] = &self.poles;
-        let mut end = run(stride.count, poles).go(d, v, length);
+        let mut end = Run::new(motion, stride.count, poles).go(d, v, length);
+        let before = store.energy(d, v, length);
+        let scale = store.scale(v, length).max(before.abs());
+        let most = before + Four::all(simd, GAIN) * scale;
+        let mut kept = store.energy(end.d, end.v, end.length).at_most(most);
         if stride.extrapolates {
-            let fine = run(2 * stride.count, half_poles);
+            let fine = Run::new(motion, 2 * stride.count, half_poles);
             let turns = fine.turns_far(d, v, length);
-            end = fine.go(d, v, length).extrapolated(simd, &end, turns);
+            let fine = fine.go(d, v, length);
+            kept = kept & store.energy(fine.d, fine.v, fine.length).at_most(most);
+            end = fine.extrapolated(simd, &end, turns);
         }
-        let heat = store.energy(d, v, length) - store.energy(end.d, end.v, end.length);
+        let heat = before - store.energy(end.d, end.v, end.length);
         // Displacement and velocity that the elements add to the free motion of the separations.
-        let all_time = all(time);
-        let drifted = v.plus(outside.times(all(0.5 * time)));
+        let all_time = Four::all(simd, time);
+        let drifted = v.plus(outside.times(Four::all(simd, 0.5 * time)));
         let moved = end.d.minus(d).minus(drifted.times(all_time));
         let sped = end.v.minus(v).minus(outside.times(all_time));
         let reached = &mut self.reached;
-        let mut plain = !end.met.bits();
+        let mut plain = kept.bits() & !end.met.bits();
         let [first, second] = &mut reached.given;
-        plain &= a.push(simd, [moved, sped], all(-1.0), mass, stride, first);
-        plain &= b.push(simd, [moved, sped], all(1.0), mass, stride, second);
+        let one = Four::all(simd, 1.0);
+        plain &= a.push(simd, [moved, sped], -one, mass, stride, first);
+        plain &= b.push(simd, [moved, sped], one, mass, stride, second);
         reached.direction = end.side.store();
         reached.length = end.length.store();
         reached.heat = heat.store();
@@ -243,9 +244,19 @@ impl<S: Simd> Store<S> {
     /// Energy about the common centres of mass, J: kinetic, stored, and potential in the external forces.
     #[inline(always)]
     fn energy(&self, d: Vectors<S>, v: Vectors<S>, length: Four<S>) -> Four<S> {
+        self.stored(length) + (self.half * v.dot(v) - self.outside.dot(d)) * self.mass
+    }
+
+    /// Kinetic and stored energy, J; see `Pair::energies`.
+    #[inline(always)]
+    fn scale(&self, v: Vectors<S>, length: Four<S>) -> Four<S> {
+        self.stored(length) + self.half * v.dot(v) * self.mass
+    }
+
+    #[inline(always)]
+    fn stored(&self, length: Four<S>) -> Four<S> {
         let stretch = length - self.rest_length;
-        let stored = self.half * self.stiffness * stretch * stretch;
-        stored + (self.half * v.dot(v) - self.outside.dot(d)) * self.mass
+        self.half * self.stiffness * stretch * stretch
     }
 }
 
@@ -289,30 +300,30 @@ impl<S: Simd> Loaded<S> {
         let Stride {
             schedule, fastest, ..
         } = stride;
-        let all = |number| Four::all(simd, number);
-        let time = all(schedule.time);
+        let time = Four::all(simd, schedule.time);
+        let per_time = Four::all(simd, schedule.per_time);
         let pulled = self.acceleration.times(time);
-        let straight = self.velocity.plus(pulled.times(all(0.5)));
+        let straight = self.velocity.plus(pulled.times(Four::all(simd, 0.5)));
         let moved = straight.times(time).plus(moved);
         let reached = self.velocity.plus(pulled).plus(sped);
         let displacement = moved.minus(self.velocity.times(time));
         let change = reached.minus(self.velocity);
         let (reach, per_rest) = schedule.spread();
-        let jump = displacement.minus(change.times(all(reach)));
-        let jump = jump.times(all(per_rest));
-        let rate = change.minus(jump).times(all(schedule.per_time));
+        let jump = displacement.minus(change.times(Four::all(simd, reach)));
+        let jump = jump.times(Four::all(simd, per_rest));
+        let rate = change.minus(jump).times(per_time);
         let begun = self.velocity.plus(jump);
         // If the speed at the start and the gain are at most a third of the cap each, the cap is never reached. Other lanes
         // are special cases and checked exactly elsewhere, and so are lanes with NaN.
-        let third = all(fastest * fastest / 9.0);
+        let third = Four::all(simd, fastest * fastest / 9.0);
         let gain = rate.times(time);
         let slow = begun.dot(begun).at_most(third) & gain.dot(gain).at_most(third);
         // The cap does not matter for points that the elements do not move.
-        let still = self.inverse_mass.at_most(all(0.0));
+        let still = self.inverse_mass.at_most(Four::all(simd, 0.0));
         let given = begun.rounded();
         // The engine stores velocities in single precision. The force corrects the rounding error.
-        let rate = rate.plus(begun.minus(given).times(all(schedule.per_time)));
-        let mass = all(1.0) / self.inverse_mass;
+        let rate = rate.plus(begun.minus(given).times(per_time));
+        let mass = Four::all(simd, 1.0) / self.inverse_mass;
         let force = rate.minus(self.acceleration).times(mass);
         pushes.velocity = given.store();
         pushes.force = force.store();

@@ -1,25 +1,33 @@
 //! The micro-steps of [`crate::dynamics::pair`] for four plain elements at once.
 
-use super::vectors::{Four, Mask, Vectors};
+use super::vectors::{Each, Four, Mask, Vectors};
 use crate::dynamics::arc::{HALVED, MOST_PULL, RESOLVED_TURN, ROUNDS, TILT};
 use pulp::Simd;
 
-/// Constants of the four elements and their micro-steps.
-pub(super) struct Run<S: Simd> {
+/// Constants of the four elements.
+#[derive(Clone, Copy)]
+pub(super) struct Motion<S: Simd> {
     pub simd: S,
-    /// Duration of a micro-step, s.
-    pub step: f64,
-    /// Number of micro-steps.
-    pub count: u32,
+    /// Duration of the whole step, s.
+    pub time: f64,
     /// Acceleration of end B minus that of end A from everything but the element, m/s².
     pub outside: Vectors<S>,
     pub rest_length: Four<S>,
     /// ω², 1/s².
     pub square: Four<S>,
-    /// Coefficients [`restoring`, `loss`, `speed`, `skew`](crate::dynamics::poles::Poles).
-    pub poles: [Four<S>; 4],
     /// Separation up to which the ends count as coincident, because it may be rounding, m.
     pub rounding: Four<S>,
+}
+
+/// Their micro-steps.
+pub(super) struct Run<S: Simd> {
+    of: Motion<S>,
+    /// Duration of a micro-step, s.
+    step: f64,
+    /// Number of micro-steps.
+    count: u32,
+    /// Coefficients [`restoring`, `loss`, `speed`, `skew`](crate::dynamics::poles::Poles).
+    poles: [Four<S>; 4],
 }
 
 /// State of the four separations after the step.
@@ -60,10 +68,55 @@ struct Lines<S: Simd> {
     pushed: Four<S>,
 }
 
+/// The middle of a kick; see `arc::Middle`.
+struct Middle<S: Simd> {
+    step: Four<S>,
+    /// 1/L, 1/m.
+    inverse: Four<S>,
+    /// Square of the velocity across the line, m²/s², and the coefficients of its growth.
+    lateral_square: Four<S>,
+    gained: Four<S>,
+    across_square: Four<S>,
+    braked: Four<S>,
+    /// [`MOST_PULL`].
+    most: Four<S>,
+    /// The share of the corrections that counts.
+    share: Four<S>,
+}
+
+impl<S: Simd> Middle<S> {
+    #[inline(always)]
+    fn lateral_square(&self, time: Four<S>) -> Four<S> {
+        self.lateral_square + time * (self.gained + time * self.across_square)
+    }
+
+    #[inline(always)]
+    fn number(&self, pull: Four<S>) -> Four<S> {
+        let number = self.step * self.step * (pull + self.braked) * self.inverse;
+        self.share * number.max(-self.most).min(self.most)
+    }
+}
+
 impl<S: Simd> Run<S> {
     #[inline(always)]
+    pub(super) fn new(of: Motion<S>, count: u32, poles: &[Each; 4]) -> Self {
+        let [restoring, loss, speed, skew] = poles;
+        Self {
+            of,
+            step: of.time / f64::from(count),
+            count,
+            poles: [
+                Four::load(of.simd, restoring),
+                Four::load(of.simd, loss),
+                Four::load(of.simd, speed),
+                Four::load(of.simd, skew),
+            ],
+        }
+    }
+
+    #[inline(always)]
     fn all(&self, number: f64) -> Four<S> {
-        Four::all(self.simd, number)
+        Four::all(self.of.simd, number)
     }
 
     #[inline(always)]
@@ -75,7 +128,7 @@ impl<S: Simd> Run<S> {
             axial,
             lateral,
             lateral_square: lateral.dot(lateral),
-            pushed: self.outside.dot(direction),
+            pushed: self.of.outside.dot(direction),
         }
     }
 
@@ -105,10 +158,11 @@ impl<S: Simd> Run<S> {
     /// See `arc::tilt`.
     #[inline(always)]
     fn tilt(&self, pull: Four<S>) -> Four<S> {
-        let terms = TILT.iter().rev();
-        terms.fold(self.all(0.0), |sum, coefficient| {
-            (sum + self.all(*coefficient)) * pull
-        })
+        let mut sum = self.all(0.0);
+        for coefficient in TILT.iter().rev() {
+            sum = (sum + self.all(*coefficient)) * pull;
+        }
+        sum
     }
 
     /// See `arc::fade`.
@@ -136,34 +190,37 @@ impl<S: Simd> Run<S> {
     /// velocity.
     #[inline(always)]
     fn kick(&self, v: Vectors<S>, d: Vectors<S>, length: Four<S>) -> [Vectors<S>; 2] {
-        let all = |number| self.all(number);
-        let step = all(self.step);
-        let (half, one, two) = (all(0.5) * step, all(1.0), all(2.0));
+        let (step, one, two) = (self.all(self.step), self.all(1.0), self.all(2.0));
+        let half = self.all(0.5) * step;
         let [restoring, loss, ..] = self.poles;
         let inverse = one / length;
         let direction = d.times(inverse);
         let lines = self.along(v, direction, length);
         let braked = loss / step * self.backward_rate(&lines);
-        let across = self.outside.minus(direction.times(lines.pushed));
+        let across = self.of.outside.minus(direction.times(lines.pushed));
         let per_length = step * inverse;
         let per_length = per_length * per_length;
 
-        let gained = two * lines.lateral.dot(across);
-        let across_square = across.dot(across);
-        let lateral_square =
-            |time: Four<S>| lines.lateral_square + time * (gained + time * across_square);
-        let pull = self.square * (length - self.rest_length);
-        let share = self.fade(per_length * lateral_square(half));
-        let pull_number = |pull: Four<S>| {
-            let number = step * step * (pull + braked) * inverse;
-            share * number.max(all(-MOST_PULL)).min(all(MOST_PULL))
+        let mut middle = Middle {
+            step,
+            inverse,
+            lateral_square: lines.lateral_square,
+            gained: two * lines.lateral.dot(across),
+            across_square: across.dot(across),
+            braked,
+            most: self.all(MOST_PULL),
+            share: one,
         };
+        let pull = self.of.square * (length - self.of.rest_length);
+        middle.share = self.fade(per_length * middle.lateral_square(half));
+        let share = middle.share;
 
         let mut time = half;
         for _ in 0..ROUNDS {
-            let turned = (per_length * lateral_square(time)).min(one);
-            let drifted = all(0.125) * turned * length;
-            time = half - half * pull_number(pull - self.square * drifted) * all(1.0 / 6.0);
+            let turned = (per_length * middle.lateral_square(time)).min(one);
+            let drifted = self.all(0.125) * turned * length;
+            let number = middle.number(pull - self.of.square * drifted);
+            time = half - half * number * self.all(1.0 / 6.0);
         }
         let lateral = lines.lateral.plus(across.times(time));
         let lateral_square = lateral.dot(lateral);
@@ -171,18 +228,19 @@ impl<S: Simd> Run<S> {
         let turned = per_length * lateral_square;
         let within = turned.min(one);
         let doubled = one + (one - within).sqrt();
-        let cosine = (all(0.5) * doubled).sqrt();
+        let cosine = (self.all(0.5) * doubled).sqrt();
         let turning = two * lateral_square * inverse / (doubled * turned.max(one));
         let lessened = one - share * (one - cosine);
-        let pull = lessened * (self.square * (cosine * length - self.rest_length));
-        let damped = all(0.5)
+        let pull = lessened * (self.of.square * (cosine * length - self.of.rest_length));
+        let damped = self.all(0.5)
             * share
-            * (loss * step * inverse * lateral.dot(self.outside) - (one - loss) * within * braked);
+            * (loss * step * inverse * lateral.dot(self.of.outside)
+                - (one - loss) * within * braked);
         let total = damped - braked - restoring * (pull - turning) - turning;
         let pushed_for = half * restoring;
         let axial = lines.axial + pushed_for * lines.pushed + step * total;
 
-        let tangent = self.tilt(pull_number(pull)) * step * inverse;
+        let tangent = self.tilt(middle.number(pull)) * step * inverse;
         let tilted = tangent * tangent * lateral_square;
         let scale = one / (one + tilted);
         let cos = (one - tilted) * scale;
@@ -191,18 +249,18 @@ impl<S: Simd> Run<S> {
         let lateral = lateral
             .times(cos)
             .minus(direction.times(sin * lateral_square));
-        let axial = axial + (pushed_for - time) * self.outside.dot(rotated);
+        let axial = axial + (pushed_for - time) * self.of.outside.dot(rotated);
         let velocity = rotated
             .times(axial)
             .plus(lateral)
-            .plus(self.outside.times(time));
+            .plus(self.of.outside.times(time));
         [rotated.times(length), velocity]
     }
 
     /// ω²·stretch − a_out at the lengths; see `kick::residual_acceleration`.
     #[inline(always)]
     fn residual_acceleration(&self, length: Four<S>, outside: Four<S>) -> Four<S> {
-        self.square * (length - self.rest_length) - outside
+        self.of.square * (length - self.of.rest_length) - outside
     }
 
     /// Takes all micro-steps. It is one function because it follows the code of `Pair::microsteps` line by line. A test
@@ -217,7 +275,7 @@ impl<S: Simd> Run<S> {
         let run = self;
         let step = self.all(run.step);
         let half = self.all(0.5 * run.step);
-        let rounding = run.rounding;
+        let rounding = run.of.rounding;
         let [.., speed, skew] = run.poles;
 
         // Map to the stepped velocities.
