@@ -101,7 +101,8 @@ pub fn floor() -> impl Bundle {
 pub fn dress(app: &mut App, eye: Vec3, target: Vec3, image: Option<RenderTarget>) {
     super::skin::add(app);
     app.insert_resource(ClearColor(Color::srgb(0.62, 0.67, 0.72)))
-        .add_systems(PreUpdate, (show_shapes, super::rope::show))
+        // After the ticks, one of which may have begun the scene again: its bodies appear with its springs.
+        .add_systems(Update, (show_shapes, super::rope::show))
         .add_systems(Startup, move |mut commands: Commands| {
             let mut camera = commands.spawn((
                 Stays,
