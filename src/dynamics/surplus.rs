@@ -23,10 +23,10 @@ const ROUNDING: f64 = 1e-9;
 /// their place. Pinned by `tests::ends_that_fly_past_each_other_win_nothing`.
 const FIERCE: f64 = 40.0;
 
-/// Repeats a step of `time` seconds, in micro-steps of `step`, that began with `start` and ended with `state`, if it gained too much energy. The repeated step
-/// is that of [`super::nonlinear_pair`], which conserves energy at any stiffness. It does not suit very strong damping. There the
-/// motion along the line decays so fast that its exact solution is used. A surplus that a strong damper leaves is removed from the
-/// axial motion.
+/// Repeats a step of `time` seconds, in micro-steps of `step`, that began with `start` and ended with `state`, if it gained too much
+/// energy. The repeated step is that of [`super::nonlinear_pair`], which conserves energy at any stiffness. It does not suit very
+/// strong damping. There the motion along the line decays so fast that its exact solution is used. A surplus that a strong damper
+/// leaves is removed from the axial motion.
 pub(super) fn remove(
     pair: &Pair,
     state: &mut Separation,
