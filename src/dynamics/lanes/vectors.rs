@@ -1,7 +1,7 @@
 //! Four numbers or four vectors side by side, for the processor's vector instructions.
 //!
 //! No function here or in the rest of the folder passes them to a closure, for a closure cannot be forced inline: a call would pass
-//! vectors through memory, and even single additions would be calls. With closures, a micro-step took several times as long.
+//! vectors through memory, and even single additions would be calls. With closures, the lanes took half as long again.
 
 use crate::dynamics::line::{AT_ORIGIN, COINCIDENT};
 use bevy::math::DVec3;
