@@ -349,6 +349,14 @@ impl Law {
         self.spring.is_bent() || ends.into_iter().any(|x| x.is_finite())
     }
 
+    /// Whether the force is linear between its kinks.
+    pub(crate) fn is_linear_in_parts(&self) -> bool {
+        let constant = |[_, square, cubic]: &[f64; 3]| *square == 0.0 && *cubic == 0.0;
+        let stops = self.travel.iter().any(|x| x.is_finite());
+        matches!(&self.spring, SpringForce::Polynomial { pull, push } if constant(pull) && constant(push))
+            && !(stops && self.stop.progression != 0.0)
+    }
+
     /// Bit mask of the smooth part of the law that contains a length. Between two lengths with the same mask there is no kink.
     pub(crate) fn part(&self, length: f64, rest_length: f64) -> u8 {
         let x = length - rest_length;

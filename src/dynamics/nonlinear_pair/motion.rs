@@ -42,7 +42,9 @@ impl Motion for NonlinearPair<'_> {
     }
 
     fn extrapolate(&mut self, slot: usize) {
-        let times = if self.kicked { HALVED } else { 4.0 };
+        // Only for a constant stiffness are kicks exact along the line.
+        let exact = self.kicked && self.law.is_linear_in_parts();
+        let times = if exact { HALVED } else { 4.0 };
         self.state.extrapolate(&self.saved[slot], times);
     }
 
