@@ -92,10 +92,8 @@ fn tolerance_prices(scenes: &[(&Scene, Vec<Row>)]) -> String {
                     && !r.strayed.diverged
                     && r.strayed.error <= row.strayed.error
             });
-            let best = fixed.map(|r| r.times.median).min_by(|a, b| a.total_cmp(b));
-            let price = best.map_or("–".into(), |best| {
-                format!("{:.2}", row.times.median / best)
-            });
+            let best = fixed.map(|r| r.times.mean).min_by(|a, b| a.total_cmp(b));
+            let price = best.map_or("–".into(), |best| format!("{:.2}", row.times.mean / best));
             let _ = if row.strayed.diverged {
                 write!(text, " diverges |")
             } else {

@@ -1,9 +1,10 @@
 //! Measures the time per step so that methods can be compared.
 //!
 //! All settings of a race run in turns, so that other load on the machine affects all of them alike. Each turn is a
-//! batch of whole updates of the app. The result is the median over the turns, with quartiles. A setting whose median
-//! is well above its shortest turn was disturbed and gets more turns. A turn in which the thread had to wait for a core
-//! is repeated, where the system reports such waits.
+//! batch of whole updates of the app, and the turns are spread over the scene, because a step may take longer where the motion
+//! is hard. The result is the mean over the turns, with quartiles. A setting whose mean is well above its shortest turn gets more
+//! turns: it was disturbed, or its steps differ. A turn in which the thread had to wait for a core is repeated, where the system
+//! reports such waits.
 
 use crate::method::Setting;
 use crate::problem::Problem;
@@ -20,14 +21,14 @@ const LONGEST: f64 = 10.0;
 /// Time per step, s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Times {
-    pub median: f64,
+    pub mean: f64,
     /// First quartile.
     pub low: f64,
     /// Third quartile.
     pub high: f64,
 }
 
-/// Ratio of the median to the shortest turn above which a setting gets more turns.
+/// Ratio of the mean to the shortest turn above which a setting gets more turns.
 const DISTURBED: f64 = 1.2;
 /// Most turns of a disturbed setting, as a multiple of the requested number.
 const MORE: usize = 4;
@@ -42,8 +43,6 @@ pub struct Track<'a> {
     pub make: &'a dyn Fn(Setting) -> Rig,
     /// Number of updates before timing starts.
     pub warm_up: u32,
-    /// Fewest updates from one turn to the next, so that even turns of one update each spread over the whole scene.
-    pub apart: u32,
     /// Simulated time after which the scene restarts, s.
     pub longest: f64,
 }
@@ -59,7 +58,10 @@ impl Track<'_> {
 struct Runner {
     rig: Rig,
     setting: Setting,
+    /// Number of updates in a turn, and without timing between two turns.
     batch: u32,
+    idle: u32,
+    /// Number of updates since the scene started.
     ticks: u32,
     turns: Vec<f64>,
 }
@@ -69,7 +71,6 @@ pub fn race(problem: &Problem, settings: &[Setting], turns: u32) -> Vec<Times> {
     let track = Track {
         make: &|setting| Rig::new(problem, setting),
         warm_up: WARM_UP,
-        apart: 0,
         longest: problem.seconds.clamp(3.0, LONGEST),
     };
     race_on(&track, settings, turns)
@@ -86,10 +87,12 @@ pub fn race_on(track: &Track, settings: &[Setting], turns: u32) -> Vec<Times> {
             (0..3).for_each(|_| rig.tick());
             let once = start.elapsed().as_secs_f64() / 3.0;
             let most = (longest / setting.dt()) as u32 - track.warm_up;
+            let batch = ((TURN / once).ceil() as u32).clamp(1, most);
             Runner {
                 rig,
                 setting: *setting,
-                batch: ((TURN / once).ceil() as u32).clamp(1, most),
+                batch,
+                idle: (most / turns).saturating_sub(batch),
                 ticks: track.warm_up + 3,
                 turns: Vec::new(),
             }
@@ -104,20 +107,16 @@ pub fn race_on(track: &Track, settings: &[Setting], turns: u32) -> Vec<Times> {
             if !needed(runner) {
                 continue;
             }
-            let idle = track.apart.saturating_sub(runner.batch);
-            if f64::from(runner.ticks + runner.batch + idle) * runner.setting.dt() > longest {
+            if f64::from(runner.ticks + runner.batch) * runner.setting.dt() > longest {
                 runner.rig = track.warm(runner.setting);
                 runner.ticks = track.warm_up;
             }
-            let Runner {
-                rig, batch, ticks, ..
-            } = runner;
-            let each = turn_of(*batch, || {
-                rig.tick();
-                *ticks += 1;
-            });
-            (0..idle).for_each(|_| runner.rig.tick());
-            runner.ticks += idle;
+            let mut tick = || {
+                runner.rig.tick();
+                runner.ticks += 1;
+            };
+            let each = turn_of(runner.batch, &mut tick);
+            (0..runner.idle).for_each(|_| tick());
             runner.turns.push(each);
         }
     }
@@ -127,7 +126,7 @@ pub fn race_on(track: &Track, settings: &[Setting], turns: u32) -> Vec<Times> {
 impl Runner {
     fn is_disturbed(&self) -> bool {
         let shortest = self.turns.iter().copied().fold(f64::INFINITY, f64::min);
-        Times::of(self.turns.clone()).median > DISTURBED * shortest
+        Times::of(self.turns.clone()).mean > DISTURBED * shortest
     }
 }
 
@@ -162,7 +161,7 @@ fn waiting() -> Option<f64> {
 }
 
 impl Times {
-    /// Median and quartiles of at least one turn.
+    /// Mean and quartiles of at least one turn.
     pub fn of(mut turns: Vec<f64>) -> Self {
         turns.sort_by(f64::total_cmp);
         let at = |share: f64| {
@@ -173,7 +172,7 @@ impl Times {
                 .unwrap_or(f64::NAN)
         };
         Self {
-            median: at(0.5),
+            mean: turns.iter().sum::<f64>() / turns.len() as f64,
             low: at(0.25),
             high: at(0.75),
         }
@@ -185,8 +184,8 @@ mod tests {
     use super::Times;
 
     #[test]
-    fn median_and_quartiles() {
-        let times = Times::of(vec![5.0, 1.0, 3.0, 2.0, 4.0]);
-        assert_eq!([times.low, times.median, times.high], [2.0, 3.0, 4.0]);
+    fn mean_and_quartiles() {
+        let times = Times::of(vec![10.0, 1.0, 3.0, 2.0, 4.0]);
+        assert_eq!([times.low, times.mean, times.high], [2.0, 4.0, 4.0]);
     }
 }

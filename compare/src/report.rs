@@ -26,8 +26,8 @@ pub fn opening() -> String {
          DOP853 or Radau (1e-10 to 1e-12), over the whole time that the scene's description names. A setting has \
          diverged if its error is more than ten times the size of the motion, or not a number. Such settings are \
          named, ours too, and no comparison counts them as beaten.\n\
-         - **Time per step** is one whole `app.update()`, everything that Bevy and the engine do included: median \
-         of 15 turns or more, all methods in turns, after a warm-up, on bodies that may not sleep. *Computing \
+         - **Time per step** is one whole `app.update()`, everything that Bevy and the engine do included: mean \
+         of 15 turns or more, spread over the scene, all methods in turns, after a warm-up, on bodies that may not sleep. *Computing \
          time* is that times the steps in 1/60 s of the scene, so that different time steps can be compared.\n\
          - **Machine.** {}. Compare numbers within this file, not with another machine's.\n\n",
         machine::describe()
@@ -86,7 +86,7 @@ fn ratios(ours: Option<Row>, joint: Option<Row>) -> [String; 2] {
         (false, true) => "diverges".into(),
         (false, false) => digits(joint.strayed.error / ours.strayed.error),
     };
-    let longer = format!("{:.2}", ours.times.median / joint.times.median);
+    let longer = format!("{:.2}", ours.times.mean / joint.times.mean);
     [less, longer]
 }
 

@@ -51,7 +51,7 @@ impl Study for Scale {
         counts(quick).len()
     }
 
-    /// Measures all methods in turns and keeps, for each method and number of springs, the process with the smallest median.
+    /// Measures all methods in turns and keeps, for each method and number of springs, the process with the smallest mean.
     fn measure(&self, methods: &[Method], quick: bool) -> Result<Vec<Load>, Box<dyn Error>> {
         let mut loads: Vec<Load> = Vec::new();
         for springs in counts(quick) {
@@ -60,7 +60,7 @@ impl Study for Scale {
                     let load = ask(*method, *springs)?;
                     let same = |l: &&mut Load| l.method == *method && l.springs == *springs;
                     match loads.iter_mut().find(same) {
-                        Some(old) if load.times.median < old.times.median => *old = load,
+                        Some(old) if load.times.mean < old.times.mean => *old = load,
                         Some(_) => {}
                         None => loads.push(load),
                     }
@@ -83,16 +83,16 @@ impl Study for Scale {
         let memory = l
             .memory
             .map_or(String::new(), |b| format!("{:.1}", b / MIB));
-        let [median, low, high] = [l.times.median, l.times.low, l.times.high].map(us);
+        let [mean, low, high] = [l.times.mean, l.times.low, l.times.high].map(us);
         format!(
-            "{},{},{median},{low},{high},{memory}",
+            "{},{},{mean},{low},{high},{memory}",
             l.method.name(),
             l.springs
         )
     }
 
     fn parse(cells: &[&str]) -> Option<Load> {
-        let [method, springs, median, low, high, memory] = cells else {
+        let [method, springs, mean, low, high, memory] = cells else {
             return None;
         };
         let us = |cell: &str| number(cell).map(|us| 1e-6 * us);
@@ -100,7 +100,7 @@ impl Study for Scale {
             method: Method::named(method)?,
             springs: springs.parse().ok()?,
             times: Times {
-                median: us(median)?,
+                mean: us(mean)?,
                 low: us(low)?,
                 high: us(high)?,
             },
@@ -130,7 +130,7 @@ pub fn tell(method: Method, springs: u32) {
     let memory = field("/proc/self/status", "VmHWM", ':')
         .and_then(|text| text.split_whitespace().next()?.parse::<f64>().ok())
         .map_or("-".into(), |kib| (1024.0 * kib).to_string());
-    println!("{} {} {} {memory}", times.median, times.low, times.high);
+    println!("{} {} {} {memory}", times.mean, times.low, times.high);
 }
 
 /// Runs updates of a number of body pairs, some of which have a bevy_coilover spring. For counting instructions.
@@ -148,14 +148,14 @@ fn ask(method: Method, springs: u32) -> Result<Load, Box<dyn Error>> {
         .output()?;
     let text = String::from_utf8(output.stdout)?;
     let words: Vec<&str> = text.split_whitespace().collect();
-    let [median, low, high, memory] = words.as_slice() else {
+    let [mean, low, high, memory] = words.as_slice() else {
         return Err(format!("{} springs of {} tell nothing", springs, method.name()).into());
     };
     Ok(Load {
         method,
         springs,
         times: Times {
-            median: median.parse()?,
+            mean: mean.parse()?,
             low: low.parse()?,
             high: high.parse()?,
         },
@@ -193,7 +193,7 @@ fn draw(path: &Path, loads: &[Load]) -> Drawn {
     let sheet = SVGBackend::new(path, (700, 520)).into_drawing_area();
     sheet.fill(&WHITE)?;
     let xs = decades(loads.iter().map(|l| f64::from(l.springs)), false);
-    let ys = decades(loads.iter().map(|l| 1e6 * l.times.median), false);
+    let ys = decades(loads.iter().map(|l| 1e6 * l.times.mean), false);
     let mut chart = ChartBuilder::on(&sheet)
         .caption("Isolated springs between two bodies each", font(19))
         .margin(12)
@@ -207,7 +207,7 @@ fn draw(path: &Path, loads: &[Load]) -> Drawn {
         let of: Vec<(f64, f64)> = loads
             .iter()
             .filter(|l| l.method == method)
-            .map(|l| (f64::from(l.springs), 1e6 * l.times.median))
+            .map(|l| (f64::from(l.springs), 1e6 * l.times.mean))
             .collect();
         if of.is_empty() {
             continue;
@@ -243,10 +243,10 @@ fn section(loads: &[Load]) -> String {
             "| {} | {} | {} µs | {}–{} | {} µs | {} |",
             l.method.title(),
             l.springs,
-            digits(1e6 * l.times.median),
+            digits(1e6 * l.times.mean),
             digits(1e6 * l.times.low),
             digits(1e6 * l.times.high),
-            digits(1e6 * l.times.median / f64::from(l.springs)),
+            digits(1e6 * l.times.mean / f64::from(l.springs)),
             l.memory
                 .map_or("–".into(), |b| format!("{:.0} MiB", b / MIB)),
         );
@@ -267,7 +267,7 @@ fn ratios(loads: &[Load]) -> String {
         let ratios: Vec<String> = counts(false)
             .iter()
             .filter_map(|n| Some((n, of(Method::Ours, *n)?, of(other, *n)?)))
-            .map(|(n, ours, peer)| format!("{:.2} at {n}", ours.times.median / peer.times.median))
+            .map(|(n, ours, peer)| format!("{:.2} at {n}", ours.times.mean / peer.times.mean))
             .collect();
         if !ratios.is_empty() {
             let (title, ratios) = (other.title(), ratios.join(", "));

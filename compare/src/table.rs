@@ -57,7 +57,7 @@ impl Table {
 impl Row {
     /// Computing time per simulated second, s.
     pub fn work(&self) -> f64 {
-        self.times.median * f64::from(self.setting.rate)
+        self.times.mean * f64::from(self.setting.rate)
     }
 
     fn line(&self) -> String {
@@ -77,7 +77,7 @@ impl Row {
             optional(energy),
             optional(momentum),
             u8::from(diverged),
-            us(self.times.median),
+            us(self.times.mean),
             us(self.times.low),
             us(self.times.high),
             self.turns,
@@ -94,7 +94,7 @@ impl Row {
             energy,
             momentum,
             diverged,
-            median,
+            mean,
             low,
             high,
             turns,
@@ -118,7 +118,7 @@ impl Row {
                 diverged: *diverged == "1",
             },
             times: Times {
-                median: us(median)?,
+                mean: us(mean)?,
                 low: us(low)?,
                 high: us(high)?,
             },
@@ -139,7 +139,7 @@ pub fn row(method: Method, rate: u32, step: f64, error: f64) -> Row {
             diverged: false,
         },
         times: Times {
-            median: step,
+            mean: step,
             low: step,
             high: step,
         },
@@ -168,7 +168,7 @@ mod tests {
                     diverged: error.is_nan(),
                 },
                 times: Times {
-                    median: 42.5e-6,
+                    mean: 42.5e-6,
                     low: 40e-6,
                     high: 45e-6,
                 },

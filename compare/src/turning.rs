@@ -54,7 +54,7 @@ pub struct Turning;
 impl Run {
     /// Time of one copy per 1/60 s of the scene, s.
     fn work(&self) -> f64 {
-        self.times.median * f64::from(self.setting.rate) / 60.0 / COPIES as f64
+        self.times.mean * f64::from(self.setting.rate) / 60.0 / COPIES as f64
     }
 
     fn is_extrapolated(&self) -> bool {
@@ -145,16 +145,16 @@ impl Study for Turning {
     }
 
     fn line(run: &Run) -> String {
-        let [median, low, high] =
-            [run.times.median, run.times.low, run.times.high].map(|s| format!("{:.1}", 1e6 * s));
+        let [mean, low, high] =
+            [run.times.mean, run.times.low, run.times.high].map(|s| format!("{:.1}", 1e6 * s));
         format!(
-            "{},{},{},{:.3e},{median},{low},{high}",
+            "{},{},{},{:.3e},{mean},{low},{high}",
             SCENES[run.scene].name, run.setting.dial, run.setting.rate, run.error
         )
     }
 
     fn parse(cells: &[&str]) -> Option<Run> {
-        let [scene, dial, rate, error, median, low, high] = cells else {
+        let [scene, dial, rate, error, mean, low, high] = cells else {
             return None;
         };
         let us = |cell: &str| number(cell).map(|us| 1e-6 * us);
@@ -167,7 +167,7 @@ impl Study for Turning {
             },
             error: number(error)?,
             times: Times {
-                median: us(median)?,
+                mean: us(mean)?,
                 low: us(low)?,
                 high: us(high)?,
             },

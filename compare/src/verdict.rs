@@ -125,7 +125,7 @@ fn against(rows: &[Row], method: Method) -> String {
     let (Some(ours), Some(peer)) = (ours, best_of(rows, method)) else {
         return String::new();
     };
-    let ratio = ours.times.median / peer.times.median;
+    let ratio = ours.times.mean / peer.times.mean;
     let errors = match (ours.strayed.diverged, peer.strayed.diverged) {
         (true, true) => "both diverge".into(),
         (true, false) => "ours diverges".into(),

@@ -35,7 +35,7 @@ pub fn length(row: &Row) -> String {
 
 /// Time per step in µs.
 pub fn time(row: &Row) -> String {
-    format!("{:.1} µs", 1e6 * row.times.median)
+    format!("{:.1} µs", 1e6 * row.times.mean)
 }
 
 /// A setting with its time step.

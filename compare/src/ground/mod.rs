@@ -24,8 +24,6 @@ use std::path::Path;
 
 /// Number of updates before timing starts: by then the falling bodies have landed.
 const WARM_UP: u32 = 60;
-/// Fewest updates from one turn to the next: fifteen turns span nine seconds of the scene.
-const APART: u32 = 36;
 /// Simulated time after which a timed scene restarts, s.
 const LONGEST: f64 = 10.0;
 
@@ -87,7 +85,7 @@ impl Study for Ground {
             t.setting.dial,
             figure(0).unwrap_or_default(),
             figure(1).unwrap_or_default(),
-            us(t.times.median),
+            us(t.times.mean),
             us(t.times.low),
             us(t.times.high),
             if t.release { "release" } else { "dev" },
@@ -95,19 +93,7 @@ impl Study for Ground {
     }
 
     fn parse(cells: &[&str]) -> Option<Told> {
-        let [
-            scene,
-            speed,
-            method,
-            dial,
-            one,
-            two,
-            median,
-            low,
-            high,
-            build,
-        ] = cells
-        else {
+        let [scene, speed, method, dial, one, two, mean, low, high, build] = cells else {
             return None;
         };
         let method = Method::named(method)?;
@@ -120,7 +106,7 @@ impl Study for Ground {
                 .find(|s| s.dial.to_string() == *dial)?,
             figures: [one, two].into_iter().filter_map(|f| number(f)).collect(),
             times: Times {
-                median: us(median)?,
+                mean: us(mean)?,
                 low: us(low)?,
                 high: us(high)?,
             },
@@ -198,7 +184,6 @@ fn measure(scene: &'static Scene, speed: f32, methods: &[Method], turns: u32) ->
     let track = Track {
         make: &|setting| rig(&stage, setting),
         warm_up: WARM_UP,
-        apart: APART,
         longest: LONGEST,
     };
     let times = race_on(&track, &settings, turns);

@@ -15,7 +15,7 @@ pub fn section(told: &[Told]) -> String {
          Made by `cargo run {build}-p compare -- --scene ground --fresh`. \
          Contacts and joints hold the bodies here, and no formula gives their true places. So each scene has a figure \
          of its own, for which physics gives a bound. \
-         Time is that of a whole step at 60 steps a second, median of turns spread over the 2nd to 10th second of \
+         Time is that of a whole step at 60 steps a second, mean of turns spread over the 2nd to 10th second of \
          each scene.",
     );
     if !release {
@@ -80,7 +80,7 @@ fn cell(told: &Told, i: usize, head: &Head) -> String {
     if i > 0 {
         return figure;
     }
-    format!("{figure} · {:.1} µs", 1e6 * told.times.median)
+    format!("{figure} · {:.1} µs", 1e6 * told.times.mean)
 }
 
 fn tell(x: f64, unit: Unit) -> String {
