@@ -15,6 +15,8 @@ use std::time::Instant;
 const WARM_UP: u32 = 10;
 /// Approximate length of a turn, s.
 const TURN: f64 = 1.5e-3;
+/// Value of [`Track::spread`] that spreads the turns over the whole scene where a step takes up to 3 ms, s.
+const SPREAD: f64 = 0.5;
 /// Simulated time after which a scene restarts, s: the time per step of a scene at rest says little.
 const LONGEST: f64 = 10.0;
 
@@ -45,6 +47,8 @@ pub struct Track<'a> {
     pub warm_up: u32,
     /// Simulated time after which the scene restarts, s.
     pub longest: f64,
+    /// Approximate computing time over which the turns of a setting are spread, if the scene does not restart before, s.
+    pub spread: f64,
 }
 
 impl Track<'_> {
@@ -72,6 +76,7 @@ pub fn race(problem: &Problem, settings: &[Setting], turns: u32) -> Vec<Times> {
         make: &|setting| Rig::new(problem, setting),
         warm_up: WARM_UP,
         longest: problem.seconds.clamp(3.0, LONGEST),
+        spread: SPREAD,
     };
     race_on(&track, settings, turns)
 }
@@ -92,7 +97,9 @@ pub fn race_on(track: &Track, settings: &[Setting], turns: u32) -> Vec<Times> {
                 rig,
                 setting: *setting,
                 batch,
-                idle: (most / turns).saturating_sub(batch),
+                idle: (most / turns)
+                    .min((track.spread / once) as u32 / turns)
+                    .saturating_sub(batch),
                 ticks: track.warm_up + 3,
                 turns: Vec::new(),
             }

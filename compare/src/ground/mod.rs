@@ -185,6 +185,7 @@ fn measure(scene: &'static Scene, speed: f32, methods: &[Method], turns: u32) ->
         make: &|setting| rig(&stage, setting),
         warm_up: WARM_UP,
         longest: LONGEST,
+        spread: f64::INFINITY,
     };
     let times = race_on(&track, &settings, turns);
     let all = settings.into_iter().zip(figures).zip(times);
