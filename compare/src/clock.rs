@@ -15,7 +15,7 @@ use std::time::Instant;
 const WARM_UP: u32 = 10;
 /// Approximate length of a turn, s.
 const TURN: f64 = 1.5e-3;
-/// Value of [`Track::spread`] that spreads the turns over the whole scene where a step takes up to 3 ms, s.
+/// Value of [`Track::spread`] in races, s: enough for three seconds at 60 steps a second where a step takes up to 3 ms.
 const SPREAD: f64 = 0.5;
 /// Simulated time after which a scene restarts, s: the time per step of a scene at rest says little.
 const LONGEST: f64 = 10.0;
@@ -97,9 +97,7 @@ pub fn race_on(track: &Track, settings: &[Setting], turns: u32) -> Vec<Times> {
                 rig,
                 setting: *setting,
                 batch,
-                idle: (most / turns)
-                    .min((track.spread / once) as u32 / turns)
-                    .saturating_sub(batch),
+                idle: (most.min((track.spread / once) as u32) / turns).saturating_sub(batch),
                 ticks: track.warm_up + 3,
                 turns: Vec::new(),
             }
@@ -133,7 +131,7 @@ pub fn race_on(track: &Track, settings: &[Setting], turns: u32) -> Vec<Times> {
 impl Runner {
     fn is_disturbed(&self) -> bool {
         let shortest = self.turns.iter().copied().fold(f64::INFINITY, f64::min);
-        Times::of(self.turns.clone()).mean > DISTURBED * shortest
+        mean(&self.turns) > DISTURBED * shortest
     }
 }
 
@@ -160,6 +158,10 @@ pub fn turn_of(updates: u32, mut update: impl FnMut()) -> f64 {
     best
 }
 
+fn mean(turns: &[f64]) -> f64 {
+    turns.iter().sum::<f64>() / turns.len() as f64
+}
+
 /// Total time that this thread has waited for a core, s. `None` where the system does not report it.
 fn waiting() -> Option<f64> {
     let text = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
@@ -179,7 +181,7 @@ impl Times {
                 .unwrap_or(f64::NAN)
         };
         Self {
-            mean: turns.iter().sum::<f64>() / turns.len() as f64,
+            mean: mean(&turns),
             low: at(0.25),
             high: at(0.75),
         }

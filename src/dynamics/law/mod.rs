@@ -351,10 +351,11 @@ impl Law {
 
     /// Whether the force is linear between its kinks.
     pub(crate) fn is_linear_in_parts(&self) -> bool {
-        let constant = |[_, square, cubic]: &[f64; 3]| *square == 0.0 && *cubic == 0.0;
-        let stops = self.travel.iter().any(|x| x.is_finite());
-        matches!(&self.spring, SpringForce::Polynomial { pull, push } if constant(pull) && constant(push))
-            && !(stops && self.stop.progression != 0.0)
+        let SpringForce::Polynomial { pull, push } = &self.spring else {
+            return false;
+        };
+        let curved = [pull[1], pull[2], push[1], push[2], self.stop.progression];
+        curved == [0.0; 5]
     }
 
     /// Bit mask of the smooth part of the law that contains a length. Between two lengths with the same mask there is no kink.
