@@ -13,7 +13,8 @@ pub(crate) const RESOLVE: u32 = 1024;
 /// `tolerance::tests::any_number_of_microsteps_keeps_below_the_cap`.
 pub(crate) const MAX_MICROSTEPS: u32 = 256;
 
-/// Default of [`CoiloverSettings::max_iterations`]. It bounds the time of a solve that converges slowly.
+/// Default of [`CoiloverSettings::max_iterations`]. It bounds the time of a solve that converges slowly. Pinned by
+/// `network::tests::a_stiff_net_under_a_heavy_body_needs_more_than_half_of_the_iterations_that_it_may_take`.
 pub(crate) const MAX_ITERATIONS: u32 = 200;
 
 /// Default of [`CoiloverSettings::max_substeps`]. It is enough for modes up to ω·dt = 96: stiffer ones are damped. Pinned by

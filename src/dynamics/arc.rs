@@ -24,7 +24,8 @@ use bevy::math::DVec3;
 pub(super) const RESOLVED_TURN: [f64; 2] = [0.1, 0.4];
 
 /// Greatest magnitude of h²·F/L that counts. The series of [`tilt`] converges up to 4, slowly at the end. Beyond the bound are
-/// only lines that the pull makes shorter or longer by their whole length within a micro-step.
+/// only lines that the pull makes shorter or longer by their whole length within a micro-step. Pinned by
+/// `arc::tests::a_spring_that_is_squeezed_to_almost_nothing_falls_as_one_resolved_finely`.
 pub(super) const MOST_PULL: f64 = 2.0;
 
 /// Factor by which the error falls if the number of micro-steps is doubled, without damping. Extrapolation uses it. Pinned by

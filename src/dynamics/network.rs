@@ -24,15 +24,14 @@ mod bounds;
 mod kinked;
 mod placement;
 mod slipping;
+#[cfg(test)]
+mod tests;
 
 pub(super) use placement::{REVERSES, damper_placement, placement, settling, steep, together};
 
 /// (ω h)² of the stiffest mode up to which θ makes its frequency exact. Pinned by
 /// `networks::every_normal_mode_of_a_chain_has_its_frequency`.
 const PLACED: f64 = 9.0;
-
-/// (ω h)² up to which a law's slope at the present length is used, instead of the greatest slope ahead.
-const SMOOTH: f64 = 1.0;
 
 /// The coupled kick of a component, and its memory, which is kept from step to step.
 #[derive(Clone, Default)]
@@ -242,10 +241,7 @@ impl Network {
             let rate = line.backward_rate(before, step);
             let elastic = element.elastic(line.length);
             let drag = element.drag(line.length, rate);
-            let mut k = element.stiffness_ahead(line.length, 0.5 * step * before.axial);
-            if h2 * line.inverse_mass * k < SMOOTH {
-                k = elastic.stiffness;
-            }
+            let k = elastic.stiffness;
             let stiffest = line
                 .holds
                 .iter()

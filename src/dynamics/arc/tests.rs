@@ -217,3 +217,14 @@ fn ends_that_swing_past_each_other_win_nothing() {
         }
     }
 }
+
+#[test]
+fn a_spring_that_is_squeezed_to_almost_nothing_falls_as_one_resolved_finely() {
+    // The pull is up to 25 times what shortens the line by its whole length within a step.
+    for (damping, from, most) in [(0.0, 0.1, 1e-4), (30.0, 0.03, 1e-3)] {
+        let pair = pair(900.0, damping, 1.0, 9.81);
+        let from = start([from, 0.0], [0.0, 0.0]);
+        let apart = (run(&pair, from, 1, 1).d - run(&pair, from, 1, 1024).d).length();
+        assert!(apart < most, "{damping} N s/m: {apart:.1e} m");
+    }
+}

@@ -9,7 +9,8 @@ use super::{Network, Row};
 use crate::dynamics::element::Element;
 use crate::dynamics::strut::Strut;
 
-/// Ratio of secant and slope above which the force of a damper counts as limited. Below, it may be rounding.
+/// Ratio of secant and slope above which the force of a damper counts as limited. Below, it may be rounding. Pinned by
+/// `network::tests`.
 const LIMITED: f64 = 1.001;
 
 impl Network {
@@ -42,16 +43,17 @@ impl Row {
         let own = self.braking * step * self.line.inverse_mass;
         // Each of several clutches at a body has its share in stopping it.
         let inverse_mass = self.line.inverse_mass * (own + others) / own;
+        // What is linear in the element already resists a change of the acceleration like this.
+        let resists = 1.0 + inverse_mass * strut.along;
         let stops = (step * gained / rate - 1.0) / inverse_mass;
         // Where something else reverses the motion, the force turns round with it, but not beyond its limit.
         let turned = 2.0 * self.drag.abs();
-        let left = gained - turned * inverse_mass;
-        let damping = if left > 0.0 {
-            stops.min(turned / left)
+        let left = resists * gained - turned * inverse_mass;
+        let more = if left > 0.0 {
+            resists * stops.min(turned / left)
         } else {
-            stops
+            resists * stops
         };
-        let more = damping - self.damping;
         if more > 0.0 {
             self.damping += more;
             self.centripetal_gain += more;

@@ -90,6 +90,29 @@ fn a_wheel_that_settles_gently_is_held_and_so_is_one_with_a_skin() {
     }
 }
 
+#[test]
+fn a_crate_that_lies_on_the_ground_counts_as_fixed_wherever_a_spring_stands_on_it() {
+    for at in [Vec3::new(0.3, 0.5, 0.2), Vec3::new(-0.4, 0.5, 0.1)] {
+        let mut scene = Stand::new(CoiloverPlugin::default(), Engine::default());
+        ground(&mut scene, Ground::HalfSpace);
+        let guided = LockedAxes::ROTATION_LOCKED
+            | LockedAxes::TRANSLATION_LOCKED_X
+            | LockedAxes::TRANSLATION_LOCKED_Z;
+        let mass = AdditionalMassProperties::Mass(LOAD);
+        let load = scene.body(Transform::from_xyz(at.x, 2.0, at.z), (mass, guided));
+        let lying = (
+            Collider::cuboid(0.5, 0.5, 0.5),
+            ColliderMassProperties::Mass(LOAD),
+        );
+        let lying = scene.body(Transform::from_xyz(0.0, 0.5, 0.0), lying);
+        let element = scene.coil([load, lying], [Vec3::ZERO, at], [30e3, 2e3], None);
+        scene.lab.run(1.0);
+        let mass = scene.lab.readout(element).effective_mass;
+        println!("at {at}: effective mass {mass:.2} kg");
+        assert!((mass / LOAD - 1.0).abs() < 0.01, "at {at}: {mass} kg");
+    }
+}
+
 /// Two balls on a stiff spring that fly sideways, close above a floor. What else they carry is `with`.
 fn above_floor(with: impl Bundle + Clone, floor: impl Bundle) -> SpringMethod {
     let mut scene = Stand::new(CoiloverPlugin::default(), Engine::weightless());

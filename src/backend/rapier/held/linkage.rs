@@ -16,6 +16,7 @@ use bevy_rapier3d::rapier::geometry::{ColliderSet, ContactPair, NarrowPhase};
 const MOST: usize = 16;
 
 /// Greatest number of contact points that are considered per contact manifold. Three points already fix a body to a plane.
+/// Pinned by `surfaces::a_crate_that_lies_on_the_ground_counts_as_fixed_wherever_a_spring_stands_on_it`.
 const POINTS: usize = 3;
 
 /// The parts of a Rapier context that can hold bodies.
