@@ -4,40 +4,41 @@ use super::envelope::Envelope;
 use super::strut::{Strut, cross};
 use bevy::math::{DMat3, DVec3};
 
-/// Number of unknowns up to which a factorisation is cheaper than iterations, whatever the network looks like. Pinned by
+/// Number of unknown vectors up to which a factorisation is cheaper than iterations, whatever the network looks like. Pinned by
 /// `direct::tests::sixteen_bodies_that_are_all_joined_are_factorised_and_twenty_are_not`.
-const SMALL: usize = 96;
+const SMALL: usize = 32;
 
-/// Width of the matrix up to which a factorisation is cheaper than iterations for any number of unknowns: the number of entries
-/// that are kept in a row, as a root mean square. For each unknown, a factorisation costs the square of it. Pinned by
+/// Width of the matrix up to which a factorisation is cheaper than iterations for any number of unknowns: the number of blocks
+/// that are kept in a row, as a root mean square. For each unknown vector, a factorisation costs the square of it. Pinned by
 /// `direct::tests`.
-const NARROW: usize = 40;
+const NARROW: usize = 13;
 
-/// The matrix of a system, and its unknowns: the velocity of each body, and where a body turns, its angular velocity.
+/// The matrix of a system, and its unknown vectors: the velocity of each body, and where a body turns, its angular velocity.
 #[derive(Clone, Default)]
 pub(super) struct Direct {
     places: Vec<Place>,
+    /// Number of unknown vectors.
     unknowns: usize,
     /// Sum of the squares of the widths of all rows.
     squares: usize,
     matrix: Envelope,
-    vector: Vec<f64>,
+    vector: Vec<DVec3>,
 }
 
-/// Where a body's unknowns stand in the matrix.
+/// Where a body's unknown vectors stand in the matrix.
 #[derive(Clone, Copy)]
 struct Place {
     /// Index of the first one.
     at: usize,
     /// Whether its rotation is among them.
     turns: bool,
-    /// Column of the first entry in its rows.
+    /// Column of the first block in its rows.
     first: usize,
 }
 
 impl Place {
     fn unknowns(&self) -> usize {
-        if self.turns { 6 } else { 3 }
+        if self.turns { 2 } else { 1 }
     }
 }
 
@@ -52,11 +53,11 @@ pub(super) struct Own {
     pub free_to_turn: DVec3,
 }
 
-/// Three unknowns of a body.
+/// An unknown vector of a body.
 #[derive(Clone, Copy)]
 struct Unknowns {
     at: usize,
-    /// 1 for each one that is free, and 0 for a locked one.
+    /// 1 for each axis that is free, and 0 for a locked one.
     free: DVec3,
 }
 
@@ -129,7 +130,7 @@ impl Direct {
             let own = bodies(body);
             add_own(matrix, place.at, own.mass, own.free);
             if place.turns {
-                add_own(matrix, place.at + 3, own.inertia, own.free_to_turn);
+                add_own(matrix, place.at + 1, own.inertia, own.free_to_turn);
             }
         }
         for strut in struts {
@@ -137,7 +138,7 @@ impl Direct {
                 let place = places.get(body)?;
                 let (own, at) = (bodies(body), place.at);
                 let linear = Unknowns { at, free: own.free };
-                let (at, free) = (at + 3, own.free_to_turn);
+                let (at, free) = (at + 1, own.free_to_turn);
                 let angular = place.turns.then_some(Unknowns { at, free });
                 Some(EndUnknowns { linear, angular })
             });
@@ -148,20 +149,20 @@ impl Direct {
 
     /// Solves for the right side `linear`, and `angular` where bodies turn. Both become the solution.
     pub(super) fn solve(&mut self, linear: &mut [DVec3], angular: &mut [DVec3]) {
-        self.vector.resize(self.unknowns, 0.0);
+        self.vector.resize(self.unknowns, DVec3::ZERO);
         for (body, Place { at, turns, .. }) in self.places.iter().enumerate() {
-            linear[body].write_to_slice(&mut self.vector[*at..]);
+            self.vector[*at] = linear[body];
             if *turns {
-                angular[body].write_to_slice(&mut self.vector[at + 3..]);
+                self.vector[at + 1] = angular[body];
             }
         }
         self.matrix.solve(&mut self.vector);
         for (body, Place { at, turns, .. }) in self.places.iter().enumerate() {
-            linear[body] = DVec3::from_slice(&self.vector[*at..]);
+            linear[body] = self.vector[*at];
             if let Some(angular) = angular.get_mut(body) {
                 // The body may have turned in an earlier step.
                 *angular = if *turns {
-                    DVec3::from_slice(&self.vector[at + 3..])
+                    self.vector[at + 1]
                 } else {
                     DVec3::ZERO
                 };
