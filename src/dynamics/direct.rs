@@ -234,6 +234,7 @@ fn add(matrix: &mut Envelope, row: Unknowns, column: Unknowns, block: DMat3) {
 
 #[cfg(test)]
 mod tests {
+    use super::super::strut::Twists;
     use super::*;
 
     fn strut(bodies: [usize; 2]) -> Strut {
@@ -272,6 +273,35 @@ mod tests {
         let left = [3.0 * x[0] - pull, 3.0 * x[1] + pull];
         assert!(((left[0] - right) * frees[0]).length() < 1e-14, "{left:?}");
         assert!(left[1].length() < 1e-14, "{left:?}");
+    }
+
+    #[test]
+    fn bodies_that_turn_are_pulled_by_their_arms_as_the_equations_say() {
+        let mut direct = Direct::default();
+        direct.number([true, false, true].into_iter());
+        let mut arms = [strut([0, 1]), strut([2, 0]), strut([2, 2])];
+        arms[0].arms = [DVec3::new(0.3, -0.2, 0.5), DVec3::ZERO];
+        arms[1].arms = [DVec3::new(-0.4, 0.1, 0.2), DVec3::new(0.7, 0.2, -0.1)];
+        arms[2].twist = true;
+        arms[2].bodies = [0, 2];
+        direct.join(arms.iter().map(|strut| strut.bodies));
+        assert!(direct.factorise(|_| own(DVec3::ONE), arms.iter().copied()));
+        let given = |at: usize| DVec3::new(at as f64 - 1.5, 2.0, 0.7 * at as f64);
+        let mut x = Twists {
+            linear: (0..3).map(given).collect(),
+            angular: (3..6).map(given).collect(),
+        };
+        // Nothing turns the body in the middle.
+        x.angular[1] = DVec3::ZERO;
+        let right = x.clone();
+        direct.solve(&mut x.linear, &mut x.angular);
+        let mut left = x.clone();
+        left.linear.iter_mut().for_each(|v| *v *= 3.0);
+        for strut in &arms {
+            strut.add(&mut left, strut.force(strut.relative(&x)));
+        }
+        left.combine(1.0, &right, -1.0);
+        assert!(left.dot(&left).sqrt() < 1e-13, "{left:?}");
     }
 
     /// Whether so many bodies are factorised that are joined in pairs.

@@ -108,10 +108,12 @@ impl Envelope {
         &self.blocks[start..start + row - first]
     }
 
-    /// Adds a block. Of a block on the diagonal, only the lower half counts.
+    /// Adds a block. What stands above the diagonal is the mirror of what stands below, and is ignored.
     pub(super) fn add(&mut self, row: usize, column: usize, block: DMat3) {
-        let Row { first, start, .. } = self.rows[row];
-        self.blocks[start + column - first] += block;
+        if column <= row {
+            let Row { first, start, .. } = self.rows[row];
+            self.blocks[start + column - first] += block;
+        }
     }
 
     /// Replaces the matrix by its factor L with L Lᵀ = A. Returns whether it is positive definite; if not, what is left is of
