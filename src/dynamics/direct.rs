@@ -279,13 +279,12 @@ mod tests {
     fn bodies_that_turn_are_pulled_by_their_arms_as_the_equations_say() {
         let mut direct = Direct::default();
         direct.number([true, false, true].into_iter());
-        let mut arms = [strut([0, 1]), strut([2, 0]), strut([2, 2])];
-        arms[0].arms = [DVec3::new(0.3, -0.2, 0.5), DVec3::ZERO];
-        arms[1].arms = [DVec3::new(-0.4, 0.1, 0.2), DVec3::new(0.7, 0.2, -0.1)];
-        arms[2].twist = true;
-        arms[2].bodies = [0, 2];
-        direct.join(arms.iter().map(|strut| strut.bodies));
-        assert!(direct.factorise(|_| own(DVec3::ONE), arms.iter().copied()));
+        let mut struts = [[0, 1], [2, 0], [0, 2]].map(strut);
+        struts[0].arms = [DVec3::new(0.3, -0.2, 0.5), DVec3::ZERO];
+        struts[1].arms = [DVec3::new(-0.4, 0.1, 0.2), DVec3::new(0.7, 0.2, -0.1)];
+        struts[2].twist = true;
+        direct.join(struts.iter().map(|strut| strut.bodies));
+        assert!(direct.factorise(|_| own(DVec3::ONE), struts.iter().copied()));
         let given = |at: usize| DVec3::new(at as f64 - 1.5, 2.0, 0.7 * at as f64);
         let mut x = Twists {
             linear: (0..3).map(given).collect(),
@@ -297,7 +296,7 @@ mod tests {
         direct.solve(&mut x.linear, &mut x.angular);
         let mut left = x.clone();
         left.linear.iter_mut().for_each(|v| *v *= 3.0);
-        for strut in &arms {
+        for strut in &struts {
             strut.add(&mut left, strut.force(strut.relative(&x)));
         }
         left.combine(1.0, &right, -1.0);

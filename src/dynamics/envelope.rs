@@ -71,7 +71,7 @@ impl Triangle {
     }
 }
 
-/// 1/√x. None if it is not a finite number.
+/// 1/√x. None unless x is positive.
 fn inverse_root(x: f64) -> Option<f64> {
     (x > 0.0).then(|| 1.0 / x.sqrt())
 }
@@ -149,31 +149,25 @@ impl Envelope {
 
     /// Solves A x = b with the factor of A. `x` is b before, and the solution after.
     pub(super) fn solve(&self, x: &mut [DVec3]) {
-        for (
-            row,
-            Row {
+        for row in 0..self.rows.len() {
+            let Row {
                 first, diagonal, ..
-            },
-        ) in self.rows.iter().enumerate()
-        {
+            } = self.rows[row];
             let (known, rest) = x.split_at_mut(row);
             let mut value = rest[0];
-            for (block, x) in self.before(row).iter().zip(&known[*first..]) {
+            for (block, x) in self.before(row).iter().zip(&known[first..]) {
                 value -= *block * *x;
             }
             rest[0] = diagonal.solve(value);
         }
-        for (
-            row,
-            Row {
+        for row in (0..self.rows.len()).rev() {
+            let Row {
                 first, diagonal, ..
-            },
-        ) in self.rows.iter().enumerate().rev()
-        {
+            } = self.rows[row];
             let (known, rest) = x.split_at_mut(row);
             let value = diagonal.solve_transposed(rest[0]);
             rest[0] = value;
-            for (x, block) in known[*first..].iter_mut().zip(self.before(row)) {
+            for (block, x) in self.before(row).iter().zip(&mut known[first..]) {
                 *x -= block.transpose() * value;
             }
         }

@@ -43,7 +43,7 @@ impl Row {
         let own = self.braking * step * self.line.inverse_mass;
         // Each of several clutches at a body has its share in stopping it.
         let inverse_mass = self.line.inverse_mass * (own + others) / own;
-        // What is linear in the element already resists a change of the acceleration like this.
+        // By this factor, the linear part of the element already reduces a change of the acceleration.
         let resists = 1.0 + inverse_mass * strut.along;
         let stops = (step * gained / rate - 1.0) / inverse_mass;
         // Where something else reverses the motion, the force turns round with it, but not beyond its limit.
