@@ -11,7 +11,7 @@ use bevy::math::{DQuat, DVec3};
 use bevy::prelude::default;
 use std::cell::Cell;
 
-const DT: f64 = 1.0 / 60.0;
+pub(super) const DT: f64 = 1.0 / 60.0;
 
 pub(crate) fn point(mass: f64, position: DVec3, gravity: DVec3) -> Body {
     Body {
@@ -57,11 +57,11 @@ pub(crate) fn element(a: End, b: End, stiffness: f64, damping: f64, rest_length:
     }
 }
 
-fn fixed(position: DVec3) -> End {
+pub(super) fn fixed(position: DVec3) -> End {
     End::Path(Path::straight(position, DVec3::ZERO))
 }
 
-fn held(index: usize, arm: DVec3) -> End {
+pub(super) fn held(index: usize, arm: DVec3) -> End {
     End::Body { index, arm }
 }
 

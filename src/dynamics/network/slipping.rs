@@ -49,11 +49,12 @@ impl Row {
         // Where something else reverses the motion, the force turns round with it, but not beyond its limit.
         let turned = 2.0 * self.drag.abs();
         let left = resists * gained - turned * inverse_mass;
-        let more = if left > 0.0 {
-            resists * stops.min(turned / left)
+        let most = if left > 0.0 {
+            turned / left
         } else {
-            resists * stops
+            f64::INFINITY
         };
+        let more = resists * stops.min(most);
         if more > 0.0 {
             self.damping += more;
             self.centripetal_gain += more;

@@ -1,15 +1,11 @@
-use crate::dynamics::element::{End, Path};
 use crate::dynamics::law::tests::recipe;
 use crate::dynamics::law::{DragLaw, Law, Recipe, Table};
 use crate::dynamics::step::Component;
-use crate::dynamics::tests::{element, point, row};
+use crate::dynamics::tests::{DT, element, fixed, held, point, row};
 use crate::dynamics::tolerance::Accuracy;
 use crate::settings::MAX_ITERATIONS;
 use bevy::math::DVec3;
 use std::sync::Arc;
-
-/// A timestep, s.
-const STEP: f64 = 1.0 / 60.0;
 
 /// Three bodies of 1 kg in a row, 1 m apart. Each is joined to the next by an element with this law. The middle one moves with
 /// `speed` (m/s).
@@ -34,7 +30,7 @@ fn law([linear, cubic]: [f64; 2], drag: DragLaw) -> Law {
 }
 
 fn step(row: &mut Component, microsteps: u32) {
-    row.advance(STEP, Accuracy::exactly(microsteps));
+    row.advance(DT, Accuracy::exactly(microsteps));
 }
 
 /// Where the bodies are after two seconds, in so many micro-steps a step.
@@ -108,10 +104,7 @@ fn net() -> Component {
         let mass = if [x, z] == [SIDE / 2; 2] { 100.0 } else { 0.1 };
         let place = DVec3::new(x as f64, 0.0, z as f64);
         net.bodies.push(point(mass, place, 9.81 * DVec3::NEG_Y));
-        let end = |index| End::Body {
-            index,
-            arm: DVec3::ZERO,
-        };
+        let end = |index| held(index, DVec3::ZERO);
         if x > 0 {
             join(end(at - 1), end(at));
         }
@@ -119,8 +112,7 @@ fn net() -> Component {
             join(end(at - SIDE), end(at));
         }
         if z == 0 || z == SIDE - 1 {
-            let hook = Path::straight(place + DVec3::Y, DVec3::ZERO);
-            join(End::Path(hook), end(at));
+            join(fixed(place + DVec3::Y), end(at));
         }
     }
     net
@@ -135,7 +127,7 @@ fn a_stiff_net_under_a_heavy_body_needs_more_than_half_of_the_iterations_that_it
             resolve: 1,
             ..Accuracy::exactly(1)
         };
-        let capped = (0..6).any(|_| net.advance(STEP, accuracy).capped);
+        let capped = (0..6).any(|_| net.advance(DT, accuracy).capped);
         assert_eq!(capped, !is_enough, "{most} iterations");
     }
 }

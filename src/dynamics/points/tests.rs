@@ -41,10 +41,7 @@ fn sheet(stiffness: f64, damping: f64) -> Component {
             velocity: dice.vector(),
             ..tests::point(mass, at, gravity)
         };
-        let own = |index: usize| End::Body {
-            index,
-            arm: DVec3::ZERO,
-        };
+        let own = |index| tests::held(index, DVec3::ZERO);
         if y == 0 {
             let hook = Path::straight(at + DVec3::Y, dice.vector());
             element(End::Path(hook), own(i), 0.8);

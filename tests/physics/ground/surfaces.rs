@@ -20,15 +20,20 @@ const ROADS: [Ground; 5] = [
     Ground::HeightField,
 ];
 
-/// A load that is guided up and down over a wheel, `gap` metres above a road. Returns the scene and the spring.
-fn on_wheel(road: Ground, gap: f32, skin: f32, stiffness: f32) -> (Stand, Entity) {
-    let mut scene = Stand::new(CoiloverPlugin::default(), Engine::default());
-    ground(&mut scene, road);
+/// A load that is guided up and down.
+fn load(scene: &mut Stand, at: Vec3) -> Entity {
     let guided = LockedAxes::ROTATION_LOCKED
         | LockedAxes::TRANSLATION_LOCKED_X
         | LockedAxes::TRANSLATION_LOCKED_Z;
     let mass = AdditionalMassProperties::Mass(LOAD);
-    let load = scene.body(Transform::from_xyz(0.13, 1.0, 0.07), (mass, guided));
+    scene.body(Transform::from_translation(at), (mass, guided))
+}
+
+/// A load over a wheel, `gap` metres above a road. Returns the scene and the spring.
+fn on_wheel(road: Ground, gap: f32, skin: f32, stiffness: f32) -> (Stand, Entity) {
+    let mut scene = Stand::new(CoiloverPlugin::default(), Engine::default());
+    ground(&mut scene, road);
+    let load = load(&mut scene, Vec3::new(0.13, 1.0, 0.07));
     let wheel = (
         Collider::ball(RADIUS),
         ColliderMassProperties::Mass(WHEEL),
@@ -95,11 +100,7 @@ fn a_crate_that_lies_on_the_ground_counts_as_fixed_wherever_a_spring_stands_on_i
     for at in [Vec3::new(0.3, 0.5, 0.2), Vec3::new(-0.4, 0.5, 0.1)] {
         let mut scene = Stand::new(CoiloverPlugin::default(), Engine::default());
         ground(&mut scene, Ground::HalfSpace);
-        let guided = LockedAxes::ROTATION_LOCKED
-            | LockedAxes::TRANSLATION_LOCKED_X
-            | LockedAxes::TRANSLATION_LOCKED_Z;
-        let mass = AdditionalMassProperties::Mass(LOAD);
-        let load = scene.body(Transform::from_xyz(at.x, 2.0, at.z), (mass, guided));
+        let load = load(&mut scene, at.with_y(2.0));
         let lying = (
             Collider::cuboid(0.5, 0.5, 0.5),
             ColliderMassProperties::Mass(LOAD),
