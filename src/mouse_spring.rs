@@ -263,7 +263,7 @@ fn mass_at(body: &RapierBody, point: Vec3, axis: Vec3) -> Option<f32> {
     let body = read(body, Vec3::ZERO, &Wrench::default(), true);
     let axis = axis.as_dvec3();
     let torque = (body.rotation * (point - com).as_dvec3()).cross(axis);
-    let turned = torque.dot(body.inverse_inertia() * torque);
+    let turned = torque.dot(body.turned_by(torque));
     let inverse = axis.dot(body.inverse_mass * axis) + turned;
     (inverse > 0.0).then(|| single(inverse.recip()))
 }

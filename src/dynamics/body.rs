@@ -51,17 +51,6 @@ pub(crate) struct Body {
     pub turned: Option<Turned>,
 }
 
-/// Rotation of a body at an instant, and what changes it. World frame.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Swing {
-    /// Angular velocity, rad/s.
-    pub velocity: DVec3,
-    /// Angular acceleration from the user's torque, rad/s².
-    pub pushed: DVec3,
-    /// Gyroscopic acceleration of free flight, rad/s².
-    pub free: DVec3,
-}
-
 /// Inverse inertia in the world frame, and the rotation to which it belongs. It is stored because it is used many times
 /// until the rotation changes.
 #[derive(Clone, Copy, Debug)]
@@ -114,12 +103,24 @@ fn held_back(by: DVec3, velocity: DVec3, farthest: f64, time: f64) -> Option<(DV
 impl Body {
     /// Inverse inertia in the world frame at the present rotation, 1/(kg m²); zero about locked axes.
     pub(crate) fn inverse_inertia(&self) -> DMat3 {
+        self.with_inverse_inertia(DMat3::ZERO, |inverse| *inverse)
+    }
+
+    /// Angular acceleration by a torque, or change of the angular velocity by an angular impulse. World frame.
+    #[inline]
+    pub(crate) fn turned_by(&self, torque: DVec3) -> DVec3 {
+        self.with_inverse_inertia(DVec3::ZERO, |inverse| *inverse * torque)
+    }
+
+    /// Returns what `take` makes of the inverse inertia, or `nothing` if no element turns the body.
+    #[inline(always)]
+    fn with_inverse_inertia<T>(&self, nothing: T, take: impl Fn(&DMat3) -> T) -> T {
         if self.spin == Spin::Ignored {
-            return DMat3::ZERO;
+            return nothing;
         }
         match &self.turned {
-            Some(t) if t.rotation == self.rotation => t.inverse_inertia,
-            _ => self.turn_inertia(),
+            Some(t) if t.rotation == self.rotation => take(&t.inverse_inertia),
+            _ => take(&self.turn_inertia()),
         }
     }
 
@@ -157,7 +158,7 @@ impl Body {
     pub(crate) fn angular_velocity(&self) -> DVec3 {
         match self.spin {
             Spin::Ignored => DVec3::ZERO,
-            Spin::Free { momentum } => self.inverse_inertia() * momentum,
+            Spin::Free { momentum } => self.turned_by(momentum),
             Spin::Locked { velocity } => velocity,
         }
     }
@@ -184,31 +185,6 @@ impl Body {
         let frame = self.rotation * self.principal;
         let spin = frame.inverse() * velocity;
         frame * ((self.inertia * spin).cross(spin) / self.inertia)
-    }
-
-    /// Its rotation at the present instant.
-    pub(crate) fn swing(&self) -> Swing {
-        if self.spin == Spin::Ignored {
-            return Swing::default();
-        }
-        let inverse_inertia = self.inverse_inertia();
-        let pushed = inverse_inertia * self.torque;
-        match self.spin {
-            Spin::Free { momentum } => {
-                let velocity = inverse_inertia * momentum;
-                Swing {
-                    velocity,
-                    pushed,
-                    free: inverse_inertia * momentum.cross(velocity),
-                }
-            }
-            Spin::Locked { velocity } => Swing {
-                velocity,
-                pushed,
-                free: DVec3::ZERO,
-            },
-            Spin::Ignored => Swing::default(),
-        }
     }
 
     /// Free flight for `time` seconds: uniform motion, and rotation with constant angular momentum (with locked axes:
@@ -316,7 +292,7 @@ impl Body {
             }
             Spin::Locked { velocity } => {
                 self.spin = Spin::Locked {
-                    velocity: velocity + self.inverse_inertia() * impulse,
+                    velocity: velocity + self.turned_by(impulse),
                 };
             }
         }

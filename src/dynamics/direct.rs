@@ -1,7 +1,7 @@
 //! Solves a small system, or one that is long and narrow, directly: see [`super::envelope`].
 
 use super::envelope::Envelope;
-use super::strut::{Strut, cross};
+use super::strut::{Strut, crossed};
 use bevy::math::{DMat3, DVec3};
 
 /// Number of unknown vectors up to which a factorisation is cheaper than iterations, whatever the network looks like. Pinned by
@@ -34,6 +34,8 @@ struct Place {
     turns: bool,
     /// Column of the first block in its rows.
     first: usize,
+    /// For each of its unknown vectors, 1 on each axis that is free, and 0 on a locked one.
+    free: [DVec3; 2],
 }
 
 impl Place {
@@ -53,22 +55,6 @@ pub(super) struct Own {
     pub free_to_turn: DVec3,
 }
 
-/// An unknown vector of a body.
-#[derive(Clone, Copy)]
-struct Unknowns {
-    at: usize,
-    /// 1 for each axis that is free, and 0 for a locked one.
-    free: DVec3,
-}
-
-/// All unknowns of the body at an end.
-#[derive(Clone, Copy)]
-struct EndUnknowns {
-    linear: Unknowns,
-    /// None where the rotation is not among the unknowns.
-    angular: Option<Unknowns>,
-}
-
 impl Direct {
     /// Numbers the unknowns of a new set of bodies. `turns` says of each body whether it turns. The numbers go from the last body
     /// to the first. Neighbours in the network then have near numbers, which makes the matrix narrow. The body to which all others
@@ -80,7 +66,12 @@ impl Direct {
         for turns in turns.rev() {
             let at = self.unknowns;
             let first = at;
-            let place = Place { at, turns, first };
+            let place = Place {
+                at,
+                turns,
+                first,
+                free: [DVec3::ONE; 2],
+            };
             self.unknowns += place.unknowns();
             self.places.push(place);
         }
@@ -125,23 +116,17 @@ impl Direct {
                 self.matrix.push(place.first);
             }
         }
-        let (matrix, places) = (&mut self.matrix, &self.places);
-        for (body, place) in places.iter().enumerate() {
+        let matrix = &mut self.matrix;
+        for (body, place) in self.places.iter_mut().enumerate() {
             let own = bodies(body);
-            add_own(matrix, place.at, own.mass, own.free);
+            place.free = [own.free, own.free_to_turn];
+            place.add_own(matrix, 0, own.mass);
             if place.turns {
-                add_own(matrix, place.at + 1, own.inertia, own.free_to_turn);
+                place.add_own(matrix, 1, own.inertia);
             }
         }
         for strut in struts {
-            let ends = strut.bodies.map(|body| {
-                let place = places.get(body)?;
-                let (own, at) = (bodies(body), place.at);
-                let linear = Unknowns { at, free: own.free };
-                let (at, free) = (at + 1, own.free_to_turn);
-                let angular = place.turns.then_some(Unknowns { at, free });
-                Some(EndUnknowns { linear, angular })
-            });
+            let ends = strut.bodies.map(|body| self.places.get(body));
             add_strut(matrix, &strut, ends);
         }
         self.matrix.factorise()
@@ -171,65 +156,70 @@ impl Direct {
     }
 }
 
-/// Adds what a body has by itself. What is locked has no part in the motion of anything else.
-fn add_own(matrix: &mut Envelope, at: usize, own: DMat3, free: DVec3) {
-    let unknowns = Unknowns { at, free };
-    add(matrix, unknowns, unknowns, own);
-    let locked = DMat3::from_diagonal(DVec3::ONE - free);
-    matrix.add(at, at, locked);
+impl Place {
+    /// Adds a block to the rows of one of its unknown vectors and the columns of one of another place, apart from what is
+    /// locked.
+    #[inline]
+    fn add(&self, matrix: &mut Envelope, [row, column]: [usize; 2], other: &Self, block: DMat3) {
+        let (down, across) = (self.free[row], other.free[column]);
+        let block = if down == DVec3::ONE && across == DVec3::ONE {
+            block
+        } else {
+            DMat3::from_cols(
+                block.x_axis * down * across.x,
+                block.y_axis * down * across.y,
+                block.z_axis * down * across.z,
+            )
+        };
+        matrix.add(self.at + row, other.at + column, block);
+    }
+
+    /// Adds what a body has by itself. What is locked has no part in the motion of anything else.
+    fn add_own(&self, matrix: &mut Envelope, which: usize, own: DMat3) {
+        self.add(matrix, [which; 2], self, own);
+        let locked = DMat3::from_diagonal(DVec3::ONE - self.free[which]);
+        matrix.add(self.at + which, self.at + which, locked);
+    }
 }
 
 /// Adds what a strut couples: each end with itself and with the other one. `None` for an end that is no body of the system.
-fn add_strut(matrix: &mut Envelope, strut: &Strut, ends: [Option<EndUnknowns>; 2]) {
+fn add_strut(matrix: &mut Envelope, strut: &Strut, ends: [Option<&Place>; 2]) {
     let own = strut.matrix();
-    // Force by the rotation of the body at each end.
-    let levers = strut.arms.map(cross);
-    let swung: [DMat3; 2] = std::array::from_fn(|i| {
-        let swings = !strut.twist && ends[i].is_some_and(|end| end.angular.is_some());
-        if swings {
-            own * -levers[i]
-        } else {
-            DMat3::ZERO
-        }
+    // Force by the rotation of the body at each end that has an arm.
+    let swung: [Option<DMat3>; 2] = std::array::from_fn(|i| {
+        let swings = !strut.twist && strut.arms[i] != DVec3::ZERO;
+        let swings = swings && ends[i].is_some_and(|place| place.turns);
+        swings.then(|| crossed(strut.arms[i], &own).transpose())
     });
     for (i, row) in ends.into_iter().enumerate() {
         for (j, column) in ends.into_iter().enumerate() {
             let (Some(row), Some(column)) = (row, column) else {
                 continue;
             };
-            if column.linear.at > row.linear.at {
+            if column.at > row.at {
                 continue;
             }
             let sign = if i == j { 1.0 } else { -1.0 };
             if strut.twist {
-                if let (Some(row), Some(column)) = (row.angular, column.angular) {
-                    add(matrix, row, column, own * sign);
+                if row.turns && column.turns {
+                    row.add(matrix, [1, 1], column, own * sign);
                 }
                 continue;
             }
-            add(matrix, row.linear, column.linear, own * sign);
-            if let Some(column) = column.angular {
-                add(matrix, row.linear, column, swung[j] * sign);
+            row.add(matrix, [0, 0], column, own * sign);
+            if let Some(swung) = swung[j].filter(|_| i != j) {
+                row.add(matrix, [0, 1], column, swung * sign);
             }
-            if let Some(row) = row.angular {
+            if let Some(swung) = swung[i] {
                 // Torque by the motion of the other end: the same coupling, transposed.
-                add(matrix, row, column.linear, swung[i].transpose() * sign);
+                row.add(matrix, [1, 0], column, swung.transpose() * sign);
             }
-            if let (Some(row), Some(column)) = (row.angular, column.angular) {
-                add(matrix, row, column, levers[i] * swung[j] * sign);
+            if let (Some(_), Some(swung)) = (swung[i], swung[j]) {
+                let block = crossed(strut.arms[i], &swung) * sign;
+                row.add(matrix, [1, 1], column, block);
             }
         }
     }
-}
-
-/// Adds a block, apart from what is locked.
-fn add(matrix: &mut Envelope, row: Unknowns, column: Unknowns, block: DMat3) {
-    let block = DMat3::from_cols(
-        block.x_axis * row.free * column.free.x,
-        block.y_axis * row.free * column.free.y,
-        block.z_axis * row.free * column.free.z,
-    );
-    matrix.add(row.at, column.at, block);
 }
 
 #[cfg(test)]

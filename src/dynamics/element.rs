@@ -1,11 +1,13 @@
 //! An element between two ends: how its ends are held, its line, and its forces.
 
-use super::body::{Body, Spin, Swing, turn};
+use super::body::{Body, Spin, turn};
+use super::flight::Flight;
 use super::guide::Guide;
+use super::hold::Hold;
 use super::law::{Drag, Elastic, Law};
 use super::line::{AT_ORIGIN, COINCIDENT, Line};
 use super::thresholds::is_damper_stiff;
-use bevy::math::{DMat3, DQuat, DVec3};
+use bevy::math::{DQuat, DVec3};
 use std::sync::Arc;
 
 /// How an end of an element is held.
@@ -63,19 +65,6 @@ pub(crate) struct Element {
     pub direction: Option<DVec3>,
     /// Whether the damper is strong. Then a spring of zero rest length is not treated as isotropic.
     pub stiff_damper: bool,
-}
-
-/// One end of a line at an instant. World frame.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Hold {
-    /// Index of the dynamic body, if there is one.
-    pub body: Option<usize>,
-    /// Vector from the centre of mass to the point at which the force acts, m.
-    pub arm: DVec3,
-    pub inverse_mass: DVec3,
-    /// Whether the element turns the body about an axis instead of pushing it.
-    pub twist: bool,
-    pub position: DVec3,
 }
 
 impl End {
@@ -157,33 +146,46 @@ impl End {
         }
     }
 
-    /// Returns the velocity of the held point, its acceleration from external forces, and its acceleration in free flight.
-    pub(super) fn motion(&self, hold: &Hold, bodies: &[Body]) -> (DVec3, DVec3, DVec3) {
-        self.motion_of(hold, bodies, |index| bodies[index].swing())
+    /// Motion of the frame that holds the end, for bodies whose motion `flight` returns.
+    pub(super) fn flight_of(&self, flight: impl Fn(usize) -> Flight) -> Flight {
+        match *self {
+            End::Path(path) => Flight {
+                velocity: path.velocity,
+                turning: path.turning,
+                ..Flight::default()
+            },
+            End::Body { index, .. } => flight(index),
+        }
     }
 
-    /// Like [`Self::motion`], for bodies whose rotation `swing` returns.
+    /// Returns the velocity of the held point, its acceleration from external forces, and its acceleration in free flight.
+    pub(super) fn motion(&self, hold: &Hold, bodies: &[Body]) -> (DVec3, DVec3, DVec3) {
+        self.motion_of(hold, |index| bodies[index].flight())
+    }
+
+    /// Like [`Self::motion`], for bodies whose motion `flight` returns.
+    #[inline]
     pub(super) fn motion_of(
         &self,
         hold: &Hold,
-        bodies: &[Body],
-        swing: impl Fn(usize) -> Swing,
+        flight: impl Fn(usize) -> Flight,
     ) -> (DVec3, DVec3, DVec3) {
         match (*self, hold.body) {
             (End::Body { .. }, Some(index)) => {
-                let body = &bodies[index];
-                if body.spin == Spin::Ignored {
-                    return (body.velocity, body.acceleration, DVec3::ZERO);
-                }
-                let Swing {
-                    velocity: turning,
+                let Flight {
+                    velocity,
+                    acceleration,
+                    turning,
                     pushed,
                     free,
-                } = swing(index);
+                } = flight(index);
+                if hold.arm == DVec3::ZERO {
+                    return (velocity, acceleration, DVec3::ZERO);
+                }
                 let swing = turning.cross(hold.arm);
                 (
-                    body.velocity + swing,
-                    body.acceleration + pushed.cross(hold.arm),
+                    velocity + swing,
+                    acceleration + pushed.cross(hold.arm),
                     free.cross(hold.arm) + turning.cross(swing),
                 )
             }
@@ -194,44 +196,6 @@ impl End {
             }
             (End::Body { .. }, None) => (DVec3::ZERO, DVec3::ZERO, DVec3::ZERO),
         }
-    }
-}
-
-impl Hold {
-    /// Upper bound on the inverse effective mass along any direction.
-    pub(crate) fn most_inverse_mass(&self, bodies: &[Body]) -> f64 {
-        let inertia = &self.inverse_inertia(bodies);
-        let trace = |m: &DMat3| m.x_axis.x + m.y_axis.y + m.z_axis.z;
-        if self.twist {
-            return trace(inertia);
-        }
-        let levers = DVec3::AXES.map(|axis| self.arm.cross(axis));
-        let turning: f64 = levers.iter().map(|l| l.dot(*inertia * *l)).sum();
-        self.inverse_mass.max_element() + turning
-    }
-
-    fn inverse_inertia(&self, bodies: &[Body]) -> DMat3 {
-        self.body
-            .map_or(DMat3::ZERO, |index| bodies[index].inverse_inertia())
-    }
-
-    /// Inverse effective mass of this end along a direction, 1/kg.
-    pub(crate) fn inverse_mass_along(&self, direction: DVec3, bodies: &[Body]) -> f64 {
-        if self.twist {
-            return direction.dot(self.inverse_inertia(bodies) * direction);
-        }
-        let w = self.inverse_mass;
-        // The direction would add rounding. Without it, equal lines have bitwise equal coefficients.
-        let linear = if w.x == w.y && w.y == w.z {
-            w.x
-        } else {
-            (w * direction).dot(direction)
-        };
-        if self.arm == DVec3::ZERO {
-            return linear;
-        }
-        let lever = self.arm.cross(direction);
-        linear + lever.dot(self.inverse_inertia(bodies) * lever)
     }
 }
 

@@ -3,8 +3,9 @@
 //! Each of them is one generalised coordinate (a length or an angle). Its rate is linear in the velocities, and the force on
 //! the bodies is along its gradient. So each of them conserves energy.
 
-use super::body::{Body, Swing};
+use super::body::Body;
 use super::element::Element;
+use super::flight::Flight;
 use super::line::{Line, Motion};
 use crate::functions::atan2;
 use bevy::math::{DQuat, DVec3};
@@ -123,8 +124,7 @@ impl Line {
     pub(super) fn guided_motion(
         &self,
         element: &Element,
-        bodies: &[Body],
-        swing: &impl Fn(usize) -> Swing,
+        flight: &impl Fn(usize) -> Flight,
     ) -> Motion {
         let u = self.direction;
         let mut motion = Motion {
@@ -137,23 +137,21 @@ impl Line {
             turning: 0.0,
         };
         if self.holds[0].twist {
-            for ((end, hold), sign) in element.ends.iter().zip(&self.holds).zip([-1.0, 1.0]) {
-                motion.axial += sign * u.dot(end.angular_velocity(bodies));
-                if let Some(index) = hold.body {
-                    let swing = swing(index);
-                    motion.pushed += sign * u.dot(swing.pushed);
-                    motion.arms += sign * u.dot(swing.free);
-                }
+            for (end, sign) in element.ends.iter().zip([-1.0, 1.0]) {
+                let flight = end.flight_of(flight);
+                motion.axial += sign * u.dot(flight.turning);
+                motion.pushed += sign * u.dot(flight.pushed);
+                motion.arms += sign * u.dot(flight.free);
             }
             return motion;
         }
-        let [a, b] = [0, 1].map(|i| element.ends[i].motion_of(&self.holds[i], bodies, swing));
+        let [a, b] = [0, 1].map(|i| element.ends[i].motion_of(&self.holds[i], flight));
         motion.axial = (b.0 - a.0).dot(u);
         motion.pushed = (b.1 - a.1).dot(u);
         motion.arms = (b.2 - a.2).dot(u);
         if let Guide::OfA(_) = element.guide {
             // Coriolis acceleration, because the axis turns with end A.
-            let turning = element.ends[0].angular_velocity(bodies);
+            let turning = element.ends[0].flight_of(flight).turning;
             motion.arms -= 2.0 * turning.cross(b.0 - a.0).dot(u);
         }
         motion

@@ -1,7 +1,9 @@
 //! The line from end to end at an instant, its motion, and impulses along it.
 
-use super::body::{Body, Spin, Swing};
-use super::element::{Element, Hold};
+use super::body::{Body, Spin};
+use super::element::Element;
+use super::flight::Flight;
+use super::hold::Hold;
 use bevy::math::DVec3;
 
 /// Distance up to which two points count as coincident, as a share of their greatest coordinate. So short a distance may be
@@ -77,21 +79,21 @@ impl Line {
 
     /// Motion of the line at the bodies' present velocities. `step` bounds the centripetal acceleration.
     pub(crate) fn motion(&self, element: &Element, bodies: &[Body], step: f64) -> Motion {
-        self.motion_of(element, bodies, |index| bodies[index].swing(), step)
+        self.motion_of(element, |index| bodies[index].flight(), step)
     }
 
-    /// Like [`Self::motion`], for bodies whose rotation `swing` returns. Several elements at a body then share it.
+    /// Like [`Self::motion`], for bodies whose motion `flight` returns. Several elements at a body then share it.
+    #[inline]
     pub(crate) fn motion_of(
         &self,
         element: &Element,
-        bodies: &[Body],
-        swing: impl Fn(usize) -> Swing,
+        flight: impl Fn(usize) -> Flight,
         step: f64,
     ) -> Motion {
         if self.guided {
-            return self.guided_motion(element, bodies, &swing);
+            return self.guided_motion(element, &flight);
         }
-        let [a, b] = [0, 1].map(|i| element.ends[i].motion_of(&self.holds[i], bodies, &swing));
+        let [a, b] = [0, 1].map(|i| element.ends[i].motion_of(&self.holds[i], &flight));
         let velocity = b.0 - a.0;
         let axial = velocity.dot(self.direction);
         let lateral = velocity - axial * self.direction;

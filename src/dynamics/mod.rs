@@ -3,8 +3,9 @@
 //! The modules in the order of a step:
 //!
 //! - [`tolerance`] chooses the number of micro-steps, and [`step`] advances a component.
-//! - A [`body`] drifts in free flight. An [`element`] acts along the [`mod@line`] between its ends, or as its [`guide`]
-//!   says. [`linkage`] computes how mobile joints and contacts leave the bodies.
+//! - A [`body`] drifts in free flight, whose velocities at an instant are its [`flight`]. An [`element`] [`hold`]s its bodies, and
+//!   acts along the [`mod@line`] between its ends, or as its [`guide`] says. [`linkage`] computes how mobile joints and contacts
+//!   leave the bodies.
 //! - [`poles`] computes exact coefficients. [`kick`] uses them for a lone element, [`pair`] for one that turns no body,
 //!   and [`lanes`] for four of those at once. [`nonlinear_pair`] solves one with a force [`law`].
 //! - [`network`] solves elements that share bodies, with the linear algebra in [`system`] and [`strut`]. [`points`] does
@@ -24,8 +25,10 @@ pub(crate) mod element;
 pub(crate) mod energy;
 mod envelope;
 mod excited;
+mod flight;
 pub(crate) mod guard;
 pub(crate) mod guide;
+mod hold;
 pub(crate) mod kick;
 pub(crate) mod lanes;
 pub(crate) mod law;

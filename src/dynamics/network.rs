@@ -11,8 +11,10 @@
 //! rule, which conserves the energy of any linear motion at any stiffness. Modes that the step cannot resolve are damped a
 //! little, as those of a lone element are.
 
-use super::body::{Body, Spin, Swing};
+use super::body::{Body, Spin};
+use super::conjugate::{FIRST, LAST, Until};
 use super::element::{Element, End};
+use super::flight::Flight;
 use super::kick;
 use super::line::{Line, Motion};
 use super::strut::{NOBODY, Strut, Twists};
@@ -41,9 +43,10 @@ pub(crate) struct Network {
     right: Twists,
     /// The last solution, from which the next iterations start.
     acceleration: Twists,
-    trial: Vec<Body>,
-    /// Rotation of each body, which its elements share.
-    swings: Vec<Swing>,
+    /// Motion of each body, which its elements share.
+    flights: Vec<Flight>,
+    /// Memory of [`Self::settle`].
+    moved: Vec<Body>,
     /// For each body, the stiffness of its elements over its mass, 1/s²: the Gershgorin bound on ω².
     stiffness: Vec<f64>,
     /// For each body, the damping of its elements over its mass, 1/s: the bound on 2γ.
@@ -77,25 +80,27 @@ struct Row {
 impl Network {
     /// Fills the rows with the elements' lines and their motion.
     fn measure(&mut self, elements: &[Element], bodies: &[Body], step: f64) {
-        note_swings(&mut self.swings, bodies);
-        let swings = &self.swings;
+        self.flights.clear();
+        self.flights.extend(bodies.iter().map(Body::flight));
+        let flights = &self.flights;
         self.rows.clear();
-        self.rows
-            .extend(elements.iter().enumerate().filter_map(|(index, element)| {
-                let line = element.line(bodies)?;
-                Some(Row {
-                    element: index,
-                    line,
-                    before: line.motion_of(element, bodies, |body| swings[body], step),
-                    load: DVec3::ZERO,
-                    centripetal_gain: 0.0,
-                    centripetal: 0.0,
-                    elastic: 0.0,
-                    drag: 0.0,
-                    damping: 0.0,
-                    braking: 0.0,
-                })
-            }));
+        for (index, element) in elements.iter().enumerate() {
+            let Some(line) = element.line(bodies) else {
+                continue;
+            };
+            self.rows.push(Row {
+                element: index,
+                before: line.motion_of(element, |body| flights[body], step),
+                line,
+                load: DVec3::ZERO,
+                centripetal_gain: 0.0,
+                centripetal: 0.0,
+                elastic: 0.0,
+                drag: 0.0,
+                damping: 0.0,
+                braking: 0.0,
+            });
+        }
     }
 
     /// Applies the kick after the first half drift: all elements and external forces together. `kinks` says whether the kick
@@ -117,30 +122,38 @@ impl Network {
         for row in &mut self.rows {
             row.centripetal = row.before.turning + row.before.arms;
         }
-        self.solve(bodies, budget);
+        let first = Until {
+            tolerance: FIRST,
+            budget,
+        };
+        self.solve(bodies, first);
         if self.hold_slipping(elements, step) {
             self.system.prepare();
-            self.solve(bodies, budget);
+            self.solve(bodies, first);
         }
-        let mut trial = std::mem::take(&mut self.trial);
-        trial.clear();
-        trial.extend_from_slice(bodies);
-        self.act(&mut trial, step);
-        note_swings(&mut self.swings, &trial);
-        let swings = &self.swings;
+        self.gain_speed(bodies, step);
+        let flights = &self.flights;
         for row in &mut self.rows {
             // The mean of before and after the kick makes the step time-symmetric.
-            let (element, swing) = (&elements[row.element], |body: usize| swings[body]);
-            let after = row.line.motion_of(element, &trial, swing, step);
+            let element = &elements[row.element];
+            let after = row.line.motion_of(element, |body| flights[body], step);
             row.centripetal = 0.5 * (row.centripetal + after.turning + after.arms);
         }
-        self.trial = trial;
-        self.solve(bodies, budget);
+        self.solve_to_the_last(bodies, budget);
         if kinks {
             self.keep_energy(elements, bodies, step, budget);
         }
         self.act(bodies, step);
         self.account(elements, step);
+    }
+
+    /// Adds to the motion of the bodies what they gain in a step by the present solution.
+    fn gain_speed(&mut self, bodies: &[Body], step: f64) {
+        let Twists { linear, angular } = &self.acceleration;
+        for (i, (flight, body)) in self.flights.iter_mut().zip(bodies).enumerate() {
+            let angular = angular.get(i).copied().unwrap_or(DVec3::ZERO);
+            *flight = body.flight_after(flight, [step * linear[i], step * angular]);
+        }
     }
 
     /// Adds up the heat of dampers, and the work of ends with prescribed motion.
@@ -190,8 +203,8 @@ impl Network {
             self.system.struts.push(strut(line, bodies, along, across));
         }
         self.system.prepare();
-        self.solve(bodies, budget);
-        let mut moved = std::mem::take(&mut self.trial);
+        self.solve_to_the_last(bodies, budget);
+        let mut moved = std::mem::take(&mut self.moved);
         moved.clear();
         moved.extend_from_slice(bodies);
         self.act(&mut moved, step);
@@ -200,7 +213,7 @@ impl Network {
 
     /// Takes back the memory of [`Self::settle`].
     pub(crate) fn give_back(&mut self, moved: Vec<Body>) {
-        self.trial = moved;
+        self.moved = moved;
     }
 
     /// Makes the next iterations start from zero.
@@ -276,8 +289,14 @@ impl Network {
         }
     }
 
+    /// Solves for the accelerations that move the bodies.
+    fn solve_to_the_last(&mut self, bodies: &[Body], budget: u32) {
+        let tolerance = LAST;
+        self.solve(bodies, Until { tolerance, budget });
+    }
+
     /// Solves for the accelerations, with the present centripetal accelerations of the rows.
-    fn solve(&mut self, bodies: &[Body], budget: u32) {
+    fn solve(&mut self, bodies: &[Body], until: Until) {
         let right = &mut self.right;
         right.clear(bodies.len(), self.system.turns());
         for (i, body) in bodies.iter().enumerate() {
@@ -291,7 +310,7 @@ impl Network {
         }
         let effort = self
             .system
-            .solve(&mut self.right, &mut self.acceleration, budget);
+            .solve(&mut self.right, &mut self.acceleration, until);
         let sum = self.effort.get_or_insert(effort);
         sum.converged &= effort.converged;
     }
@@ -305,11 +324,6 @@ impl Network {
         }
         kick::external(bodies, step);
     }
-}
-
-fn note_swings(swings: &mut Vec<Swing>, bodies: &[Body]) {
-    swings.clear();
-    swings.extend(bodies.iter().map(Body::swing));
 }
 
 /// The part of an element in the linear system.

@@ -30,40 +30,52 @@ pub(super) struct Twists {
 
 impl Strut {
     /// Motion of end B relative to end A.
+    #[inline]
     pub(super) fn relative(&self, x: &Twists) -> DVec3 {
-        let at = |end: usize| match self.bodies[end] {
+        self.motion_at(1, x) - self.motion_at(0, x)
+    }
+
+    #[inline(always)]
+    fn motion_at(&self, end: usize, x: &Twists) -> DVec3 {
+        match self.bodies[end] {
             NOBODY => DVec3::ZERO,
             body if self.twist => x.angular[body],
             body if self.arms[end] == DVec3::ZERO => x.linear[body],
             body => x.linear[body] + x.angular[body].cross(self.arms[end]),
-        };
-        at(1) - at(0)
+        }
     }
 
     /// Force that the relative acceleration `r` adds, N.
+    #[inline]
     pub(super) fn force(&self, r: DVec3) -> DVec3 {
         self.across * r + (self.along - self.across) * self.direction.dot(r) * self.direction
     }
 
     /// Adds a force on end B and its opposite on end A.
+    #[inline]
     pub(super) fn add(&self, to: &mut Twists, force: DVec3) {
-        for (end, sign) in [-1.0, 1.0].into_iter().enumerate() {
-            let body = self.bodies[end];
-            if body == NOBODY {
-                continue;
-            }
-            if self.twist {
-                to.angular[body] += sign * force;
-                continue;
-            }
-            to.linear[body] += sign * force;
-            if self.arms[end] != DVec3::ZERO {
-                to.angular[body] += self.arms[end].cross(sign * force);
-            }
+        self.add_at(0, to, -force);
+        self.add_at(1, to, force);
+    }
+
+    #[inline(always)]
+    fn add_at(&self, end: usize, to: &mut Twists, force: DVec3) {
+        let body = self.bodies[end];
+        if body == NOBODY {
+            return;
+        }
+        if self.twist {
+            to.angular[body] += force;
+            return;
+        }
+        to.linear[body] += force;
+        if self.arms[end] != DVec3::ZERO {
+            to.angular[body] += self.arms[end].cross(force);
         }
     }
 
     /// The matrix of [`Self::force`].
+    #[inline]
     pub(super) fn matrix(&self) -> DMat3 {
         let u = self.direction;
         let outer = DMat3::from_cols(u * u.x, u * u.y, u * u.z);
@@ -71,13 +83,10 @@ impl Strut {
     }
 }
 
-/// Matrix of r ↦ a × r.
-pub(super) fn cross(a: DVec3) -> DMat3 {
-    DMat3::from_cols(
-        DVec3::new(0.0, a.z, -a.y),
-        DVec3::new(-a.z, 0.0, a.x),
-        DVec3::new(a.y, -a.x, 0.0),
-    )
+/// Product of the matrix of r ↦ a × r and another one.
+#[inline]
+pub(super) fn crossed(a: DVec3, m: &DMat3) -> DMat3 {
+    DMat3::from_cols(a.cross(m.x_axis), a.cross(m.y_axis), a.cross(m.z_axis))
 }
 
 impl Twists {
@@ -85,6 +94,13 @@ impl Twists {
         self.linear.clear();
         self.linear.resize(bodies, DVec3::ZERO);
         self.angular.clear();
+        self.angular
+            .resize(if turns { bodies } else { 0 }, DVec3::ZERO);
+    }
+
+    /// Makes room for every body. The values of what was there remain.
+    pub(super) fn fit(&mut self, bodies: usize, turns: bool) {
+        self.linear.resize(bodies, DVec3::ZERO);
         self.angular
             .resize(if turns { bodies } else { 0 }, DVec3::ZERO);
     }

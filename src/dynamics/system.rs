@@ -5,9 +5,9 @@
 //! from the last solution. Their preconditioner is the inverse of each body's diagonal block.
 
 use super::body::{Body, Spin};
-use super::conjugate::{self, Iterated};
+use super::conjugate::{self, Iterated, Until};
 use super::direct::{Direct, Own};
-use super::strut::{NOBODY, Strut, Twists, cross};
+use super::strut::{NOBODY, Strut, Twists, crossed};
 use bevy::math::{DMat3, DVec3};
 
 /// Result of a solve.
@@ -140,7 +140,7 @@ impl System {
     }
 
     /// Solves for `right`. Iterations start from `x`.
-    pub(super) fn solve(&mut self, right: &mut Twists, x: &mut Twists, budget: u32) -> Effort {
+    pub(super) fn solve(&mut self, right: &mut Twists, x: &mut Twists, until: Until) -> Effort {
         right.mask(&self.free);
         if !x.fits(self.mass.len(), self.turns) {
             x.clear(self.mass.len(), self.turns);
@@ -151,12 +151,12 @@ impl System {
             self.direct.solve(&mut x.linear, &mut x.angular);
             return Effort { converged: true };
         }
-        self.iterate(right, x, budget)
+        self.iterate(right, x, until)
     }
 
     /// y = A x.
     fn apply(&self, x: &Twists, y: &mut Twists) {
-        y.clear(self.mass.len(), self.turns);
+        y.fit(self.mass.len(), self.turns);
         for ((y, x), m) in y.linear.iter_mut().zip(&x.linear).zip(&self.mass) {
             *y = *m * *x;
         }
@@ -169,7 +169,7 @@ impl System {
         y.mask(&self.free);
     }
 
-    fn iterate(&mut self, right: &Twists, x: &mut Twists, budget: u32) -> Effort {
+    fn iterate(&mut self, right: &Twists, x: &mut Twists, until: Until) -> Effort {
         x.mask(&self.free);
         let mut vectors = std::mem::take(&mut self.vectors);
         self.precondition(right, &mut vectors.preconditioned);
@@ -185,13 +185,13 @@ impl System {
             x,
         };
         let residual = running.advance(0.0);
-        let converged = conjugate::solve(&mut running, weight, residual, budget);
+        let converged = conjugate::solve(&mut running, weight, residual, until);
         self.vectors = running.vectors;
         Effort { converged }
     }
 
     fn precondition(&self, r: &Twists, z: &mut Twists) {
-        z.clear(self.mass.len(), self.turns);
+        z.fit(self.mass.len(), self.turns);
         if !self.turns {
             for ((z, r), block) in z.linear.iter_mut().zip(&r.linear).zip(&self.blocks) {
                 *z = *block * *r;
@@ -236,14 +236,17 @@ impl System {
                 if body == NOBODY {
                     continue;
                 }
-                let (lever, block) = (cross(arm), &mut self.blocks_turning[body]);
+                let block = &mut self.blocks_turning[body];
                 if strut.twist {
                     block.angular += own;
                     continue;
                 }
                 block.linear += own;
-                block.across += own * -lever;
-                block.angular += lever * own * -lever;
+                if arm != DVec3::ZERO {
+                    let swung = crossed(arm, &own).transpose();
+                    block.across += swung;
+                    block.angular += crossed(arm, &swung);
+                }
             }
         }
         for (i, block) in self.blocks_turning.iter_mut().enumerate() {

@@ -52,7 +52,7 @@ impl Network {
             if wrong <= RIGHT * greatest {
                 return;
             }
-            self.solve(bodies, budget);
+            self.solve_to_the_last(bodies, budget);
         }
     }
 }

@@ -1,8 +1,9 @@
+use crate::dynamics::body::Body;
 use crate::dynamics::law::tests::recipe;
 use crate::dynamics::law::{DragLaw, Law, Recipe, Table};
 use crate::dynamics::step::Component;
-use crate::dynamics::tests::{DT, element, fixed, held, point, row};
-use crate::dynamics::tolerance::Accuracy;
+use crate::dynamics::tests::{DT, element, fixed, held, point, row, turning};
+use crate::dynamics::tolerance::{Accuracy, Method};
 use crate::settings::MAX_ITERATIONS;
 use bevy::math::DVec3;
 use std::sync::Arc;
@@ -130,4 +131,46 @@ fn a_stiff_net_under_a_heavy_body_needs_more_than_half_of_the_iterations_that_it
         let capped = (0..6).any(|_| net.advance(DT, accuracy).capped);
         assert_eq!(capped, !is_enough, "{most} iterations");
     }
+}
+
+/// Bodies that turn as one with 5 rad/s, all joined to each other by stretched springs, and so many idle ones beside them.
+fn crowd(idle: usize) -> Component {
+    let mut crowd = Component::default();
+    let turns = DVec3::new(3.0, 4.0, 0.0);
+    let count = 12;
+    for at in 0..count + idle {
+        let place = DVec3::new(at as f64, (at * at % 7) as f64, (at * at % 5) as f64);
+        let inertia = DVec3::new(0.1, 0.2, 0.25);
+        let is_idle = at >= count;
+        let spin = if is_idle { DVec3::ZERO } else { turns };
+        let mut body = turning(point(1.0, place, DVec3::ZERO), inertia, spin);
+        body.velocity = spin.cross(place);
+        crowd.bodies.push(body);
+        for other in if is_idle { count..at } else { 0..at } {
+            let stiffness = if is_idle { 0.0 } else { 300.0 };
+            let length = 0.9 * place.distance(crowd.bodies[other].position);
+            let [a, b] = [held(other, 0.2 * DVec3::X), held(at, 0.3 * DVec3::Y)];
+            crowd.elements.push(element(a, b, stiffness, 0.0, length));
+        }
+    }
+    crowd
+}
+
+#[test]
+fn what_turns_after_a_kick_is_known_well_enough() {
+    // With idle bodies beside it, the crowd is so large that its equations are solved by iterations.
+    let [alone, beside] = [0, 12].map(|idle| {
+        let mut crowd = crowd(idle);
+        let methods = (0..60).map(|_| crowd.advance(DT, Accuracy::exactly(4)).method);
+        let wanted = if idle == 0 {
+            Method::Direct
+        } else {
+            Method::Iterative
+        };
+        assert!(methods.into_iter().all(|method| method == wanted));
+        crowd.bodies
+    });
+    let apart = |(a, b): (&Body, &Body)| a.position.distance(b.position);
+    let apart = alone.iter().zip(&beside).map(apart).fold(0.0, f64::max);
+    assert!(apart < 3e-7, "{apart:.1e} m");
 }

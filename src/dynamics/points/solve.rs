@@ -7,7 +7,7 @@
 
 use super::bar::{Bar, add};
 use super::parts::{Parts, Run, places};
-use crate::dynamics::conjugate::{self, Iterated};
+use crate::dynamics::conjugate::{self, Iterated, Until};
 use crate::dynamics::direct::{Direct, Own};
 use crate::dynamics::strut::{NOBODY, Strut};
 use crate::threads::{PIECE, each, share};
@@ -149,7 +149,7 @@ impl Solver {
 
     /// Solves for the right side. `image` must be the product of the matrix with the last solution. Returns whether the
     /// iterations converged.
-    pub(super) fn solve(&mut self, bars: &[Bar], parts: &Parts, budget: u32) -> bool {
+    pub(super) fn solve(&mut self, bars: &[Bar], parts: &Parts, until: Until) -> bool {
         if self.factorised {
             let solution = &mut self.solution[..self.right.len()];
             solution.copy_from_slice(&self.right);
@@ -162,7 +162,7 @@ impl Solver {
             bars,
             parts,
         };
-        conjugate::solve(&mut running, weight, residual, budget)
+        conjugate::solve(&mut running, weight, residual, until)
     }
 
     /// Computes the residual. Returns bᵀ P b of the right side b and rᵀ P r of the residual.
