@@ -40,12 +40,26 @@ impl<F: Fn() -> App> Lazy<F> {
 }
 
 fn frames(c: &mut Criterion) {
-    let mut group = c.benchmark_group("frame");
+    let links = [Link::Nothing, Link::Bare, Link::Ours, Link::Joint];
+    whole(
+        c,
+        "frame",
+        Scene::Isolated,
+        &[1_000, 10_000, 100_000],
+        &links,
+    );
+    let links = [Link::Nothing, Link::Ours, Link::Joint];
+    whole(c, "frame/flying cars", Scene::Cars, &[1_000], &links);
+}
+
+/// Times whole frames of a scene with these numbers of springs.
+fn whole(c: &mut Criterion, name: &str, scene: Scene, counts: &[u32], links: &[Link]) {
+    let mut group = c.benchmark_group(name);
     group.sample_size(10);
-    for count in [1_000, 10_000, 100_000] {
+    for count in counts.iter().copied() {
         group.throughput(Throughput::Elements(u64::from(count)));
-        for link in [Link::Nothing, Link::Bare, Link::Ours, Link::Joint] {
-            let mut lazy = Lazy::new(|| Scene::Isolated.app(count, link));
+        for link in links.iter().copied() {
+            let mut lazy = Lazy::new(|| scene.app(count, link));
             group.bench_function(BenchmarkId::new(format!("{link:?}"), count), |b| {
                 let app = lazy.app();
                 b.iter(|| app.update());

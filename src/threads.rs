@@ -1,4 +1,8 @@
 //! Shares work among several threads, where there is more than one and it is worth it.
+//!
+//! Systems that share work are not `Send`, so that they run on the main thread. Otherwise they would take a thread of the pool, and
+//! the main thread would only wait: Bevy does not let it work for the pool while a schedule runs. On two cores the pool has one
+//! thread, and nothing would be shared. Pinned by the benchmark `frame/flying cars`.
 
 use bevy::tasks::ComputeTaskPool;
 use std::num::NonZeroUsize;
@@ -24,7 +28,7 @@ pub(crate) fn count() -> usize {
     if ALONE.get() {
         return 1;
     }
-    // The thread that waits for the pool works too: on two cores the pool has only one thread.
+    // The main thread works too.
     let pool = ComputeTaskPool::try_get().map_or(0, |pool| pool.thread_num());
     (*CORES).min(pool + 1)
 }

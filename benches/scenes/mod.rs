@@ -223,7 +223,7 @@ impl Scene {
             }
             Self::Chain => chain(app.world_mut(), count, link),
             Self::Bridge => bridge::bridge(app.world_mut(), count / 2),
-            Self::Cars => cars(app.world_mut(), count),
+            Self::Cars => cars(app.world_mut(), count, link),
             Self::Rolling => road::cars(app.world_mut(), count, link, 3.0),
             Self::Parked => road::cars(app.world_mut(), count, link, 0.0),
             Self::Lattice | Self::Cloth => lattice(app.world_mut(), self.bodies_along(count), link),
@@ -333,7 +333,7 @@ fn chain(world: &mut World, count: u32, link: Link) {
     }
 }
 
-fn cars(world: &mut World, count: u32) {
+fn cars(world: &mut World, count: u32, link: Link) {
     for i in 0..count / 4 {
         let at = Vec3::new((i % 30) as f32 * 5.0, 0.0, (i / 30) as f32 * 5.0);
         let chassis = body(world, at, Vec3::Y * 0.3);
@@ -341,13 +341,20 @@ fn cars(world: &mut World, count: u32) {
         for corner in [(1.0, 1.5), (1.0, -1.5), (-1.0, 1.5), (-1.0, -1.5)] {
             let corner = Vec3::new(corner.0, 0.0, corner.1);
             let wheel = body(world, at + corner - Vec3::Y * 0.9, Vec3::ZERO);
-            world.spawn((
-                SpringDamper::new(chassis, wheel)
-                    .with_stiffness(400.0)
-                    .with_damping(2.0)
-                    .with_rest_length(1.0),
-                Anchors::new(corner, Vec3::ZERO),
-            ));
+            if let Link::Joint = link {
+                let joint = SpringJointBuilder::new(1.0, 400.0, 2.0).local_anchor1(corner);
+                world
+                    .entity_mut(wheel)
+                    .insert(ImpulseJoint::new(chassis, joint));
+            } else if let Link::Ours = link {
+                world.spawn((
+                    SpringDamper::new(chassis, wheel)
+                        .with_stiffness(400.0)
+                        .with_damping(2.0)
+                        .with_rest_length(1.0),
+                    Anchors::new(corner, Vec3::ZERO),
+                ));
+            }
         }
     }
 }

@@ -5,6 +5,7 @@ use crate::backend::Worlds;
 use crate::input::parts::IsElement;
 use crate::scene::show::{Readouts, Springs};
 use crate::scene::state::Scene;
+use bevy::ecs::system::NonSendMarker;
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
 use bevy_rapier3d::rapier::dynamics::RigidBodySet;
@@ -16,6 +17,7 @@ pub(crate) fn measure(
     mut readouts: Readouts,
     mut springs: Query<Springs, IsElement>,
     mut commands: Commands,
+    _on_main_thread: NonSendMarker,
 ) {
     // bevy_rapier's write-back marks every set as changed in every tick, so note that time.
     let changed = |context| sets.get(context).ok().map(|(_, set)| set.last_changed());

@@ -10,6 +10,7 @@ use crate::scene::free;
 use crate::scene::state::Scene;
 use crate::scene::step::Step;
 use bevy::ecs::entity::Entities;
+use bevy::ecs::system::NonSendMarker;
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
 use bevy_rapier3d::rapier::dynamics::IntegrationParameters;
@@ -42,6 +43,7 @@ pub(crate) fn solve(
     users: Iterations,
     entities: &Entities,
     mut spare: Local<Spare>,
+    _on_main_thread: NonSendMarker,
 ) {
     timesteps.check();
     let scene = &mut *scene;
@@ -170,5 +172,23 @@ impl Scene {
             }
             !here
         });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::measure::measure;
+    use super::*;
+
+    #[test]
+    fn systems_that_share_work_run_on_the_main_thread() {
+        fn may_leave<M>(system: impl IntoSystem<(), (), M>) -> bool {
+            let mut system = IntoSystem::into_system(system);
+            system.initialize(&mut World::new());
+            system.is_send()
+        }
+        assert!(!may_leave(solve));
+        assert!(!may_leave(measure));
+        assert!(may_leave(|| {}));
     }
 }
