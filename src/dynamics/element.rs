@@ -146,7 +146,8 @@ impl End {
         }
     }
 
-    /// Motion of the frame that holds the end, for bodies whose motion `flight` returns.
+    /// Motion of the body or the frame that holds the end, for bodies whose motion `flight` returns.
+    #[inline]
     pub(super) fn flight_of(&self, flight: impl Fn(usize) -> Flight) -> Flight {
         match *self {
             End::Path(path) => Flight {
@@ -170,32 +171,22 @@ impl End {
         hold: &Hold,
         flight: impl Fn(usize) -> Flight,
     ) -> (DVec3, DVec3, DVec3) {
-        match (*self, hold.body) {
-            (End::Body { .. }, Some(index)) => {
-                let Flight {
-                    velocity,
-                    acceleration,
-                    turning,
-                    pushed,
-                    free,
-                } = flight(index);
-                if hold.arm == DVec3::ZERO {
-                    return (velocity, acceleration, DVec3::ZERO);
-                }
-                let swing = turning.cross(hold.arm);
-                (
-                    velocity + swing,
-                    acceleration + pushed.cross(hold.arm),
-                    free.cross(hold.arm) + turning.cross(swing),
-                )
-            }
-            (End::Path(path), _) => {
-                let swing = path.turning.cross(hold.arm);
-                let inward = path.turning.cross(swing);
-                (path.velocity + swing, DVec3::ZERO, inward)
-            }
-            (End::Body { .. }, None) => (DVec3::ZERO, DVec3::ZERO, DVec3::ZERO),
+        let Flight {
+            velocity,
+            acceleration,
+            turning,
+            pushed,
+            free,
+        } = self.flight_of(flight);
+        if hold.arm == DVec3::ZERO {
+            return (velocity, acceleration, DVec3::ZERO);
         }
+        let swing = turning.cross(hold.arm);
+        (
+            velocity + swing,
+            acceleration + pushed.cross(hold.arm),
+            free.cross(hold.arm) + turning.cross(swing),
+        )
     }
 }
 

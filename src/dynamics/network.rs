@@ -122,14 +122,10 @@ impl Network {
         for row in &mut self.rows {
             row.centripetal = row.before.turning + row.before.arms;
         }
-        let first = Until {
-            tolerance: FIRST,
-            budget,
-        };
-        self.solve(bodies, first);
+        self.solve(bodies, FIRST, budget);
         if self.hold_slipping(elements, step) {
             self.system.prepare();
-            self.solve(bodies, first);
+            self.solve(bodies, FIRST, budget);
         }
         self.gain_speed(bodies, step);
         let flights = &self.flights;
@@ -139,7 +135,7 @@ impl Network {
             let after = row.line.motion_of(element, |body| flights[body], step);
             row.centripetal = 0.5 * (row.centripetal + after.turning + after.arms);
         }
-        self.solve_to_the_last(bodies, budget);
+        self.solve(bodies, LAST, budget);
         if kinks {
             self.keep_energy(elements, bodies, step, budget);
         }
@@ -203,7 +199,7 @@ impl Network {
             self.system.struts.push(strut(line, bodies, along, across));
         }
         self.system.prepare();
-        self.solve_to_the_last(bodies, budget);
+        self.solve(bodies, LAST, budget);
         let mut moved = std::mem::take(&mut self.moved);
         moved.clear();
         moved.extend_from_slice(bodies);
@@ -289,14 +285,8 @@ impl Network {
         }
     }
 
-    /// Solves for the accelerations that move the bodies.
-    fn solve_to_the_last(&mut self, bodies: &[Body], budget: u32) {
-        let tolerance = LAST;
-        self.solve(bodies, Until { tolerance, budget });
-    }
-
     /// Solves for the accelerations, with the present centripetal accelerations of the rows.
-    fn solve(&mut self, bodies: &[Body], until: Until) {
+    fn solve(&mut self, bodies: &[Body], tolerance: f64, budget: u32) {
         let right = &mut self.right;
         right.clear(bodies.len(), self.system.turns());
         for (i, body) in bodies.iter().enumerate() {
@@ -308,6 +298,7 @@ impl Network {
         for (row, strut) in self.rows.iter().zip(&self.system.struts) {
             strut.add(right, -row.force());
         }
+        let until = Until { tolerance, budget };
         let effort = self
             .system
             .solve(&mut self.right, &mut self.acceleration, until);

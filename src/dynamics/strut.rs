@@ -92,10 +92,8 @@ pub(super) fn crossed(a: DVec3, m: &DMat3) -> DMat3 {
 impl Twists {
     pub(super) fn clear(&mut self, bodies: usize, turns: bool) {
         self.linear.clear();
-        self.linear.resize(bodies, DVec3::ZERO);
         self.angular.clear();
-        self.angular
-            .resize(if turns { bodies } else { 0 }, DVec3::ZERO);
+        self.fit(bodies, turns);
     }
 
     /// Makes room for every body. The values of what was there remain.

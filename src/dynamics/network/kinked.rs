@@ -11,6 +11,7 @@
 
 use super::{Network, Row};
 use crate::dynamics::body::Body;
+use crate::dynamics::conjugate::LAST;
 use crate::dynamics::element::Element;
 use bevy::math::DVec3;
 
@@ -52,7 +53,7 @@ impl Network {
             if wrong <= RIGHT * greatest {
                 return;
             }
-            self.solve_to_the_last(bodies, budget);
+            self.solve(bodies, LAST, budget);
         }
     }
 }
