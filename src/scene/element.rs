@@ -91,8 +91,9 @@ pub(crate) fn element(row: &mut ElementRow, ends: [End; 2], bodies: &[Body]) -> 
             .set_passing(Some(Fault::new(row.rare.ties.names.axis, reason)));
         return None;
     }
-    let rate = || line.motion(&element, bodies, 0.0).axial;
-    if element.law.is_some() && !element.is_sound(line.distance(), rate()) {
+    if element.law.is_some()
+        && !element.is_sound(line.distance(), line.motion(&element, bodies, 0.0).axial)
+    {
         let fault = Fault::UNSOUND_LAW;
         row.trouble.set_passing(Some(fault));
         return None;
