@@ -84,8 +84,8 @@ pub fn cloth() -> Endurance {
         strikes: 0,
         missing: Some(0.02),
         surplus: 0.02,
-        // Columns between those with air dampers swing on for long (0.38 m/s in the shortened run).
-        rests: 0.6,
+        // Columns between those with air dampers swing on for long (0.10 m/s).
+        rests: 0.15,
         faults: BTreeMap::new(),
     }
 }
