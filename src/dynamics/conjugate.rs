@@ -5,8 +5,8 @@
 /// `dynamics::tests`.
 pub(super) const LAST: f64 = 1e-10;
 
-/// Tolerance of a solution that only tells how lines turn after a kick, where bodies turn. That part of the force is small, of
-/// second order in the step. With [`LAST`] in its place, a large network takes about a quarter more iterations. Pinned by
+/// Tolerance of a solution that only tells how lines turn after a kick. That part of the force is small, of second order in the
+/// step. With [`LAST`] in its place, a large network takes about a quarter more iterations. Pinned by
 /// `network::tests::what_turns_after_a_kick_is_known_well_enough`.
 pub(super) const FIRST: f64 = 1e-7;
 

@@ -4,7 +4,7 @@ use super::bar::{Bar, Load, add};
 use super::parts::{Run, places};
 use super::solve::{Block, Solver};
 use super::{Points, State};
-use crate::dynamics::conjugate::{LAST, Until};
+use crate::dynamics::conjugate::{FIRST, LAST, Until};
 use crate::dynamics::network::placement;
 use crate::threads::{PIECE, share};
 use bevy::math::DVec3;
@@ -19,10 +19,10 @@ impl Points {
         let (z_max, _) = self.bounds(step);
         self.measure(step, placement(z_max));
         self.solver.prepare(&self.bars, z_max < SOFT);
-        self.solve();
+        self.solve(FIRST);
         self.push(step, false);
         self.turn(step);
-        self.solve();
+        self.solve(LAST);
         self.push(step, true);
         self.arrive(step);
     }
@@ -77,13 +77,10 @@ impl Points {
         }
     }
 
-    /// Solves for the accelerations at the present turning of the lines. With the tolerance `FIRST` in the first solve of a kick, a
-    /// cloth would take a twentieth less time, but the example `flag` is so near its limit that other rounding tears a thread.
-    fn solve(&mut self) {
-        let until = Until {
-            tolerance: LAST,
-            budget: self.budget,
-        };
+    /// Solves for the accelerations at the present turning of the lines.
+    fn solve(&mut self, tolerance: f64) {
+        let budget = self.budget;
+        let until = Until { tolerance, budget };
         self.converged &= self.solver.solve(&self.bars, &self.parts, until);
     }
 
