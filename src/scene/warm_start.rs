@@ -7,7 +7,7 @@ use crate::scene::assembly::{Assembly, State};
 use crate::scene::push::Given;
 use crate::scene::rows::{BodyFlags, BodyRow, Cut, ElementRow, Members, pull_mark, take};
 use crate::scene::step::Step;
-use crate::threads::{PIECE, beside, each, share};
+use crate::threads::{PIECE, beside, each, share_pieces};
 use bevy::math::{DVec3, Vec3};
 use std::sync::atomic::Ordering;
 
@@ -177,7 +177,7 @@ impl WarmStart {
         noted.resize(slots.len().div_ceil(PIECE), Noted::default());
         let pieces = pieces(slots, members.bodies, bodies.again()).zip(pulls.chunks_mut(PIECE));
         let pieces = pieces.zip(met.chunks_mut(PIECE)).zip(&mut *noted);
-        share(pieces, |((((slots, mut rows), pulls), met), noted)| {
+        share_pieces(pieces, |((((slots, mut rows), pulls), met), noted)| {
             for ((slot, pull), met) in slots.iter().zip(pulls).zip(met) {
                 let slot = *slot as usize;
                 let (row, center) = (&mut rows[members.bodies[slot] as usize], centers[slot]);

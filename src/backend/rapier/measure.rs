@@ -5,6 +5,7 @@ use crate::backend::Worlds;
 use crate::input::parts::IsElement;
 use crate::scene::show::{Readouts, Springs};
 use crate::scene::state::Scene;
+use crate::threads;
 use bevy::ecs::system::NonSendMarker;
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
@@ -26,6 +27,7 @@ pub(crate) fn measure(
     if scene.time <= 0.0 || all_asleep {
         return;
     }
+    let _awake = threads::Awake::new();
     scene.observe(&Sets::new(&sets));
     scene.show(&mut readouts, &mut springs, &mut commands);
 }

@@ -9,6 +9,7 @@ use crate::backend::rapier::held::{EngineParts, Solver, View, give_back, remove}
 use crate::scene::free;
 use crate::scene::state::Scene;
 use crate::scene::step::Step;
+use crate::threads;
 use bevy::ecs::entity::Entities;
 use bevy::ecs::system::NonSendMarker;
 use bevy::prelude::*;
@@ -45,6 +46,7 @@ pub(crate) fn solve(
     mut spare: Local<Spare>,
     _on_main_thread: NonSendMarker,
 ) {
+    let _awake = threads::Awake::new();
     timesteps.check();
     let scene = &mut *scene;
     forces::read_users(scene, &mut loads);

@@ -6,7 +6,7 @@ use super::solve::{Block, Solver};
 use super::{Points, State};
 use crate::dynamics::conjugate::{FIRST, LAST, Until};
 use crate::dynamics::network::placement;
-use crate::threads::{PIECE, share};
+use crate::threads::{PIECE, share_pieces};
 use bevy::math::DVec3;
 
 /// (ω h)² of the stiffest mode below which the matrix is so well conditioned that a few iterations solve it. Pinned by
@@ -177,7 +177,7 @@ impl Points {
             .chunks_mut(PIECE)
             .zip(velocities.chunks_mut(PIECE));
         let pieces = moving.zip(given.chunks_mut(PIECE)).enumerate();
-        share(pieces, |(piece, ((positions, velocities), given))| {
+        share_pieces(pieces, |(piece, ((positions, velocities), given))| {
             for (i, given) in given.iter_mut().enumerate() {
                 let at = piece * PIECE + i;
                 *given += impulses[at];

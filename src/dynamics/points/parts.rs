@@ -3,7 +3,8 @@
 //!
 //! Work on single points or single elements is divided into pieces of equal length, [`PIECE`]. Elements that share a
 //! point must not add to it at the same time. Elements and points are sorted so that neighbours in the network are near
-//! in memory (`scene::order`). So the points of a run of elements overlap only those of the previous and the next run.
+//! in memory (`scene::order`). So the points of a run of elements overlap only those of the previous and the next run, if
+//! runs are long enough.
 //! Every second run is processed at the same time ([`Stage::Even`]), and then the others ([`Stage::Odd`]).
 //!
 //! In each stage, every body belongs to one run. So what a body needs before all its elements is done in the first stage,
@@ -13,6 +14,9 @@ use super::Wire;
 use crate::threads::{PIECE, share};
 use std::mem::{replace, take};
 use std::ops::Range;
+
+/// Least number of runs: of fewer, most of the work would be in one. Pinned by the benchmark `own/Cloth`.
+const LEAST: usize = 4;
 
 /// A run of elements.
 #[derive(Clone, Debug)]
@@ -105,39 +109,46 @@ impl<A: Split, B: Split, C: Split> Split for (A, B, C) {
 }
 
 impl Parts {
-    /// Divides a network of `bodies` bodies.
+    /// Divides a network of `bodies` bodies into as many runs as possible. The wider the network is, the longer its runs have to be.
     pub(super) fn find(&mut self, wires: &[Wire], bodies: usize) {
-        self.list.clear();
         self.bodies = bodies;
+        let mut length = PIECE;
+        while LEAST * length < wires.len() + length {
+            if self.divide(wires, length) {
+                return;
+            }
+            length *= 2;
+        }
+        self.list.clear();
+        self.list.push(Part {
+            bars: 0..wires.len(),
+            first: 0,
+        });
+    }
+
+    /// Divides a network into runs of so many elements. Returns whether runs that are not neighbours share no body.
+    fn divide(&mut self, wires: &[Wire], length: usize) -> bool {
+        self.list.clear();
+        let bodies = self.bodies;
         // End of the range of bodies that all runs but the last have touched.
         let (mut touched, mut last) = (0, 0);
-        for (at, run) in wires.chunks(PIECE).enumerate() {
+        for (at, run) in wires.chunks(length).enumerate() {
             let ends = run.iter().flat_map(|wire| wire.ends);
             let ends = ends.map(|end| end as usize).filter(|end| *end < bodies);
             let (least, most) = ends.fold((usize::MAX, 0), |(a, b), e| (a.min(e), b.max(e + 1)));
             let least = least.min(bodies);
             let ahead = self.list.last().is_none_or(|part| least >= part.first);
             if !ahead || least < touched {
-                return self.be_whole(wires.len());
+                return false;
             }
             (touched, last) = (touched.max(last), most);
-            let start = at * PIECE;
+            let start = at * length;
             self.list.push(Part {
                 bars: start..start + run.len(),
                 first: if at == 0 { 0 } else { least },
             });
         }
-        if self.list.is_empty() {
-            self.be_whole(wires.len());
-        }
-    }
-
-    fn be_whole(&mut self, bars: usize) {
-        self.list.clear();
-        self.list.push(Part {
-            bars: 0..bars,
-            first: 0,
-        });
+        true
     }
 
     /// Number of parts.

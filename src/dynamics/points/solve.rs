@@ -10,7 +10,7 @@ use super::parts::{Parts, Run, places};
 use crate::dynamics::conjugate::{self, Iterated, Until};
 use crate::dynamics::direct::{Direct, Own};
 use crate::dynamics::strut::{NOBODY, Strut};
-use crate::threads::{PIECE, each, share};
+use crate::threads::{PIECE, each, share_pieces};
 use bevy::math::{DMat3, DVec3};
 
 /// A symmetric matrix.
@@ -175,7 +175,7 @@ impl Solver {
         let vectors = vectors.zip(self.preconditioned.chunks_mut(PIECE));
         let pieces = self.starts.iter_mut().zip(self.blocks.chunks(PIECE));
         let pieces = pieces.zip(sides).zip(vectors);
-        share(
+        share_pieces(
             pieces,
             |(((sums, blocks), (right, image)), (residual, preconditioned))| {
                 for (i, block) in blocks.iter().enumerate() {
@@ -251,7 +251,7 @@ impl Iterated for Running<'_> {
         let way = solver.search.chunks(PIECE).zip(solver.image.chunks(PIECE));
         let pieces = solver.sums.iter_mut().zip(solver.blocks.chunks(PIECE));
         let pieces = pieces.zip(state.zip(way));
-        share(
+        share_pieces(
             pieces,
             |((sum, blocks), (((solution, residual), preconditioned), (search, image)))| {
                 *sum = 0.0;

@@ -2,7 +2,7 @@
 
 use super::{Line, Points, State, Wire};
 use crate::dynamics::energy::{Energy, ROUNDINGS};
-use crate::threads::{PIECE, share};
+use crate::threads::{PIECE, share_pieces};
 use bevy::math::DVec3;
 use std::ops::Range;
 
@@ -82,11 +82,11 @@ impl Points {
         self.surveys.clear();
         self.surveys.resize(pieces, Survey::default());
         let (of_bodies, of_wires) = self.surveys.split_at_mut(bodies);
-        share(of_bodies.iter_mut().enumerate(), |(piece, survey)| {
+        share_pieces(of_bodies.iter_mut().enumerate(), |(piece, survey)| {
             let first = piece * PIECE;
             survey.add_bodies(points, first..points.bodies.min(first + PIECE));
         });
-        share(
+        share_pieces(
             of_wires.iter_mut().zip(self.wires.chunks(PIECE)),
             |(survey, wires)| {
                 for wire in wires {

@@ -121,23 +121,23 @@ fn ends_in_one_place_push_nowhere_until_they_part() {
     assert!(net.bodies.iter().all(Body::is_finite));
 }
 
-/// A square net with `side` points per side. Its elements are sorted by the smaller index of their ends.
-fn net(side: usize) -> Component {
+/// A net of so many rows and columns of points. Its elements are sorted by the smaller index of their ends.
+fn net(rows: usize, columns: usize) -> Component {
     let mut dice = Dice(3);
     let mut net = Component::default();
     let own = |index: usize| End::Body {
         index,
         arm: DVec3::ZERO,
     };
-    for i in 0..side * side {
-        let at = DVec3::new((i % side) as f64, 0.0, (i / side) as f64) + 0.1 * dice.vector();
+    for i in 0..rows * columns {
+        let at = DVec3::new((i % columns) as f64, 0.0, (i / columns) as f64) + 0.1 * dice.vector();
         let body = Body {
             velocity: dice.vector(),
             ..tests::point(1.0, at, DVec3::ZERO)
         };
         net.bodies.push(body);
-        let aside = ((i + 1) % side != 0).then_some(i + 1);
-        let ahead = (i + side < side * side).then_some(i + side);
+        let aside = ((i + 1) % columns != 0).then_some(i + 1);
+        let ahead = (i + columns < rows * columns).then_some(i + columns);
         for other in [aside, ahead].into_iter().flatten() {
             let new = tests::element(own(i), own(other), 50.0, 0.1, 0.9);
             net.elements.push(new);
@@ -149,7 +149,7 @@ fn net(side: usize) -> Component {
 #[test]
 fn how_many_threads_share_a_network_changes_no_bit_of_it() {
     ComputeTaskPool::get_or_init(|| TaskPoolBuilder::new().num_threads(3).build());
-    let net = net(100);
+    let net = net(100, 100);
     assert!(net.elements.len() > 4 * PIECE);
     let run = || {
         let mut points = Points::default();
@@ -164,7 +164,14 @@ fn how_many_threads_share_a_network_changes_no_bit_of_it() {
 
 #[test]
 fn parts_that_go_at_one_time_share_no_body() {
-    let net = net(100);
+    // The wide net needs runs of more than a row, which is more than a piece.
+    for (net, count) in [(net(100, 100), 20), (net(8, 1200), 5)] {
+        are_apart(&net, count);
+    }
+}
+
+/// Checks the division of a net, which has so many parts.
+fn are_apart(net: &Component, parts: usize) {
     let mut points = Points::default();
     points.load_from(&net.elements, &net.bodies, 200);
     points.measure(1.0 / 60.0, 0.25);
@@ -190,7 +197,7 @@ fn parts_that_go_at_one_time_share_no_body() {
     let mut whole = Parts::default();
     let mut wires = points.wires.clone();
     whole.find(&wires, net.bodies.len());
-    assert!(whole.count() > 3);
+    assert_eq!(whole.count(), parts);
     let in_parts = count(&whole);
     // Elements that are not sorted by memory must form a single part.
     let last = wires.len() - 1;
