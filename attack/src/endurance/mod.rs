@@ -4,6 +4,7 @@
 mod car;
 mod cloth;
 mod net;
+mod whole;
 
 pub use car::car;
 pub use cloth::cloth;
@@ -17,6 +18,7 @@ use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
 use std::collections::BTreeMap;
 use std::time::Duration;
+use whole::Moving;
 
 /// Length of a tick, s.
 pub const DT: f32 = 1.0 / 60.0;
@@ -67,7 +69,8 @@ pub struct Interval {
     /// Error of the pose just before the next strike, and the greatest error allowed.
     pub off: (f64, f64),
     /// Root mean square speed of the bodies just before the next strike, m/s, weighted by their masses. Spin counts too:
-    /// it is the speed at which they have their kinetic energy without spin. Infinite if one is not a number.
+    /// it is the speed at which they have their kinetic energy without spin. The motion of a floating scene as one rigid
+    /// body does not count: strikes leave it turning, and no spring notices. Infinite if one is not a number.
     pub speed: f64,
     /// Number of springs that the last step did not solve.
     pub idle: usize,
@@ -230,18 +233,44 @@ impl Endurance {
         self.sum(|read| read.dissipated_energy)
     }
 
-    /// Root mean square of the speeds of all bodies, weighted by their masses, m/s. Infinite if one is not a number.
+    /// See [`Interval::speed`].
     fn speed(&self) -> f64 {
-        let kinetic: f64 = (0..self.bodies.len())
+        let bodies: Vec<_> = (0..self.bodies.len())
+            .map(|index| self.moving(index))
+            .collect();
+        let mut kinetic: f64 = (0..self.bodies.len())
             .map(|index| self.kinetic(index))
             .sum();
-        let mass: f64 = self.masses.iter().map(|(mass, _)| f64::from(*mass)).sum();
+        if self.gravity == 0.0 {
+            kinetic -= whole::rigid_energy(&bodies);
+        }
+        let mass: f64 = bodies.iter().map(|body| body.mass).sum();
         let speed = (2.0 * kinetic / mass).sqrt();
         // Infinity instead of NaN, which no comparison would notice.
         if speed.is_finite() {
             speed
         } else {
             f64::INFINITY
+        }
+    }
+
+    /// How a body moves. NaN if a component of it is missing.
+    fn moving(&self, index: usize) -> Moving {
+        let (body, (mass, inertia)) = (self.bodies[index], self.masses[index]);
+        let world = self.app.world();
+        let rotation = world
+            .get::<Transform>(body)
+            .map_or(Quat::NAN, |at| at.rotation);
+        let nowhere = Velocity {
+            linear: Vec3::NAN,
+            angular: Vec3::NAN,
+        };
+        let Velocity { linear, angular } = world.get::<Velocity>(body).copied().unwrap_or(nowhere);
+        Moving {
+            mass: mass.into(),
+            at: self.place(body).as_dvec3(),
+            velocity: linear.as_dvec3(),
+            spin: (rotation * (inertia * (rotation.inverse() * angular))).as_dvec3(),
         }
     }
 
