@@ -84,7 +84,7 @@ pub fn cloth() -> Endurance {
         strikes: 0,
         missing: Some(0.02),
         surplus: 0.02,
-        // Columns between those with air dampers swing on for long (0.10 m/s).
+        // Columns between those with air dampers swing on for long (0.08 to 0.11 m/s).
         rests: 0.15,
         faults: BTreeMap::new(),
     }

@@ -205,14 +205,16 @@ impl Endurance {
         each.map(|number| number.map_or(f64::NAN, f64::from)).sum()
     }
 
+    /// Where a body is and how it moves. `None` if a component of it is missing.
+    fn motion(&self, index: usize) -> Option<(&Transform, &Velocity)> {
+        let (world, body) = (self.app.world(), self.bodies[index]);
+        world.get(body).zip(world.get(body))
+    }
+
     /// Kinetic energy of a body, J. NaN if a component of it is missing.
     fn kinetic(&self, index: usize) -> f64 {
-        let (body, (mass, inertia)) = (self.bodies[index], self.masses[index]);
-        let world = self.app.world();
-        let motion = world
-            .get::<Transform>(body)
-            .zip(world.get::<Velocity>(body));
-        motion.map_or(f64::NAN, |(at, v)| {
+        let (mass, inertia) = self.masses[index];
+        self.motion(index).map_or(f64::NAN, |(at, v)| {
             let spin = at.rotation.inverse() * v.angular;
             0.5 * f64::from(mass * v.linear.length_squared() + (inertia * spin).dot(spin))
         })
@@ -235,16 +237,12 @@ impl Endurance {
 
     /// See [`Interval::speed`].
     fn speed(&self) -> f64 {
-        let bodies: Vec<_> = (0..self.bodies.len())
-            .map(|index| self.moving(index))
-            .collect();
-        let mut kinetic: f64 = (0..self.bodies.len())
-            .map(|index| self.kinetic(index))
-            .sum();
+        let indices = 0..self.bodies.len();
+        let mut kinetic: f64 = indices.map(|index| self.kinetic(index)).sum();
         if self.gravity == 0.0 {
-            kinetic -= whole::rigid_energy(&bodies);
+            kinetic -= self.rigid_energy();
         }
-        let mass: f64 = bodies.iter().map(|body| body.mass).sum();
+        let mass: f64 = self.masses.iter().map(|(mass, _)| f64::from(*mass)).sum();
         let speed = (2.0 * kinetic / mass).sqrt();
         // Infinity instead of NaN, which no comparison would notice.
         if speed.is_finite() {
@@ -254,24 +252,21 @@ impl Endurance {
         }
     }
 
-    /// How a body moves. NaN if a component of it is missing.
-    fn moving(&self, index: usize) -> Moving {
-        let (body, (mass, inertia)) = (self.bodies[index], self.masses[index]);
-        let world = self.app.world();
-        let rotation = world
-            .get::<Transform>(body)
-            .map_or(Quat::NAN, |at| at.rotation);
-        let nowhere = Velocity {
-            linear: Vec3::NAN,
-            angular: Vec3::NAN,
+    /// Kinetic energy of the motion as one rigid body, J. NaN if a component is missing.
+    fn rigid_energy(&self) -> f64 {
+        let moving = |index: usize| {
+            let (mass, inertia) = self.masses[index];
+            let (at, v) = self.motion(index)?;
+            let spin = inertia * (at.rotation.inverse() * v.angular);
+            Some(Moving {
+                mass: mass.into(),
+                at: at.translation.as_dvec3(),
+                velocity: v.linear.as_dvec3(),
+                spin: (at.rotation * spin).as_dvec3(),
+            })
         };
-        let Velocity { linear, angular } = world.get::<Velocity>(body).copied().unwrap_or(nowhere);
-        Moving {
-            mass: mass.into(),
-            at: self.place(body).as_dvec3(),
-            velocity: linear.as_dvec3(),
-            spin: (rotation * (inertia * (rotation.inverse() * angular))).as_dvec3(),
-        }
+        let bodies: Option<Vec<_>> = (0..self.bodies.len()).map(moving).collect();
+        bodies.map_or(f64::NAN, |bodies| whole::rigid_energy(&bodies))
     }
 
     fn place(&self, body: Entity) -> Vec3 {

@@ -81,7 +81,7 @@ pub fn net() -> Endurance {
             (f64::from((sum / mass).distance(middle)), 0.5)
         },
         strikes: 0,
-        // 0.077 in a day. It is the error of a step: 0.026 at 120 steps a second, 0.010 at 240.
+        // 0.079 in a day. It is the error of a step: 0.026 at 120 steps a second, 0.010 at 240.
         missing: Some(0.1),
         surplus: 0.05,
         // Nothing resists a little shear, so a twentieth of the energy is still there after 20 s, and of that a hundredth in

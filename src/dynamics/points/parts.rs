@@ -113,7 +113,7 @@ impl Parts {
     pub(super) fn find(&mut self, wires: &[Wire], bodies: usize) {
         self.bodies = bodies;
         let mut length = PIECE;
-        while LEAST * length < wires.len() + length {
+        while wires.len().div_ceil(length) >= LEAST {
             if self.divide(wires, length) {
                 return;
             }
