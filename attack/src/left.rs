@@ -9,7 +9,7 @@ use bevy::ecs::query::Allow;
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
-use bevy_rapier3d::rapier::dynamics::IntegrationParameters;
+use bevy_rapier3d::rapier::dynamics::{IntegrationParameters, RigidBodyType};
 use std::collections::HashSet;
 
 /// Despawns all elements and goes on for three ticks. Returns a fault if something of theirs is left. `unpushed` tells
@@ -167,8 +167,10 @@ fn no_force_is_left(world: &mut World) -> Result<(), Fault> {
             return Err(Fault::ours(KIND, format!("{entity}: {force:?}")));
         }
     }
-    for set in world.query::<&RapierRigidBodySet>().iter(world) {
-        for (handle, body) in set.bodies.iter() {
+    for mut set in world.query::<&mut RapierRigidBodySet>().iter_mut(world) {
+        for (handle, body) in set.bodies.iter_mut() {
+            // Only of a dynamic body does the engine show the force that it keeps.
+            body.set_body_type(RigidBodyType::Dynamic, false);
             let [force, torque] = [body.user_force(), body.user_torque()];
             if [force, torque] != [Vec3::ZERO; 2] {
                 let seen = format!("{handle:?}: {force} N, {torque} N m in the engine");

@@ -286,6 +286,36 @@ fn a_body_that_loses_its_rigid_body_keeps_only_the_users_share() {
     assert_eq!(lab.get::<SpringLoad>(body).user.force, Vec3::Y);
 }
 
+/// Rapier keeps the force of a body that is fixed for a time, but does not show it.
+#[test]
+fn a_body_that_is_let_go_has_only_the_users_force_and_torque() {
+    for held in [RigidBody::Fixed, RigidBody::KinematicVelocityBased] {
+        let mut lab = Lab::weightless();
+        let hook = lab.point(Vec3::ZERO);
+        let load = lab.body(1.0, Vec3::X * 2.0);
+        let spring = Spring::new(hook, load).with_stiffness(50.0);
+        let spring = lab.spawn((
+            spring.with_rest_length(1.0),
+            Anchors::new(Vec3::ZERO, Vec3::Y * 0.3),
+        ));
+        lab.spawn_force(load, Vec3::Y);
+        lab.run(0.1);
+        lab.app.world_mut().entity_mut(load).insert(held);
+        lab.run(0.1);
+        lab.app.world_mut().despawn(spring);
+        let mut body = lab.app.world_mut().entity_mut(load);
+        body.insert((RigidBody::Dynamic, Velocity::default()));
+        lab.run(0.1);
+        let gained = *lab.get::<Velocity>(load);
+        let gained = [gained.linear, gained.angular];
+        assert!(
+            gained[0].distance(Vec3::Y * 0.1) < 1e-5,
+            "{held:?}: {gained:?}"
+        );
+        assert_eq!(gained[1], Vec3::ZERO, "{held:?}: it turns by itself");
+    }
+}
+
 #[test]
 fn an_assignment_to_a_sum_of_zero_counts_on_every_axis() {
     let (mut lab, body) = balanced();

@@ -300,6 +300,15 @@ pub(crate) fn give(body: &mut RigidBody, push: &Push, user: &Wrench) {
     }
 }
 
+/// Takes the elements' share from a body, so that only the user's force and torque remain. Also if it is not dynamic now: the
+/// engine then neither shows nor takes a force, but keeps the last one until the body is dynamic again.
+pub(crate) fn leave(body: &mut RigidBody, user: &Wrench) {
+    let kind = body.body_type();
+    body.set_body_type(RigidBodyType::Dynamic, false);
+    give(body, &Push::default(), user);
+    body.set_body_type(kind, false);
+}
+
 /// The force and torque that the engine holds for the elements' share and the user's together.
 #[inline(always)]
 pub(crate) fn sum(elements: &Wrench, user: &Wrench) -> Wrench {

@@ -2,7 +2,7 @@
 
 use super::body;
 use super::find::Contexts;
-use crate::backend::{Push, Wrench};
+use crate::backend::Wrench;
 use crate::scene::observe::share_of;
 use crate::scene::rows::{BodyFlags, BodyRow};
 use crate::scene::state::Scene;
@@ -284,7 +284,7 @@ pub(crate) fn release(
             && let Ok((mut set, ..)) = contexts.get_mut(link.0)
             && let Some(body) = set.bodies.get_mut(handle.0)
         {
-            body::give(body, &Push::default(), &wrench(&load.user));
+            body::leave(body, &wrench(&load.user));
             load.show(ExternalForce::default(), component);
             let is_users = users.is_some_and(|number| number.0 == 1);
             let is_ours = load.raised_iterations && !is_users;

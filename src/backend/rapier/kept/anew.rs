@@ -2,8 +2,8 @@
 //! the time of the snapshot; then springs start afresh.
 
 use super::check::is_in;
-use crate::backend::rapier::body::{give, handle, id};
-use crate::backend::{BodyId, Push, Wrench};
+use crate::backend::rapier::body::{handle, id, leave};
+use crate::backend::{BodyId, Wrench};
 use crate::scene::kept::{Kept, KeptElement};
 use crate::scene::rows::Raised;
 use crate::scene::state::Scene;
@@ -35,7 +35,7 @@ impl Kept {
                 && let Some(mut set) = world.get_mut::<RapierRigidBodySet>(context)
                 && let Some(body) = set.bodies.get_mut(handle(id))
             {
-                give(body, &Push::default(), &Wrench { force, torque });
+                leave(body, &Wrench { force, torque });
             }
         }
     }
