@@ -1,5 +1,6 @@
 //! Checks over many minutes, without drawing, that a scene still looks as it should.
 
+use super::toll::Toll;
 use super::{Again, DT, Finding, Stage, again, headless_app};
 use bevy::ecs::schedule::SingleThreadedExecutor;
 use bevy::prelude::*;
@@ -22,7 +23,8 @@ const HALF: f32 = 0.309_336;
 /// Width of the picture over its height.
 const ASPECT: f32 = 16.0 / 9.0;
 
-/// Runs the scene for this time. Fails as soon as a body has left the picture or is no longer upright.
+/// Runs the scene for this time, and restarts it as a window does. Fails as soon as a body has left the picture or is no longer
+/// upright, where the scene's check does not hold at its time after any restart, and if a long run takes more and more memory.
 pub fn watch(stage: &Stage, minutes: f32) -> AppExit {
     let mut app = headless_app(stage);
     // As in the tests of physics: looking for what rests takes threads too.
@@ -37,8 +39,25 @@ pub fn watch(stage: &Stage, minutes: f32) -> AppExit {
     let mut outside = HashMap::new();
     let mut most = (0.0_f32, 0.0_f32);
     let minute = (60.0 / DT).round() as u32;
-    for tick in 0..=(60.0 * minutes / DT).round() as u32 {
+    let due = (stage.seconds / DT).round() as u32;
+    let ticks = (60.0 * minutes / DT).round() as u32;
+    let mut toll = Toll::of(ticks);
+    for tick in 0..=ticks {
         app.update();
+        let scene = app.world().resource::<Time<Fixed>>().as_generic();
+        if again::tick(&scene) == due {
+            let findings = (stage.check)(app.world_mut());
+            if findings.iter().any(|finding| !finding.good) {
+                let times = app.world().resource::<Again>().times;
+                eprintln!("{}: after {times} restarts:", stage.title);
+                findings.iter().for_each(|finding| eprintln!("  {finding}"));
+                return AppExit::error();
+            }
+        }
+        if !toll.tell(tick) {
+            eprintln!("{}: memory grows", stage.title);
+            return AppExit::error();
+        }
         if tick > 0 && tick.is_multiple_of(minute) && !lasts(app.world_mut(), tick / minute) {
             return AppExit::error();
         }

@@ -21,6 +21,7 @@ mod progress;
 mod rope;
 mod skin;
 mod strip;
+mod toll;
 
 pub use again::{Again, Begin, fresh, tick};
 pub use check::{Finding, Track, larger, smaller, tracks};
