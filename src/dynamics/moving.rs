@@ -42,7 +42,7 @@ impl Motion for Moving<'_> {
     }
 
     fn least(&mut self, time: f64, most: u32) -> Least {
-        lone_steps(self.pair.stiffness_number(time), most)
+        lone_steps(self.pair.stiffness_number(time), most, false)
     }
 
     fn run(&mut self, time: f64, count: u32) {

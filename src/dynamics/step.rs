@@ -272,7 +272,8 @@ impl Motion for Component {
             let z = line.map_or(0.0, |line| {
                 element.stiffness * line.inverse_mass * time * time
             });
-            return lone_steps(z, most);
+            let turns = self.bodies.iter().any(|body| body.spin != Spin::Ignored);
+            return lone_steps(z, most, turns && element.damping == 0.0);
         }
         let network = self.memory.network.get_or_insert_default();
         let (z, _) = network.bounds(&self.elements, &self.bodies, time);

@@ -150,14 +150,13 @@ fn the_solver_alone_keeps_the_energy_of_a_box_on_four_springs() {
 
 #[test]
 fn the_solver_alone_keeps_the_energy_of_a_tumbling_dumbbell() {
-    keeps_its_energy(dumbbell, [2e-2, 2e-2, 1e-3, 1e-3]);
+    keeps_its_energy(dumbbell, [5e-3, 5e-3, 1e-3, 1e-3]);
 }
 
 /// A lone kick on turning bodies is exact along the line, but it is not symplectic: its correction for the turning of the line
-/// depends on velocities, and its stiffness on the inertia that the line meets. Chaotic motion makes a random walk of that. With
-/// neither, the energy wanders by 0.03 % in an hour, and the frequency is wrong.
+/// depends on velocities, and its stiffness on the inertia that the line meets. Chaotic motion makes a random walk of that.
 #[test]
-fn the_energy_of_a_dumbbell_that_tumbles_chaotically_wanders_a_little() {
+fn the_energy_of_a_dumbbell_that_tumbles_chaotically_wanders_little() {
     let wander = |start: u32| {
         let (mut moving, rest) = dumbbell();
         moving.bodies[0].velocity.x += 1e-7 * f64::from(start);
@@ -173,5 +172,5 @@ fn the_energy_of_a_dumbbell_that_tumbles_chaotically_wanders_a_little() {
         "{} s, 32 starts: {few} within 1 %, median {median:.5}, most {most:.5}",
         seconds()
     );
-    assert!(most < 0.02, "{wanders:?}");
+    assert!(most < 0.005, "{wanders:?}");
 }
