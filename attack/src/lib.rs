@@ -6,6 +6,7 @@
 pub mod endurance;
 pub mod fault;
 pub mod judge;
+pub mod lab;
 mod left;
 mod numbers;
 pub mod plan;

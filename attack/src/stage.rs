@@ -1,14 +1,11 @@
 //! Builds a planned scene with Bevy and Rapier, and applies its changes.
 
+use crate::lab::{self, set_rate};
 use crate::plan::{BodyPlan, Companion, Deed, ElementPlan, Kind, Plan, Shape};
 use crate::springs::Springs;
-use bevy::ecs::schedule::Schedules;
-use bevy::ecs::schedule::SingleThreadedExecutor;
 use bevy::prelude::*;
-use bevy::time::TimeUpdateStrategy;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
-use std::time::Duration;
 
 /// A running scene.
 pub struct Stage {
@@ -26,28 +23,13 @@ pub struct Stage {
 impl Stage {
     /// Builds a scene.
     pub fn new(plan: &Plan, springs: Springs) -> Self {
-        let mut app = App::new();
-        app.add_plugins((MinimalPlugins, TransformPlugin))
-            .add_plugins(RapierPhysicsPlugin::<NoUserData>::default().in_fixed_schedule());
-        if springs == Springs::Ours {
-            app.add_plugins(CoiloverPlugin::default());
-        }
         let mut stage = Self {
-            app,
+            app: lab::app(springs == Springs::Ours),
             bodies: Vec::new(),
             elements: Vec::new(),
             joints: Vec::new(),
             springs,
         };
-        stage.rate(1.0 / 60.0, 1);
-        stage.app.finish();
-        stage.app.cleanup();
-        // Worker threads would only slow down other scenes that run at the same time.
-        let mut schedules = stage.app.world_mut().resource_mut::<Schedules>();
-        for (_, schedule) in schedules.iter_mut() {
-            schedule.set_executor(SingleThreadedExecutor::new());
-        }
-        stage.app.update();
         if plan.ground {
             let ground = (RigidBody::Fixed, Collider::cuboid(50.0, 1.0, 50.0));
             let at = Transform::from_xyz(0.0, -4.0, 0.0);
@@ -60,14 +42,6 @@ impl Stage {
             stage.element(element);
         }
         stage
-    }
-
-    fn rate(&mut self, dt: f32, substeps: usize) {
-        let tick = Duration::from_secs_f32(dt);
-        self.app
-            .insert_resource(TimestepMode::Fixed { dt, substeps })
-            .insert_resource(Time::<Fixed>::from_duration(tick))
-            .insert_resource(TimeUpdateStrategy::ManualDuration(tick));
     }
 
     fn of(list: &[Entity], index: u8) -> Option<Entity> {
@@ -242,7 +216,7 @@ impl Stage {
                     configuration.gravity = (*gravity).into();
                 }
             }
-            Deed::Rate(dt, steps) => self.rate(*dt, usize::from(*steps)),
+            Deed::Rate(dt, steps) => set_rate(&mut self.app, *dt, usize::from(*steps)),
             Deed::Pause(paused) => {
                 let mut all = self.app.world_mut().query::<&mut RapierConfiguration>();
                 for mut configuration in all.iter_mut(self.app.world_mut()) {

@@ -2,19 +2,17 @@
 //!
 //! The engine keeps some of each body that is despawned, so the same game without springs is played beside it.
 
-use bevy::ecs::schedule::{Schedules, SingleThreadedExecutor};
+use attack::lab::app;
 use bevy::prelude::*;
-use bevy::time::TimeUpdateStrategy;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
 use std::alloc::System;
-use std::time::Duration;
 
 #[global_allocator]
 static MEMORY: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
 
-/// Number of scenes that are spawned and despawned after the first ones.
+/// Number of scenes that are spawned and despawned, after half as many in which what grows only once has grown.
 const ROUNDS: u32 = 600;
 
 /// Bytes by which the memory of a game with springs may grow more than without; 0 were measured. A byte lost with each spring would
@@ -23,30 +21,6 @@ const GROWTH: isize = 2 << 10;
 
 /// What is done with the springs of a scene while it runs.
 type Deed = fn(&mut World, &[Entity]);
-
-fn app(springs: bool) -> App {
-    let tick = Duration::from_secs_f32(1.0 / 60.0);
-    let mut app = App::new();
-    app.add_plugins((MinimalPlugins, TransformPlugin))
-        .add_plugins(RapierPhysicsPlugin::<NoUserData>::default().in_fixed_schedule())
-        .insert_resource(TimestepMode::Fixed {
-            dt: 1.0 / 60.0,
-            substeps: 1,
-        })
-        .insert_resource(Time::<Fixed>::from_duration(tick))
-        .insert_resource(TimeUpdateStrategy::ManualDuration(tick));
-    if springs {
-        app.add_plugins(CoiloverPlugin::default());
-    }
-    app.finish();
-    app.cleanup();
-    let mut schedules = app.world_mut().resource_mut::<Schedules>();
-    for (_, schedule) in schedules.iter_mut() {
-        schedule.set_executor(SingleThreadedExecutor::new());
-    }
-    app.update();
-    app
-}
 
 /// Four loads on a beam, each with a spring: two in flight, two on the ground. Runs them for half a second, and then they are gone.
 fn round(app: &mut App, deed: Deed) {
@@ -87,7 +61,7 @@ fn round(app: &mut App, deed: Deed) {
     app.update();
 }
 
-/// Bytes by which the memory in use grows after the first half of the rounds, when what grows only once has grown.
+/// Bytes by which the memory in use grows in [`ROUNDS`].
 fn growth(springs: bool, deed: Deed) -> isize {
     let mut app = app(springs);
     for _ in 0..ROUNDS / 2 {

@@ -47,10 +47,8 @@ pub fn watch(stage: &Stage, minutes: f32) -> AppExit {
         let scene = app.world().resource::<Time<Fixed>>().as_generic();
         if again::tick(&scene) == due {
             let findings = (stage.check)(app.world_mut());
-            if findings.iter().any(|finding| !finding.good) {
-                let times = app.world().resource::<Again>().times;
-                eprintln!("{}: after {times} restarts:", stage.title);
-                findings.iter().for_each(|finding| eprintln!("  {finding}"));
+            let times = app.world().resource::<Again>().times;
+            if !are_good(&findings, &format!("after {times} restarts")) {
                 return AppExit::error();
             }
         }
@@ -88,14 +86,19 @@ fn lasts(world: &mut World, minutes: u32) -> bool {
         return true;
     };
     let findings = check(world);
-    for finding in &findings {
-        if finding.good {
-            println!("  minute {minutes}: {finding}");
-        } else {
-            eprintln!("  minute {minutes}: {finding}");
-        }
+    let when = format!("minute {minutes}");
+    for finding in findings.iter().filter(|finding| finding.good) {
+        println!("  {when}: {finding}");
     }
-    findings.iter().all(|finding| finding.good)
+    are_good(&findings, &when)
+}
+
+/// Returns whether all findings are good, and prints those that are not.
+fn are_good(findings: &[Finding], when: &str) -> bool {
+    let mut wrong = findings.iter().filter(|finding| !finding.good).peekable();
+    let good = wrong.peek().is_none();
+    wrong.for_each(|finding| eprintln!("  {when}: {finding}"));
+    good
 }
 
 /// Records how long each body has been outside the picture. Keeps the largest of these times (s) and of all angles

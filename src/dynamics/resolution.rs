@@ -34,11 +34,10 @@ const AHEAD: f64 = 1.25;
 /// [`MOST_ALONE`]. They are so few that they do not come out of the budget of the networks, `most`, but a budget of 0
 /// allows one. Resolved micro-steps are exact along the line. `lasts` says that the element has no damper, and turns a body.
 pub(super) fn lone_steps(z: f64, most: u32, lasts: bool) -> Least {
-    let least = if lasts { UNDAMPED_TURNING } else { 1 };
-    let [least, most] = if most == 0 {
-        [1, 1]
-    } else {
-        [least, MOST_ALONE]
+    let [least, most] = match (most, lasts) {
+        (0, _) => [1, 1],
+        (_, false) => [1, MOST_ALONE],
+        (_, true) => [UNDAMPED_TURNING, MOST_ALONE],
     };
     let count = within((z / RESOLVED).sqrt(), most).map_or(1, |count| count.max(least));
     Least::of(z, count)

@@ -198,14 +198,18 @@ impl Component {
         let [element] = self.elements.as_slice() else {
             return false;
         };
-        let turns = self.bodies.iter().any(|body| body.spin != Spin::Ignored);
         let isotropic = element.rest_length == 0.0 && element.guide == Guide::Centres;
-        self.bodies.len() <= 2 && element.law.is_none() && !(isotropic && turns)
+        self.bodies.len() <= 2 && element.law.is_none() && !(isotropic && self.turns())
+    }
+
+    /// Whether elements turn one of its bodies.
+    fn turns(&self) -> bool {
+        self.bodies.iter().any(|body| body.spin != Spin::Ignored)
     }
 
     /// Time over which the velocity differences from `other` count as position errors, s.
     fn velocity_counts(&self, other: &[Body]) -> f64 {
-        if self.bodies.iter().any(|body| body.spin != Spin::Ignored) {
+        if self.turns() {
             return VELOCITY_COUNTS;
         }
         let faster = |i: usize| self.bodies[i].velocity - other[i].velocity;
@@ -272,8 +276,7 @@ impl Motion for Component {
             let z = line.map_or(0.0, |line| {
                 element.stiffness * line.inverse_mass * time * time
             });
-            let turns = self.bodies.iter().any(|body| body.spin != Spin::Ignored);
-            return lone_steps(z, most, turns && element.damping == 0.0);
+            return lone_steps(z, most, self.turns() && element.damping == 0.0);
         }
         let network = self.memory.network.get_or_insert_default();
         let (z, _) = network.bounds(&self.elements, &self.bodies, time);

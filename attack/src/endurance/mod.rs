@@ -10,18 +10,14 @@ pub use car::car;
 pub use cloth::cloth;
 pub use net::net;
 
-use bevy::ecs::schedule::{Schedules, SingleThreadedExecutor};
+use crate::lab::DT;
 use bevy::prelude::*;
-use bevy::time::TimeUpdateStrategy;
 use bevy::transform::StaticTransformOptimizations;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
 use std::collections::BTreeMap;
-use std::time::Duration;
 use whole::Moving;
 
-/// Length of a tick, s.
-pub const DT: f32 = 1.0 / 60.0;
 /// Acceleration of gravity in the scenes that have it, m/s².
 pub const GRAVITY: f32 = 9.81;
 
@@ -86,29 +82,11 @@ pub struct Saved {
     pub faults: BTreeMap<String, String>,
 }
 
-/// An app with nothing but Rapier and springs.
+/// An app with gravity in m/s².
 fn lab(gravity: f32) -> App {
-    let mut app = App::new();
+    let mut app = crate::lab::app(true);
     // As in the tests of physics: looking for what rests takes threads in every update.
-    app.insert_resource(StaticTransformOptimizations::Disabled)
-        .add_plugins((MinimalPlugins, TransformPlugin))
-        .add_plugins(RapierPhysicsPlugin::<NoUserData>::default().in_fixed_schedule())
-        .add_plugins(CoiloverPlugin::default());
-    let tick = Duration::from_secs_f32(DT);
-    app.insert_resource(TimestepMode::Fixed {
-        dt: DT,
-        substeps: 1,
-    })
-    .insert_resource(Time::<Fixed>::from_duration(tick))
-    .insert_resource(TimeUpdateStrategy::ManualDuration(tick));
-    app.finish();
-    app.cleanup();
-    // One scene runs at a time, and its systems are too small for threads to pay.
-    let mut schedules = app.world_mut().resource_mut::<Schedules>();
-    for (_, schedule) in schedules.iter_mut() {
-        schedule.set_executor(SingleThreadedExecutor::new());
-    }
-    app.update();
+    app.insert_resource(StaticTransformOptimizations::Disabled);
     let world = app.world_mut();
     for mut configuration in world.query::<&mut RapierConfiguration>().iter_mut(world) {
         configuration.gravity = Vec3::NEG_Y * gravity;
