@@ -221,14 +221,16 @@ fn spinning_pair_converges_at_second_order_and_fourth_when_extrapolated() {
     };
     let exact = end(accuracy(64, true));
     let error = |n, x| (end(accuracy(n, x)) - exact).length();
-    let (one, two, four) = (error(1, false), error(2, false), error(4, false));
-    assert!((3.5..4.5).contains(&(one / two)), "{one:.2e} {two:.2e}");
+    // From two on, for an element without a damper takes no fewer.
+    let (two, four, eight) = (error(2, false), error(4, false), error(8, false));
     assert!((3.7..4.3).contains(&(two / four)), "{two:.2e} {four:.2e}");
-    let (x1, x2, x4) = (error(1, true), error(2, true), error(4, true));
     assert!(
-        x1 / x2 > 11.0 && x2 / x4 > 13.0,
-        "{x1:.2e} {x2:.2e} {x4:.2e}"
+        (3.8..4.2).contains(&(four / eight)),
+        "{four:.2e} {eight:.2e}"
     );
+    // Extrapolated, only these two: with eight the error, 5e-8 m, is that of the engine's rotations in f32.
+    let (x2, x4) = (error(2, true), error(4, true));
+    assert!(x2 / x4 > 13.0, "{x2:.2e} {x4:.2e}");
 }
 
 thread_local! {
