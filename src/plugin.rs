@@ -175,17 +175,8 @@ impl Plugin for CoiloverPlugin {
                 .after(PhysicsSet::SyncBackend)
                 .before(CoiloverSystems::Prepare),
         );
-        app.configure_sets(
-            schedule,
-            (
-                (CoiloverSystems::Prepare, CoiloverSystems::Solve)
-                    .chain()
-                    .after(PhysicsSet::SyncBackend)
-                    .before(PhysicsSet::StepSimulation),
-                CoiloverSystems::Readout.after(PhysicsSet::Writeback),
-            ),
-        )
-        .add_systems(
+        order_sets(app, schedule);
+        app.add_systems(
             schedule,
             (
                 (
@@ -208,6 +199,20 @@ impl Plugin for CoiloverPlugin {
                 .run_if(crate::backend::rapier::setup::in_place),
         );
     }
+}
+
+/// Puts the sets of systems before and after the engine's step.
+fn order_sets(app: &mut App, schedule: impl ScheduleLabel) {
+    app.configure_sets(
+        schedule,
+        (
+            (CoiloverSystems::Prepare, CoiloverSystems::Solve)
+                .chain()
+                .after(PhysicsSet::SyncBackend)
+                .before(PhysicsSet::StepSimulation),
+            CoiloverSystems::Readout.after(PhysicsSet::Writeback),
+        ),
+    );
 }
 
 /// Run condition: some entity passes the filter.

@@ -91,6 +91,24 @@ impl SpringReadout {
         (self.spring_force + self.damper_force).clamp(-f32::MAX, f32::MAX)
     }
 
+    /// Whether it can be that of an element. Only the effective mass and the phase may be infinite.
+    pub(crate) fn is_sound(&self) -> bool {
+        let finite = [
+            self.length,
+            self.rate,
+            self.spring_force,
+            self.damper_force,
+            self.stored_energy,
+            self.dissipated_power,
+            self.dissipated_energy,
+            self.work,
+            self.error,
+        ];
+        finite.iter().all(|number| number.is_finite())
+            && !self.omega_dt.is_nan()
+            && !self.effective_mass.is_nan()
+    }
+
     pub(crate) fn note(&mut self, solved: &Solved) {
         self.method = match solved.method {
             Method::None => SpringMethod::None,

@@ -22,18 +22,18 @@ static CORES: LazyLock<usize> =
 pub(crate) const PIECE: usize = 1024;
 
 /// Number of pieces of that length from which on threads share them. Fewer take no longer than it takes to share them. Pinned by the
-/// same benchmarks.
+/// benchmarks `own/Chain` and `own/Cloth`.
 const FEW: usize = 3;
 
 /// Number of times that a thread looks for work, or for the end of others' work, before it does something else: about 30 µs. Pinned
-/// by the same benchmarks.
+/// by the benchmarks `own/Chain` and `own/Cloth`.
 const LOOKS: usize = 1000;
 
 /// Whether Bevy's pools have threads at all. If not, a task that waits would block everything.
 const HAS_THREADS: bool = bevy::tasks::cfg::multi_threaded!();
 
 /// Number of pieces of work per thread where the number of threads decides how work is cut. With several pieces, a thread that is
-/// done early can take work from others.
+/// done early can take work from others. Pinned by the benchmark `own/isolated`.
 pub(crate) const PER_THREAD: usize = 4;
 
 /// Number of threads that share work.
@@ -48,6 +48,15 @@ pub(crate) fn count() -> usize {
     // The main thread works too.
     let pool = ComputeTaskPool::try_get().map_or(0, |pool| pool.thread_num());
     (*CORES).min(pool + 1)
+}
+
+/// Number of values in each piece of work, of `all` values; at least one. `is_worth_it` says whether threads are to share the work.
+pub(crate) fn piece_of(all: usize, is_worth_it: bool) -> usize {
+    let threads = if is_worth_it { count() } else { 1 };
+    if threads == 1 {
+        return all.max(1);
+    }
+    all.div_ceil(PER_THREAD * threads).max(1)
 }
 
 /// Calls `work` on each piece, on all threads if there is more than one piece. This wakes other threads and makes a few
@@ -183,7 +192,7 @@ impl Drop for Awake {
     }
 }
 
-/// Tells the threads that wait of a new call. The first time, has so many threads wait from now on.
+/// Tells the waiting threads that there is a new call. The first call lets `helpers` threads wait from then on.
 fn call(helpers: usize) {
     BETWEEN.with_borrow_mut(|between| match between {
         Between::Sleep => {}
@@ -202,7 +211,7 @@ fn call(helpers: usize) {
 }
 
 /// Keeps the thread that runs it awake. At each call, and else now and then, it lets the thread do what else there is to do. The
-/// thread that calls may run it too, while it waits for the end of a call; nothing keeps that one.
+/// thread that calls may run it too, while it waits for the end of a call; it does not keep that thread awake.
 async fn wait(calls: Arc<AtomicUsize>, caller: ThreadId) {
     let mut seen = 0;
     loop {

@@ -134,7 +134,9 @@ impl LossySocket {
             let span = u64::from(self.weather.jitter) + 1;
             let more = (self.random.next_u64() % span) as u32;
             self.held.push(Held {
-                due: u32::from_le_bytes(*sent) + self.weather.delay + more,
+                // Anybody may send such bytes.
+                due: u32::from_le_bytes(*sent)
+                    .saturating_add(self.weather.delay.saturating_add(more)),
                 from,
                 bytes: bytes.to_vec(),
             });

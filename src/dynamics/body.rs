@@ -73,6 +73,11 @@ pub(crate) fn shortest(rotation: DQuat) -> DQuat {
     }
 }
 
+/// Whether an inverse mass is the same along all axes.
+pub(super) fn is_same_along_all_axes(inverse_mass: DVec3) -> bool {
+    inverse_mass.x == inverse_mass.y && inverse_mass.y == inverse_mass.z
+}
+
 /// Rotation vector of a rotation. Of all that differ by whole turns, returns the one nearest to `expected`.
 pub(crate) fn unwound(rotation: DQuat, expected: DVec3) -> DVec3 {
     let by = shortest(rotation).to_scaled_axis();
@@ -254,8 +259,7 @@ impl Body {
 
     /// Whether the inverse mass is the same along all axes.
     pub(crate) fn moves_alike(&self) -> bool {
-        let w = self.inverse_mass;
-        w.x == w.y && w.y == w.z
+        is_same_along_all_axes(self.inverse_mass)
     }
 
     /// The force that gives the body an acceleration, N.

@@ -165,7 +165,7 @@ impl Bound {
         let Some(most) = self.most(energy.stored, time) else {
             return;
         };
-        let room = most - energy.stored - energy.place;
+        let room = most - energy.stored - energy.potential;
         if room < 0.0 {
             // Rounding has raised the energy above the bound, and there is no motion to remove.
             self.given = self.given.map(|given| given - room);
@@ -189,7 +189,7 @@ impl Bound {
     /// Whether the energy without motion against the common centre of mass is within the bound.
     pub(crate) fn allows(&self, elements: &[Element], bodies: &[Body], time: f64) -> bool {
         let energy = Energy::of(elements, bodies);
-        let least = energy.stored + energy.place + Common::of(elements, bodies).energy;
+        let least = energy.stored + energy.potential + Common::of(elements, bodies).energy;
         self.most(energy.stored, time)
             .is_none_or(|most| least <= most)
     }
@@ -229,7 +229,7 @@ impl Common {
         let held = elements
             .iter()
             .flat_map(|element| element.ends)
-            .any(|end| matches!(end, End::Path(_)));
+            .any(|end| end.is_path());
         let (mass, momentum) = bodies.iter().fold((DVec3::ZERO, DVec3::ZERO), |sum, body| {
             (sum.0 + body.mass(), sum.1 + body.mass() * body.velocity)
         });
@@ -293,11 +293,10 @@ fn power(elements: &[Element], bodies: &[Body]) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::tests::{element, point};
+    use super::super::tests::{DT, element, point};
     use super::*;
 
     /// Duration of a step, s.
-    const DT: f64 = 1.0 / 60.0;
 
     /// A bound of 100 J, of which all is lively.
     fn hundred(z: f64) -> Bound {
@@ -328,7 +327,7 @@ mod tests {
         let mut bound = hundred(1.0);
         bound.finish(&moving(100.0), DT);
         let at_rest = |place: f64| Energy {
-            place,
+            potential: place,
             ..Energy::default()
         };
         for (steps, may) in [(60, true), (1200, false)] {

@@ -241,8 +241,9 @@ pub(crate) fn force_for(acceleration: DVec3, inverse_mass: DVec3) -> DVec3 {
     )
 }
 
-/// Torque that gives an angular acceleration; zero about locked axes. A locked axis has an empty row and column.
-pub(crate) fn torque_for(acceleration: DVec3, mut inverse_inertia: DMat3) -> DVec3 {
+/// Inertia of a body with one on the diagonal of each locked axis, and a vector that is one along free axes and zero along locked
+/// ones. A locked axis has an empty row and column in the inverse inertia.
+pub(super) fn free_inertia(mut inverse_inertia: DMat3) -> (DMat3, DVec3) {
     let mut free = DVec3::ONE;
     for axis in 0..3 {
         if inverse_inertia.col(axis)[axis] == 0.0 {
@@ -250,7 +251,13 @@ pub(crate) fn torque_for(acceleration: DVec3, mut inverse_inertia: DMat3) -> DVe
             free[axis] = 0.0;
         }
     }
-    let torque = inverse_inertia.inverse() * (acceleration * free) * free;
+    (inverse_inertia.inverse(), free)
+}
+
+/// Torque that gives an angular acceleration; zero about locked axes.
+pub(crate) fn torque_for(acceleration: DVec3, inverse_inertia: DMat3) -> DVec3 {
+    let (inertia, free) = free_inertia(inverse_inertia);
+    let torque = inertia * (acceleration * free) * free;
     if torque.is_finite() {
         torque
     } else {

@@ -1,6 +1,7 @@
 //! Mechanical energy of bodies and elements, and its removal from the motion.
 
 use super::body::{Body, Spin};
+use super::delivery::free_inertia;
 use super::element::Element;
 use bevy::math::DVec3;
 
@@ -17,7 +18,7 @@ pub(crate) struct Energy {
     /// Energy stored in springs.
     pub stored: f64,
     /// Potential energy in gravity and the users' forces, minus the work of the users' torques in this step.
-    pub place: f64,
+    pub potential: f64,
 }
 
 impl Energy {
@@ -26,7 +27,8 @@ impl Energy {
         let mut energy = Self::default();
         for body in bodies {
             energy.motion += body.motion();
-            energy.place -= (body.mass() * body.acceleration).dot(body.position) + body.torque_work;
+            energy.potential -=
+                (body.mass() * body.acceleration).dot(body.position) + body.torque_work;
         }
         for element in elements {
             energy.stored += element.elastic(element.distance(bodies).0).energy;
@@ -35,7 +37,7 @@ impl Energy {
     }
 
     pub(crate) fn sum(&self) -> f64 {
-        self.motion + self.stored + self.place
+        self.motion + self.stored + self.potential
     }
 }
 
@@ -53,13 +55,18 @@ pub(crate) fn take(elements: &[Element], bodies: &mut [Body], surplus: f64) -> f
         };
         let rate = line.motion(element, bodies, 0.0).axial;
         let taken = left.min(0.5 * rate * rate / line.inverse_mass);
-        let after = (rate * rate - 2.0 * line.inverse_mass * taken)
-            .max(0.0)
-            .sqrt();
-        line.push(bodies, (after.copysign(rate) - rate) / line.inverse_mass);
+        let change = slowed_by(rate, line.inverse_mass, taken);
+        line.push(bodies, change / line.inverse_mass);
         left -= taken;
     }
     surplus - left
+}
+
+/// Change of a rate (m/s) that removes `energy` (J) from the motion along a line with this inverse effective mass (1/kg). It stops
+/// the motion at most.
+pub(super) fn slowed_by(rate: f64, inverse_mass: f64, energy: f64) -> f64 {
+    let left = (rate * rate - 2.0 * inverse_mass * energy).max(0.0).sqrt();
+    left.copysign(rate) - rate
 }
 
 impl Body {
@@ -71,24 +78,18 @@ impl Body {
 
     /// Kinetic energy, J.
     pub(crate) fn motion(&self) -> f64 {
-        0.5 * (self.mass() * self.velocity).dot(self.velocity) + self.turning()
+        0.5 * (self.mass() * self.velocity).dot(self.velocity) + self.rotational()
     }
 
     /// Kinetic energy of its rotation, J.
-    pub(crate) fn turning(&self) -> f64 {
+    pub(crate) fn rotational(&self) -> f64 {
         let twice = match self.spin {
             Spin::Ignored => 0.0,
             Spin::Free { momentum } => momentum.dot(self.angular_velocity()),
             Spin::Locked { velocity } => {
-                let mut inverse = self.inverse_inertia();
-                let mut free = velocity;
-                for k in 0..3 {
-                    if inverse.col(k)[k] == 0.0 {
-                        inverse.col_mut(k)[k] = 1.0;
-                        free[k] = 0.0;
-                    }
-                }
-                free.dot(inverse.inverse() * free)
+                let (inertia, free) = free_inertia(self.inverse_inertia());
+                let velocity = free * velocity;
+                velocity.dot(inertia * velocity)
             }
         };
         0.5 * twice
@@ -99,10 +100,8 @@ impl Body {
 mod tests {
     use super::super::bound::Bound;
     use super::super::step::Component;
-    use super::super::tests::{point, row};
+    use super::super::tests::{DT, point, row};
     use super::*;
-
-    const STEP: f64 = 1.0 / 60.0;
 
     #[test]
     fn a_surplus_is_taken_from_a_chain_at_once_though_each_element_disturbs_its_neighbours() {
@@ -119,13 +118,13 @@ mod tests {
         let energy = Energy::of(&elements, &bodies);
         let mut bound = Bound::default();
         // Since it was as lively a moment ago, a little more than what it is to have left passes the check.
-        bound.finish(&energy, STEP);
+        bound.finish(&energy, DT);
         for share in [0.1, 0.5, 0.8, 0.95] {
             let mut bodies = bodies.clone();
             bound.forget();
             bound.start((1.0 - share) * energy.sum(), 0.0, 0.0, false);
             let left = bound
-                .hold(&elements, &mut bodies, STEP)
+                .hold(&elements, &mut bodies, DT)
                 .map(|left| left.sum());
             let most = (1.0 - share + 0.021) * energy.sum();
             assert!(

@@ -5,7 +5,7 @@
 //! (No mode escapes this test: one kick of the midpoint rule advances a mode of phase x by 2·atan(x/2), and two kicks
 //! advance it by 4·atan(x/4). These angles are never equal.)
 
-use super::tolerance::Motion;
+use super::tolerance::Steppable;
 use bevy::math::DVec3;
 
 /// Difference of the two end states up to which stiff modes count as at rest, m per simulated second. Pinned by
@@ -13,7 +13,7 @@ use bevy::math::DVec3;
 const UNNOTICED: f64 = 1e-4;
 
 /// Difference of the two end states up to which stiff modes count as at rest, as a share of the relative motion of bodies.
-/// It is the error of a mode that is just followed ([`super::resolution`]). Pinned by
+/// It is the error of a mode that the micro-steps barely follow ([`super::resolution`]). Pinned by
 /// `stiff_by_default::a_stiff_mode_costs_nothing_until_it_is_struck`.
 const SMALL: f64 = 2e-3;
 
@@ -48,7 +48,7 @@ impl Excited {
     /// kicks that this took.
     pub(super) fn run(
         &mut self,
-        motion: &mut impl Motion,
+        motion: &mut impl Steppable,
         time: f64,
         [least, all]: [u32; 2],
     ) -> u32 {

@@ -5,8 +5,9 @@
 
 use super::body::Body;
 use super::element::{Element, End};
+use super::energy::slowed_by;
 use super::line::Line;
-use super::thresholds::STRONG;
+use super::thresholds::{STRONG, UNNOTICED};
 use bevy::math::DVec3;
 
 /// Mechanical energy at the start of a step, in the frame of an end with prescribed motion.
@@ -52,14 +53,12 @@ impl Guard {
             return;
         };
         let surplus = energy - self.energy;
-        if surplus <= 1e-9 * self.energy.abs() || line.inverse_mass <= 0.0 {
+        if surplus <= UNNOTICED * self.energy.abs() || line.inverse_mass <= 0.0 {
             return;
         }
         let rate = line.motion(element, bodies, step).axial;
-        let left = (rate * rate - 2.0 * line.inverse_mass * surplus)
-            .max(0.0)
-            .sqrt();
-        line.push(bodies, (left.copysign(rate) - rate) / line.inverse_mass);
+        let change = slowed_by(rate, line.inverse_mass, surplus);
+        line.push(bodies, change / line.inverse_mass);
     }
 
     /// Kinetic and stored energy, and potential energy in the external forces, `time` seconds after the start, J.
@@ -71,7 +70,7 @@ impl Guard {
             let (mass, velocity) = (body.mass(), body.velocity - self.frame);
             let place = body.position - time * self.frame;
             sum += 0.5 * (mass * velocity).dot(velocity) - (mass * body.acceleration).dot(place);
-            sum += body.turning();
+            sum += body.rotational();
         }
         Some(sum)
     }

@@ -1,6 +1,6 @@
 //! One end of an element's line at an instant, and how easily it moves.
 
-use super::body::Body;
+use super::body::{Body, is_same_along_all_axes};
 use bevy::math::DVec3;
 
 /// One end of a line at an instant. World frame.
@@ -44,7 +44,7 @@ impl Hold {
         }
         let w = self.inverse_mass;
         // The direction would add rounding. Without it, equal lines have bitwise equal coefficients.
-        let linear = if w.x == w.y && w.y == w.z {
+        let linear = if is_same_along_all_axes(w) {
             w.x
         } else {
             (w * direction).dot(direction)

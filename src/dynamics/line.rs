@@ -1,6 +1,6 @@
 //! The line from end to end at an instant, its motion, and impulses along it.
 
-use super::body::{Body, Spin};
+use super::body::{Body, Spin, is_same_along_all_axes};
 use super::element::Element;
 use super::flight::Flight;
 use super::hold::Hold;
@@ -124,9 +124,7 @@ impl Line {
     /// mass along all axes.
     pub(crate) fn is_plain(&self, bodies: &[Body]) -> bool {
         self.holds.iter().all(|hold| {
-            let w = hold.inverse_mass;
-            w.x == w.y
-                && w.y == w.z
+            is_same_along_all_axes(hold.inverse_mass)
                 && hold
                     .body
                     .is_none_or(|index| bodies[index].spin == Spin::Ignored)

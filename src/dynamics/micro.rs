@@ -34,7 +34,7 @@ impl Micro {
         };
         let (z, decay) = numbers(self.step);
         let finer = self.may_resolve && z > RESOLVED;
-        if finer || is_special(decay, z) || self.extrapolates && !converges(z, decay) {
+        if finer || is_special(z, decay) || self.extrapolates && !converges(z, decay) {
             return None;
         }
         let poles = coarse.poles(z, decay / 2.0);

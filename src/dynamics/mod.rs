@@ -11,6 +11,9 @@
 //! - [`network`] solves elements that share bodies, with the linear algebra in [`system`] and [`strut`]. [`points`] does
 //!   so if no body turns. Both iterate by [`conjugate`] gradients; a small [`system`] is solved [`direct`]ly, within its
 //!   [`envelope`].
+//! - [`resolution`] and [`excited`] say how many micro-steps a stiff mode needs; [`thresholds`] has the limits. [`arc`] is the kick of
+//!   a line that turns, and [`surplus`] checks its energy. [`moving`] and [`micro`] connect lone elements with [`tolerance`] and
+//!   [`lanes`].
 //! - [`guard`] limits the [`energy`] of a strongly damped element, and [`bound`] that of a network.
 //! - [`delivery`] computes the impulse and force with which the engine arrives at the same state.
 //! - [`soft`] and [`pieces`] describe an element to the engine's own solver.

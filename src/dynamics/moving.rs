@@ -5,10 +5,10 @@ use super::kick::Memo;
 use super::pair::{Pair, Separation};
 use super::resolution::lone_steps;
 use super::surplus;
-use super::tolerance::{Least, Motion, VELOCITY_COUNTS};
+use super::tolerance::{Least, Steppable, VELOCITY_COUNTS};
 use bevy::math::DVec3;
 
-/// A pair and its present state, as a [`Motion`].
+/// A pair and its present state, as a [`Steppable`].
 pub(crate) struct Moving<'a> {
     pub pair: &'a Pair,
     pub state: Separation,
@@ -32,7 +32,7 @@ impl<'a> Moving<'a> {
     }
 }
 
-impl Motion for Moving<'_> {
+impl Steppable for Moving<'_> {
     fn save(&mut self, slot: usize) {
         self.saved[slot] = Some(self.state);
     }

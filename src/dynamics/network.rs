@@ -18,9 +18,10 @@ use super::flight::Flight;
 use super::kick;
 use super::line::{Line, Motion};
 use super::strut::{NOBODY, Strut, Twists};
-use super::system::{Effort, System};
+use super::system::System;
 use super::thresholds::STRONG;
 use bevy::math::DVec3;
+use std::mem::take;
 
 mod bounds;
 mod kinked;
@@ -29,6 +30,7 @@ mod slipping;
 #[cfg(test)]
 mod tests;
 
+pub(super) use bounds::shares;
 pub(super) use placement::{REVERSES, damper_placement, placement, settling, steep, together};
 
 /// (ω h)² of the stiffest mode up to which θ makes its frequency exact. Pinned by
@@ -51,8 +53,8 @@ pub(crate) struct Network {
     stiffness: Vec<f64>,
     /// For each body, the damping of its elements over its mass, 1/s: the bound on 2γ.
     damping: Vec<f64>,
-    /// Results of the solves since the last [`Network::take_effort`].
-    effort: Option<Effort>,
+    /// Whether a solve since the last [`Network::take_effort`] has not converged.
+    unconverged: bool,
 }
 
 /// One element within a kick.
@@ -217,9 +219,9 @@ impl Network {
         self.acceleration = Twists::default();
     }
 
-    /// Vector from which the iterations of the next solve start; none for a network that is factorised.
+    /// Vector from which the iterations of the next solve start; none if they start from zero.
     pub(super) fn start(&self) -> Option<&Twists> {
-        (!self.system.is_direct()).then_some(&self.acceleration)
+        (!self.system.was_factorised()).then_some(&self.acceleration)
     }
 
     /// Makes the next iterations start from `start` if it is finite.
@@ -236,11 +238,7 @@ impl Network {
 
     /// Returns whether the network is solved by iterations, and whether all solves since the last call converged.
     pub(crate) fn take_effort(&mut self) -> (bool, bool) {
-        let effort = self.effort.take();
-        (
-            !self.system.is_direct(),
-            effort.is_none_or(|effort| effort.converged),
-        )
+        (!self.system.is_direct(), !take(&mut self.unconverged))
     }
 
     fn add_struts(&mut self, elements: &[Element], bodies: &[Body], step: f64, theta: f64) {
@@ -299,11 +297,10 @@ impl Network {
             strut.add(right, -row.force());
         }
         let until = Until { tolerance, budget };
-        let effort = self
+        let converged = self
             .system
             .solve(&mut self.right, &mut self.acceleration, until);
-        let sum = self.effort.get_or_insert(effort);
-        sum.converged &= effort.converged;
+        self.unconverged |= !converged;
     }
 
     /// Applies the solution and the external forces to the bodies. An element's two forces are opposite, so they conserve

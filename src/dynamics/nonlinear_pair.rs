@@ -16,7 +16,7 @@ use super::kick::Memo;
 use super::law::Law;
 use super::network::{damper_placement, steep};
 use super::pair::{Pair, Separation};
-use super::poles::{RESOLVED_PHASE, UNRESOLVED_DECAY, decay_ratio};
+use super::poles::{UNRESOLVED_DECAY, decay_ratio, unresolved};
 use super::thresholds::STRONG;
 use crate::functions::exp_m1;
 use bevy::math::DVec3;
@@ -256,7 +256,7 @@ impl<'a> NonlinearPair<'a> {
         [rate, 2.0 * placement]
     }
 
-    /// Rate of the length now, m/s. `length` is that of now.
+    /// Rate of the length now, m/s. `length` is the present length.
     fn rate(&self, length: f64) -> f64 {
         if length > 0.0 {
             self.state.v.dot(self.state.d) / length
@@ -265,7 +265,7 @@ impl<'a> NonlinearPair<'a> {
         }
     }
 
-    /// Rate now, m/s, and damping at that rate, N s/m. `length` is that of now.
+    /// Rate now, m/s, and damping at that rate, N s/m. `length` is the present length.
     fn damping_at(&self, length: f64) -> (f64, f64) {
         let rate = self.rate(length);
         let drag = self.law.drag(length, self.rest_length(), rate);
@@ -284,8 +284,8 @@ impl<'a> NonlinearPair<'a> {
         // As in `poles`, unresolved motion is damped a little, because rounding of the engine's f32 excites it.
         let slope = law.elastic(middle, rest).stiffness;
         let z = slope * self.pair.inverse_mass * step * step;
-        let unresolved = (1.0 - RESOLVED_PHASE * RESOLVED_PHASE / z).max(0.0);
-        drag += 2.0 / PARTS[1] * UNRESOLVED_DECAY * unresolved * slope * step / z.max(1.0) * rate;
+        drag +=
+            2.0 / PARTS[1] * UNRESOLVED_DECAY * unresolved(z) * slope * step / z.max(1.0) * rate;
         let pull = (mean + drag) / (from + to).max(f64::MIN_POSITIVE);
         0.5 * step * step * self.pair.inverse_mass * pull
     }

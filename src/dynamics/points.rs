@@ -17,13 +17,14 @@ use super::body::{Body, Spin};
 use super::element::{Element, End};
 use super::excited::spread;
 use super::guide::Guide;
+use super::network::shares;
 use super::resolution::network_steps;
 use super::thresholds::converges;
-use super::tolerance::{Least, Motion, velocity_counts};
+use super::tolerance::{Least, Steppable, velocity_counts};
 use crate::threads::{copy, each};
 use bar::{Bar, Load};
 use bevy::math::DVec3;
-pub(crate) use free_points::{Flight, FreePoint};
+pub(crate) use free_points::{FreePoint, PointStep};
 use parts::Parts;
 use solve::Solver;
 use state::State;
@@ -155,7 +156,7 @@ impl Points {
         self.sums.clear();
         self.sums.resize(self.points.len(), [0.0; 2]);
         for wire in &self.wires {
-            let shares = Wire::shares(wire.inverse_masses(&self.points));
+            let shares = shares(wire.inverse_masses(&self.points));
             for (end, share) in wire.ends.iter().zip(shares) {
                 let [stiffness, damping] = &mut self.sums[*end as usize];
                 *stiffness += wire.stiffness * share;
@@ -201,7 +202,7 @@ impl Points {
     }
 }
 
-impl Motion for Points {
+impl Steppable for Points {
     fn save(&mut self, slot: usize) {
         let saved = &mut self.saved[slot];
         saved.points.copy_from(&self.points);

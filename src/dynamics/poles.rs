@@ -39,10 +39,14 @@ pub(crate) fn decay_ratio(x: f64) -> f64 {
     if x < 1e-12 { 1.0 } else { -exp_m1(-x) / x }
 }
 
+/// How far the phase √`z` of a step is from resolved: zero up to [`RESOLVED_PHASE`], nearly one far above it.
+pub(crate) fn unresolved(z: f64) -> f64 {
+    (1.0 - RESOLVED_PHASE * RESOLVED_PHASE / z).max(0.0)
+}
+
 /// The decay exponent of a step: γh, and a little more where the phase is far from resolved.
 fn decay(z: f64, g: f64) -> f64 {
-    let unresolved = (1.0 - RESOLVED_PHASE * RESOLVED_PHASE / z).max(0.0);
-    g.max(UNRESOLVED_DECAY * unresolved)
+    g.max(UNRESOLVED_DECAY * unresolved(z))
 }
 
 impl Poles {

@@ -22,7 +22,7 @@ const FEW_KICKS: usize = 16;
 const MOST_ALONE: u32 = 32;
 
 /// Least number of micro-steps of a lone element without a damper on a body that turns. A step is exact only along the line, and
-/// nothing takes away what each leaves of energy: where the motion is chaotic, it wanders by up to 2 % in an hour with one
+/// nothing removes the energy error that each step leaves: where the motion is chaotic, it wanders by up to 2 % in an hour with one
 /// micro-step. Pinned by `dynamics::undamped::the_energy_of_a_dumbbell_that_tumbles_chaotically_wanders_little`.
 const UNDAMPED_TURNING: u32 = 2;
 
@@ -32,9 +32,9 @@ const AHEAD: f64 = 1.25;
 
 /// Micro-steps that resolve a lone element with (ω h)² = `z` over the whole step; one if they are more than
 /// [`MOST_ALONE`]. They are so few that they do not come out of the budget of the networks, `most`, but a budget of 0
-/// allows one. Resolved micro-steps are exact along the line. `lasts` says that the element has no damper, and turns a body.
-pub(super) fn lone_steps(z: f64, most: u32, lasts: bool) -> Least {
-    let [least, most] = match (most, lasts) {
+/// allows one. Resolved micro-steps are exact along the line. `undamped_turning` says that the element has no damper, and turns a body.
+pub(super) fn lone_steps(z: f64, most: u32, undamped_turning: bool) -> Least {
+    let [least, most] = match (most, undamped_turning) {
         (0, _) => [1, 1],
         (_, false) => [1, MOST_ALONE],
         (_, true) => [UNDAMPED_TURNING, MOST_ALONE],

@@ -12,7 +12,7 @@ use super::points::Points;
 use super::resolution::{lone_steps, network_steps};
 use super::thresholds::converges;
 use super::tolerance::{
-    Accuracy, Controller, Least, Method, Motion, Outcome, VELOCITY_COUNTS, velocity_counts,
+    Accuracy, Controller, Least, Method, Outcome, Steppable, VELOCITY_COUNTS, velocity_counts,
 };
 use bevy::math::DVec3;
 
@@ -251,7 +251,7 @@ fn copy<T: Clone>(to: &mut Vec<T>, from: &[T]) {
     to.extend_from_slice(from);
 }
 
-impl Motion for Component {
+impl Steppable for Component {
     fn save(&mut self, slot: usize) {
         let saved = &mut self.memory.saved;
         if saved.len() <= slot {
@@ -317,9 +317,7 @@ impl Motion for Component {
     fn travelled(&self, slot: usize) -> f64 {
         let before = &self.memory.saved[slot].bodies;
         let mut ends = self.elements.iter().flat_map(|element| &element.ends);
-        let held = ends
-            .any(|end| matches!(end, End::Path(_)))
-            .then_some(DVec3::ZERO);
+        let held = ends.any(End::is_path).then_some(DVec3::ZERO);
         let moved = self.bodies.iter().zip(before);
         let way = moved.clone().map(|(now, was)| now.position - was.position);
         let gained = moved.map(|(now, was)| now.velocity - was.velocity);

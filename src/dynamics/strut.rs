@@ -20,6 +20,13 @@ pub(super) struct Strut {
     pub twist: bool,
 }
 
+/// Force that the relative acceleration `r` of two ends adds, N. `along` and `across` are the force per acceleration along the
+/// `direction` of their line and across it, N per m/s².
+#[inline(always)]
+pub(super) fn stiff_force([along, across]: [f64; 2], direction: DVec3, r: DVec3) -> DVec3 {
+    across * r + (along - across) * direction.dot(r) * direction
+}
+
 /// A vector with a linear and an angular part for every body. `angular` is empty if no body turns.
 #[derive(Clone, Debug, Default)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
@@ -48,7 +55,7 @@ impl Strut {
     /// Force that the relative acceleration `r` adds, N.
     #[inline]
     pub(super) fn force(&self, r: DVec3) -> DVec3 {
-        self.across * r + (self.along - self.across) * self.direction.dot(r) * self.direction
+        stiff_force([self.along, self.across], self.direction, r)
     }
 
     /// Adds a force on end B and its opposite on end A.

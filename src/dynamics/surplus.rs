@@ -1,23 +1,21 @@
 //! Keeps a step of a lone element from gaining energy.
 //!
-//! The kick of [`super::arc`] neither gains nor loses in regular motion. But where ends pass each other closely, the line turns
+//! The kick of [`super::arc`] neither gains nor loses energy in regular motion. But where ends pass each other closely, the line turns
 //! so far in a micro-step that no fixed number of them resolves it, and a strong damper may stop its ends only after they are
-//! far apart. Then the step is repeated with a method that suits.
+//! far apart. Then the step is repeated with another method: see [`remove`].
 
+use super::energy::slowed_by;
 use super::kick::Memo;
 use super::law::Law;
 use super::line;
 use super::nonlinear_pair::NonlinearPair;
 use super::pair::{Pair, Separation};
-use super::thresholds::STRONG;
+use super::thresholds::{STRONG, UNNOTICED};
 use crate::functions::{cos, exp, sin};
 
 /// Gain of a step, as a share of kinetic and stored energy, above which the step is repeated. Pinned by
 /// `tests::ends_that_fly_past_each_other_win_nothing`; regular motion stays far below.
 pub(super) const GAIN: f64 = 1e-3;
-
-/// Gain that may be rounding, as a share of the energy.
-const ROUNDING: f64 = 1e-9;
 
 /// c h/m from which on energy-conserving steps would reverse the motion instead of stopping it. [`creep`] takes
 /// their place. Pinned by `tests::ends_that_fly_past_each_other_win_nothing`.
@@ -36,7 +34,7 @@ pub(super) fn remove(
 ) {
     let [scale, before] = pair.energies(start);
     let surplus = |state: &Separation| pair.energies(state)[1] - before;
-    let noticed = ROUNDING * before.abs();
+    let noticed = UNNOTICED * before.abs();
     if surplus(state) <= noticed {
         return;
     }
@@ -63,10 +61,7 @@ pub(super) fn remove(
         && let Some(line) = pair.line(state)
     {
         let rate = line.axial;
-        let left = (rate * rate - 2.0 * pair.inverse_mass * surplus)
-            .max(0.0)
-            .sqrt();
-        state.v += (left.copysign(rate) - rate) * line.direction;
+        state.v += slowed_by(rate, pair.inverse_mass, surplus) * line.direction;
     }
 }
 

@@ -6,15 +6,11 @@
 
 use super::body::{Body, Spin};
 use super::conjugate::{self, Iterated, Until};
+use super::delivery::free_inertia;
 use super::direct::{Direct, Own};
 use super::strut::{NOBODY, Strut, Twists, crossed};
 use bevy::math::{DMat3, DVec3};
-
-/// Result of a solve.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Effort {
-    pub converged: bool,
-}
+use std::mem::replace;
 
 #[derive(Clone, Default)]
 pub(super) struct System {
@@ -31,6 +27,8 @@ pub(super) struct System {
     is_direct: bool,
     /// Whether `direct` can solve with the present struts.
     factorised: bool,
+    /// Whether the last solution is that of a factorisation.
+    was_factorised: bool,
     vectors: Vectors,
 }
 
@@ -98,16 +96,9 @@ impl System {
                 self.inertia.push(DMat3::IDENTITY);
             }
             if turns {
-                let mut inverse = body.inverse_inertia();
-                let mut free = DVec3::ONE;
-                for k in 0..3 {
-                    if inverse.col(k)[k] == 0.0 {
-                        inverse.col_mut(k)[k] = 1.0;
-                        free[k] = 0.0;
-                    }
-                }
+                let (inertia, free) = free_inertia(body.inverse_inertia());
                 self.free.angular[i] = free;
-                self.inertia.push(inverse.inverse());
+                self.inertia.push(inertia);
             }
         }
     }
@@ -118,6 +109,10 @@ impl System {
 
     pub(super) fn is_direct(&self) -> bool {
         self.is_direct
+    }
+
+    pub(super) fn was_factorised(&self) -> bool {
+        self.was_factorised
     }
 
     /// Prepares the solve for the present struts.
@@ -139,17 +134,20 @@ impl System {
         }
     }
 
-    /// Solves for `right`. Iterations start from `x`.
-    pub(super) fn solve(&mut self, right: &mut Twists, x: &mut Twists, until: Until) -> Effort {
+    /// Solves for `right`. Iterations start from `x`, the last solution, or from zero if that is of a factorisation: a snapshot does
+    /// not keep it. Returns whether they converged.
+    pub(super) fn solve(&mut self, right: &mut Twists, x: &mut Twists, until: Until) -> bool {
         right.mask(&self.free);
-        if !x.fits(self.mass.len(), self.turns) {
+        let was_factorised = replace(&mut self.was_factorised, self.factorised);
+        let starts_anew = was_factorised && !self.factorised;
+        if starts_anew || !x.fits(self.mass.len(), self.turns) {
             x.clear(self.mass.len(), self.turns);
         }
         if self.factorised {
             x.linear.clone_from(&right.linear);
             x.angular.clone_from(&right.angular);
             self.direct.solve(&mut x.linear, &mut x.angular);
-            return Effort { converged: true };
+            return true;
         }
         self.iterate(right, x, until)
     }
@@ -169,7 +167,7 @@ impl System {
         y.mask(&self.free);
     }
 
-    fn iterate(&mut self, right: &Twists, x: &mut Twists, until: Until) -> Effort {
+    fn iterate(&mut self, right: &Twists, x: &mut Twists, until: Until) -> bool {
         x.mask(&self.free);
         let mut vectors = std::mem::take(&mut self.vectors);
         self.precondition(right, &mut vectors.preconditioned);
@@ -187,7 +185,7 @@ impl System {
         let residual = running.advance(0.0);
         let converged = conjugate::solve(&mut running, weight, residual, until);
         self.vectors = running.vectors;
-        Effort { converged }
+        converged
     }
 
     fn precondition(&self, r: &Twists, z: &mut Twists) {

@@ -15,6 +15,9 @@ pub(super) const RESOLVED: f64 = 4.0;
 /// Pinned by `hard_cases::a_damper_passed_at_speed_only_takes_energy`.
 pub(super) const STRONG: f64 = 0.5;
 
+/// Gain of energy that is not removed, as a share of the energy: it may be rounding.
+pub(super) const UNNOTICED: f64 = 1e-9;
+
 /// Whether a spring of zero rest length must have an axis, because its damper is strong. `z` is (ω h)² and `decay` is c h/m.
 /// For a stiffer spring, its isotropic, implicit form matters more than an axis for the damper.
 #[inline(always)]
@@ -22,10 +25,10 @@ pub(super) fn is_damper_stiff(z: f64, decay: f64) -> bool {
     z < RESOLVED && decay > STRONG
 }
 
-/// Whether a lone element needs more than the plain kick: its oscillation is not resolved, or its damper is strong. `damping` is
-/// c h/m, `stiffness_number` is (ω h)².
-pub(super) fn is_special(damping: f64, stiffness_number: f64) -> bool {
-    damping >= STRONG || !is_resolved(stiffness_number)
+/// Whether a lone element needs more than the plain kick: its oscillation is not resolved, or its damper is strong. `z` is
+/// (ω h)² and `decay` is c h/m.
+pub(super) fn is_special(z: f64, decay: f64) -> bool {
+    decay >= STRONG || !is_resolved(z)
 }
 
 /// Whether extrapolation converges for coarse micro-steps with (ω h)² = `z` and c h/m = `decay`.

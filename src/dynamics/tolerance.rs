@@ -123,7 +123,7 @@ pub(crate) struct Least {
 }
 
 /// A motion that can be repeated over a step from saved states.
-pub(crate) trait Motion {
+pub(crate) trait Steppable {
     /// Saves the state in one of three slots.
     fn save(&mut self, slot: usize);
     /// Restores the state from a slot.
@@ -192,7 +192,7 @@ impl Controller {
     /// Advances a motion by one step.
     pub(crate) fn drive(
         &mut self,
-        motion: &mut impl Motion,
+        motion: &mut impl Steppable,
         time: f64,
         accuracy: Accuracy,
     ) -> Outcome {
@@ -239,18 +239,18 @@ impl Controller {
     /// Takes the step with up to three numbers of micro-steps, and computes the error constants from the differences.
     fn probe(
         &mut self,
-        motion: &mut impl Motion,
+        motion: &mut impl Steppable,
         time: f64,
         tolerance: f64,
         [least, most]: [u32; 2],
     ) -> Outcome {
         let (before, order) = (self.known, motion.order());
-        let m = before.map_or(least, |known| {
-            match cheapest(known, order, tolerance, [least, most]).0 {
-                Plan::Plain(n) => (n / 4).max(least),
-                Plan::Extrapolated(m) => (m / 2).max(least),
-            }
-        });
+        let plan = before.map(|known| cheapest(known, order, tolerance, [least, most]).0);
+        let m = match plan {
+            None => least,
+            Some(Plan::Plain(n)) => (n / 4).max(least),
+            Some(Plan::Extrapolated(m)) => (m / 2).max(least),
+        };
         motion.save(0);
         motion.run(time, m);
         motion.save(1);
@@ -313,7 +313,7 @@ impl Controller {
     }
 
     /// Takes as many micro-steps as asked, or more to follow the motion.
-    fn fixed(&mut self, motion: &mut impl Motion, time: f64, accuracy: Accuracy) -> Outcome {
+    fn fixed(&mut self, motion: &mut impl Steppable, time: f64, accuracy: Accuracy) -> Outcome {
         let asked = accuracy.microsteps.max(1);
         let least = motion.least(time, accuracy.resolve);
         let (count, capped) = accuracy.cap(asked.max(least.count));

@@ -6,12 +6,11 @@ use super::body::{Body, Spin};
 use super::element::{End, Path};
 use super::energy::Energy;
 use super::step::Component;
-use super::tests::{element, held, point, turning};
+use super::tests::{DT, element, held, point, turning};
 use super::tolerance::Accuracy;
 use bevy::math::DVec3;
 use bevy::prelude::default;
 
-const DT: f64 = 1.0 / 60.0;
 const GRAVITY: DVec3 = DVec3::new(0.0, -9.81, 0.0);
 
 /// A component, and its energy at rest, J.

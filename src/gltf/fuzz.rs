@@ -212,7 +212,7 @@ fn play(app: &mut App, file: &Value) -> Option<Vec<String>> {
     // A file that is not valid glTF is refused by Bevy's loader before this crate sees it.
     let gltf = gltf::Gltf::from_slice(text.as_bytes()).ok()?;
     let told = Told::default();
-    let handler = Handler::of(&gltf.document, "fuzz".into());
+    let mut handler = Handler::of(&gltf.document, "fuzz".into());
     let world = app.world_mut();
     let mut entities = HashMap::default();
     let root = world.spawn(Transform::default()).id();

@@ -7,32 +7,53 @@ use std::cell::RefCell;
 
 /// Errors found in a file.
 #[derive(Debug, Default)]
-pub(super) struct Told(RefCell<Vec<String>>);
+pub(super) struct Told(RefCell<Lines>);
 
-/// Greatest number of errors that are logged one by one. Of the rest only the number is logged: a broken file may
-/// have a million.
+#[derive(Debug, Default)]
+struct Lines {
+    /// The first errors, at most [`MOST_TOLD`].
+    first: Vec<String>,
+    /// Number of errors after these.
+    more: usize,
+}
+
+/// Greatest number of errors that are kept and logged one by one. Of the rest only the number is logged: a broken file may
+/// have a million. Pinned by `tests::of_a_million_errors_the_first_are_kept_and_the_rest_are_counted`.
 const MOST_TOLD: usize = 32;
 
 impl Told {
     /// Adds an error at a place of the file.
     pub(super) fn tell(&self, place: &str, what: impl std::fmt::Display) {
-        self.0.borrow_mut().push(format!("{place}: {what}"));
+        let mut lines = self.0.borrow_mut();
+        if lines.first.len() < MOST_TOLD {
+            lines.first.push(format!("{place}: {what}"));
+        } else {
+            lines.more += 1;
+        }
     }
 
     /// Logs the errors of a file.
     pub(super) fn log(self, file: &str) {
-        let told = self.0.into_inner();
-        for line in told.iter().take(MOST_TOLD) {
+        let Lines { first, more } = self.0.into_inner();
+        for line in first {
             log::warn!("{file}: {line}");
         }
-        if told.len() > MOST_TOLD {
-            log::warn!("{file}: and {} more of that kind", told.len() - MOST_TOLD);
+        if more > 0 {
+            log::warn!("{file}: and {more} more of that kind");
         }
     }
 
+    /// Returns the errors that are kept.
     #[cfg(test)]
     pub(super) fn lines(&self) -> Vec<String> {
-        self.0.borrow().clone()
+        self.0.borrow().first.clone()
+    }
+
+    /// Returns the number of all errors.
+    #[cfg(test)]
+    pub(super) fn count(&self) -> usize {
+        let lines = self.0.borrow();
+        lines.first.len() + lines.more
     }
 }
 
@@ -222,4 +243,20 @@ pub(super) fn numbers<const N: usize>(value: &Value) -> Option<[f32; N]> {
         *to = from.as_f64()? as f32;
     }
     Some(found)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn of_a_million_errors_the_first_are_kept_and_the_rest_are_counted() {
+        let told = Told::default();
+        for index in 0..1_000_000 {
+            told.tell(&format!("node {index}"), "is wrong");
+        }
+        let lines = told.lines();
+        assert_eq!((lines.len(), told.count()), (MOST_TOLD, 1_000_000));
+        assert_eq!(lines[MOST_TOLD - 1], "node 31: is wrong");
+    }
 }

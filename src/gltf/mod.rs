@@ -1,10 +1,11 @@
 //! Reads springs, bodies and joints from glTF files, and writes them.
 //!
-//! [`handler`] is called by Bevy's loader. [`physics`] and [`element`] (with [`companions`] and [`looks`]) read the
-//! JSON through [`json`], which reports errors. Elements go into the scene as components; [`ends`] lists their ends. The
-//! components of [`carry`] hold what is meant for Rapier, and [`expand`] passes it on once the scene is in the world,
-//! with [`place`], [`shapes`], [`mass`], [`filters`], [`joints`], and [`soft`] for soft limits and drives of joints.
-//! [`export`] writes files; [`left_out`] collects what a file cannot hold.
+//! [`handler`] is called by Bevy's loader. [`nodes`] holds the nodes of a file, and [`geometry`] the triangles of its
+//! colliders. [`physics`] and [`element`] (with [`companions`] and [`looks`]) read the JSON through [`json`], which
+//! reports errors. Elements go into the scene as components; [`ends`] lists their ends. The components of [`carry`] hold
+//! what is meant for Rapier, and [`expand`] passes it on once the scene is in the world, with [`place`], [`shapes`],
+//! [`mass`], [`filters`], [`joints`], and [`soft`] for soft limits and drives of joints. [`export`] writes files;
+//! [`left_out`] collects what a file cannot hold.
 
 mod carry;
 mod companions;
@@ -20,13 +21,17 @@ mod export_physics;
 mod filters;
 #[cfg(test)]
 mod fuzz;
+mod geometry;
 mod handler;
 mod joints;
 mod json;
+#[cfg(test)]
+mod large;
 mod left_out;
 #[cfg(feature = "visual")]
 mod looks;
 mod mass;
+mod nodes;
 mod number;
 mod physics;
 mod physics_joint;

@@ -12,7 +12,7 @@ pub(crate) struct Fault {
 }
 
 impl Fault {
-    /// That of a law of the user's, which may give anything.
+    /// Fault of a custom law that gives NaN or infinity.
     pub(crate) const UNSOUND_LAW: Self = Self::new("ForceLaw", "gives NaN or infinity");
 
     pub(crate) const fn new(field: &'static str, reason: &'static str) -> Self {

@@ -169,6 +169,23 @@ pub(crate) fn any_strays(strays: Res<Strays>) -> bool {
     !strays.waiting.is_empty()
 }
 
+#[cfg(feature = "visual")]
+impl Strays {
+    /// Warns once about looks that nothing draws.
+    fn tell_undrawn(&mut self, is_drawn: bool) {
+        if self.undrawn != Some(false) {
+            return;
+        }
+        self.undrawn = Some(true);
+        if !is_drawn {
+            log::warn!(
+                "bevy_coilover: there is a Coil, a Telescope or a TorsionCoil, but CoiloverVisualPlugin is missing, so nothing \
+                 is drawn; add CoiloverPlugins instead of CoiloverPlugin (without a window, ignore this)"
+            );
+        }
+    }
+}
+
 /// Warns about components that still have no element.
 pub(crate) fn tell_strays(
     mut strays: ResMut<Strays>,
@@ -183,15 +200,7 @@ pub(crate) fn tell_strays(
     #[cfg(feature = "visual")]
     strays.tell_skins(&skins, &drawn_on);
     #[cfg(feature = "visual")]
-    if strays.undrawn == Some(false) {
-        strays.undrawn = Some(true);
-        if drawn.is_none() {
-            log::warn!(
-                "bevy_coilover: there is a Coil, a Telescope or a TorsionCoil, but CoiloverVisualPlugin is missing, so nothing \
-                 is drawn; add CoiloverPlugins instead of CoiloverPlugin (without a window, ignore this)"
-            );
-        }
-    }
+    strays.tell_undrawn(drawn.is_some());
     let Strays { waiting, told, .. } = strays;
     told.retain(|entity| entities.contains(*entity));
     waiting.retain(|&entity, stray| {

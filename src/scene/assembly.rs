@@ -5,13 +5,13 @@ use crate::dynamics::body::Body;
 use crate::dynamics::step::{Component, Copies};
 use crate::dynamics::tolerance::{Accuracy, Outcome};
 use crate::input::check::Fault;
-use crate::scene::element::element;
 use crate::scene::push::Manner;
 use crate::scene::rows::{
     BodyFlags, BodyRow, Cut, ElementFlags, ElementRow, Members, Solved, pull_mark, take,
 };
 use crate::scene::sleep::{omega_of, rouse, wake_with};
 use crate::scene::step::Step;
+use crate::scene::to_element::element;
 use crate::scene::warm_start::WarmStart;
 use std::mem::{replace, take};
 use std::sync::atomic::Ordering;

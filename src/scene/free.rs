@@ -4,7 +4,7 @@
 use crate::backend::{Engine, Sight};
 use crate::dynamics::step::Copies;
 use crate::scene::assembly::Assembly;
-use crate::scene::lone::{Lone, Piece, Route, Way, Worker, pieces};
+use crate::scene::lone::{self, Lone, Piece, Route, Way, Worker};
 use crate::scene::rows::Cut;
 use crate::scene::runs::{Runs, WORTH_SHARING};
 use crate::scene::state::Scene;
@@ -117,8 +117,8 @@ impl Scene {
         let lone = &self.lone[lone].pairs;
         // Every entry gets a new route below.
         spare.ways.resize(lone.len(), Way::default());
-        let count = pieces(lone.len());
-        let each = lone.len().div_ceil(count).max(1);
+        let each = threads::piece_of(lone.len(), lone.len() >= lone::WORTH_SHARING);
+        let count = lone.len().div_ceil(each).max(1);
         spare.workers.resize_with(count, Worker::default);
         let bodies = &self.bodies;
         let mut rows = Cut::all(&mut self.elements);
@@ -202,13 +202,8 @@ fn advance(assemblies: &mut [Assembly], step: &Step, copies: &mut Vec<Copies>) {
     let load: usize = assemblies.iter().map(Assembly::load).sum();
     let accuracy = step.accuracy.shared(load);
     let ready = assemblies.iter().filter(|a| a.load() > 0).count();
-    let worth = ready > 1 && load >= WORTH_SHARING;
-    let threads = if worth { threads::count() } else { 1 };
-    let each = if threads > 1 {
-        assemblies.len().div_ceil(threads::PER_THREAD * threads)
-    } else {
-        assemblies.len().max(1)
-    };
+    let is_worth_it = ready > 1 && load >= WORTH_SHARING;
+    let each = threads::piece_of(assemblies.len(), is_worth_it);
     let pieces = assemblies.chunks_mut(each);
     copies.resize_with(copies.len().max(pieces.len()), Copies::default);
     threads::share(pieces.zip(copies), |(assemblies, copies)| {

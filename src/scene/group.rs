@@ -1,8 +1,8 @@
 //! Finds the components of a scene: the elements that must be solved together, because they share bodies.
 
 use crate::scene::assembly::Assembly;
-use crate::scene::order::Neighbours;
 use crate::scene::rows::{BodyFlags, BodyRow, ElementFlags, ElementRow, Members, mix};
+use crate::scene::sequence::Neighbours;
 use bevy::platform::collections::HashMap;
 use bevy::prelude::Entity;
 use std::ops::Range;
@@ -76,7 +76,7 @@ fn join(elements: &[ElementRow], bodies: usize) -> Vec<usize> {
 }
 
 /// Sort key of an element. It does not depend on when elements or bodies were spawned, except that elements with the same bodies,
-/// anchors and numbers are sorted by entity. `places` are the places of bodies within their components.
+/// anchors and numbers are sorted by the order in which they became known. `places` are the places of bodies within their components.
 fn rank(row: &ElementRow, places: &[u32]) -> impl Ord + use<> {
     let p = row.parameters();
     let on = [0, 1].map(|end| row.movable(end).map(|b| places[b]));
@@ -90,12 +90,12 @@ fn rank(row: &ElementRow, places: &[u32]) -> impl Ord + use<> {
             p.numbers.rest_length.unwrap_or(-1.0),
         ]
         .map(f32::to_bits),
-        row.entity,
+        row.rare.serial,
     )
 }
 
 impl Groups {
-    /// Finds the components of a scene, in the order of their first bodies.
+    /// Finds the components of a scene, in the order in which their first elements became known.
     pub(crate) fn find(&mut self, elements: &[ElementRow], bodies: &[BodyRow]) {
         let mut parent = join(elements, bodies.len());
         // A root has the least index in its component, so the loop reaches it first.
@@ -155,6 +155,11 @@ impl Groups {
                 .iter()
                 .any(|e| elements[*e as usize].inside.is_some());
         }
+        let Self { elements: all, .. } = self;
+        self.list.sort_by_cached_key(|group| {
+            let serials = all[span(&group.elements)].iter();
+            serials.map(|e| elements[*e as usize].rare.serial).min()
+        });
     }
 
     /// Sorts all components, and the elements and bodies of each, by new places: `elements` and `bodies` have one for each row.

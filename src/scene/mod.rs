@@ -13,11 +13,14 @@
 //! 4. *observe*: [`observe`] reads where bodies and ends are now, and [`energy`] computes where the energy went.
 //! 5. *show*: [`show`] writes readouts, [`report`] reports faults, and [`breaking`] breaks overloaded elements.
 //!
+//! Bodies get their rows from [`wanted`], and [`handles`] finds these by the engine's handles. [`sequence`] sorts the bodies of a
+//! component, [`runs`] divides networks among threads, and [`to_element`] converts a row to the element of [`crate::dynamics`].
+//! A test drives all this with an engine of its own (`own_engine`).
+//!
 //! [`state`] holds the data of the scene, [`step`] what all components share within a step, and [`kept`] the data of snapshots.
 
 pub(crate) mod assembly;
 pub(crate) mod breaking;
-pub(crate) mod element;
 pub(crate) mod energy;
 pub(crate) mod free;
 pub(crate) mod group;
@@ -26,7 +29,6 @@ pub(crate) mod held;
 pub(crate) mod kept;
 pub(crate) mod lone;
 pub(crate) mod observe;
-pub(crate) mod order;
 #[cfg(test)]
 mod own_engine;
 pub(crate) mod push;
@@ -35,10 +37,12 @@ pub(crate) mod renew;
 pub(crate) mod report;
 pub(crate) mod rows;
 pub(crate) mod runs;
+pub(crate) mod sequence;
 pub(crate) mod show;
 pub(crate) mod sleep;
 pub(crate) mod state;
 pub(crate) mod step;
 pub(crate) mod still;
+pub(crate) mod to_element;
 pub(crate) mod wanted;
 pub(crate) mod warm_start;

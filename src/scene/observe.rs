@@ -44,13 +44,13 @@ impl Scene {
             stale: AtomicBool::new(false),
         };
         if self.noting {
-            let each = share_of(self.bodies.len(), WORTH_SHARING);
+            let each = piece_of(self.bodies.len());
             threads::share(self.bodies.chunks_mut(each), |rows| {
                 rows.iter_mut().for_each(|row| eyes.note(row));
             });
         }
         let (bodies, stepped) = (&self.bodies, &self.stepped);
-        let each = share_of(self.elements.len(), WORTH_SHARING);
+        let each = piece_of(self.elements.len());
         threads::share(self.elements.chunks_mut(each), |rows| {
             for row in rows.iter_mut().filter(|row| row.is_seen(bodies, stepped)) {
                 row.observe(bodies, &eyes);
@@ -60,15 +60,9 @@ impl Scene {
     }
 }
 
-/// Number of rows in each piece of work, of `rows` in all. Several threads share the work from `worth` rows on.
-pub(crate) fn share_of(rows: usize, worth: usize) -> usize {
-    if rows < worth {
-        return rows.max(1);
-    }
-    match threads::count() {
-        0 | 1 => rows,
-        threads => rows.div_ceil(threads::PER_THREAD * threads),
-    }
+/// Number of rows in each piece of work, of `rows` in all.
+pub(crate) fn piece_of(rows: usize) -> usize {
+    threads::piece_of(rows, rows >= WORTH_SHARING)
 }
 
 impl<'a, W: Worlds> Eyes<'a, W> {
@@ -245,11 +239,7 @@ impl ElementRow {
         time: f64,
     ) -> (f64, f64) {
         let Some(mut inside) = self.inside.take_if(|inside| inside.active) else {
-            if self
-                .inside
-                .as_ref()
-                .is_some_and(|inside| inside.has_slipped())
-            {
+            if self.inside.as_ref().is_some_and(|inside| inside.slipped) {
                 self.rare.angle = wound;
                 return (wound, 0.0);
             }

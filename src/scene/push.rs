@@ -5,7 +5,7 @@ use super::step::Step;
 use crate::backend::{Engine, Push, Seen, Wrench};
 use crate::dynamics::body::{Body, Spin};
 use crate::dynamics::delivery::{Delivery, Schedule, force_for, torque_for};
-use crate::dynamics::points::{Flight, FreePoint};
+use crate::dynamics::points::{FreePoint, PointStep};
 use crate::dynamics::single;
 use bevy::math::{DVec3, Vec3};
 
@@ -101,14 +101,10 @@ impl Step {
 
     /// The push of a body that is moved but not turned. `more` is the number of extra substeps for which the body asks.
     #[inline(always)]
-    pub(crate) fn push_point(&self, more: usize, point: &FreePoint, flight: &Flight) -> Push {
+    pub(crate) fn push_point(&self, more: usize, point: &FreePoint, moved: &PointStep) -> Push {
         let terms = self.terms(more);
-        let (velocity, rate) = self.straight(
-            point.velocity,
-            flight.moved,
-            flight.velocity,
-            &terms.schedule,
-        );
+        let (velocity, rate) =
+            self.straight(point.velocity, moved.by, moved.velocity, &terms.schedule);
         Push {
             velocity: Some(velocity),
             spin: None,

@@ -10,8 +10,9 @@ use crate::scene::lone;
 use crate::scene::report::{forget, report};
 use crate::scene::rows::{BodyFlags, BodyRow, ElementFlags, ElementRow, Held, mix};
 use crate::scene::state::Scene;
-use crate::scene::wanted::Wanted;
+use crate::scene::wanted::WantedBody;
 use bevy::ecs::entity::EntityHashSet;
+use bevy::platform::collections::HashSet;
 use bevy::prelude::*;
 use std::mem::take;
 
@@ -71,6 +72,7 @@ impl Scene {
             }
             self.left.extend(gone.take_inside());
         }
+        self.number_new();
         let (signatures, held) = self.enter_bodies(&found_all, modified);
         self.hold_ends(&found_all, &held);
         self.notice_other_elements(&signatures);
@@ -78,6 +80,17 @@ impl Scene {
         self.groups.find(&self.elements, &self.bodies);
         self.number_groups();
         self.awaited = self.elements.iter().any(ElementRow::awaits_step);
+    }
+
+    /// Gives numbers to new elements, in the order of their entities.
+    fn number_new(&mut self) {
+        let rows = self.elements.iter_mut();
+        let mut new: Vec<_> = rows.filter(|row| row.rare.serial == 0).collect();
+        new.sort_unstable_by_key(|row| row.entity);
+        for row in new {
+            self.last_serial = self.last_serial.saturating_add(1);
+            row.rare.serial = self.last_serial;
+        }
     }
 
     /// Connects rows of elements with the rows of their bodies. `held` has the row index of the body at each end.
@@ -103,7 +116,7 @@ impl Scene {
         }
     }
 
-    /// Marks bodies on which other elements act than before. `before` are the earlier signatures of the bodies.
+    /// Marks the bodies whose set of elements has changed. `before` are the earlier signatures of the bodies.
     fn notice_other_elements(&mut self, before: &[u64]) {
         for (body, before) in self.bodies.iter_mut().zip(before) {
             if *before != body.rare.signature {
@@ -184,11 +197,11 @@ impl Scene {
     ) -> (Vec<u64>, Vec<Option<u32>>) {
         let found = found_all.iter().enumerate();
         let mut wanted: Vec<_> = found
-            .filter_map(|(element, found)| Some(Wanted::of(element, found.as_ref()?)))
+            .filter_map(|(element, found)| Some(WantedBody::of(element, found.as_ref()?)))
             .flatten()
             .collect();
         wanted.sort_unstable_by_key(|body| body.entity);
-        let held = Wanted::rows(&wanted, found_all.len());
+        let held = WantedBody::rows(&wanted, found_all.len());
         wanted.dedup_by(|again, first| {
             let same = again.entity == first.entity;
             first.turns |= same && again.turns;
@@ -212,8 +225,10 @@ impl Scene {
     }
 
     /// Replaces the rows of bodies. If no element moves a body any more, its changed settings are stored, to be restored later.
-    fn replace_bodies(&mut self, wanted: &[Wanted]) {
+    fn replace_bodies(&mut self, wanted: &[WantedBody]) {
         let before = take(&mut self.bodies);
+        // Of bodies of one rank, that of the least entity comes first, and from then on it does so in every world.
+        let mut ranks: HashSet<u64> = before.iter().map(|row| row.rare.rank).collect();
         let mut before = before.into_iter().peekable();
         let mut gone = Vec::new();
         self.bodies.reserve_exact(wanted.len());
@@ -226,6 +241,9 @@ impl Scene {
             self.bodies.push(same.unwrap_or_else(|| {
                 let mut row = BodyRow::new(body.entity, body.id, body.context);
                 row.rare.rank = body.rank;
+                while !ranks.insert(row.rare.rank) {
+                    row.rare.rank = row.rare.rank.wrapping_add(1);
+                }
                 row
             }));
         }
@@ -244,7 +262,7 @@ impl ElementRow {
         inside.is_some() && found.places.iter().any(is_other)
     }
 
-    /// Forgets what does not hold for the element on other ties. On the same ends, the places of its ends are kept, because an end
+    /// Forgets what is no longer valid after ends, anchors or the axis have changed. On the same ends, the places of its ends are kept, because an end
     /// without a body has no other speed than the way from its last place.
     fn retie(&mut self, ties: &Ties, finder: &impl Finder) {
         let known = self.rare.ties;

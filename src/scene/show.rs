@@ -6,7 +6,7 @@ use crate::element::{
 };
 use crate::input::parts::{Acts, IsElement};
 use crate::readout::SpringReadout;
-use crate::scene::observe::{WORTH_SHARING, share_of};
+use crate::scene::observe::piece_of;
 use crate::scene::report::{report, report_unresolved};
 use crate::scene::rows::{ElementFlags, ElementRow, take};
 use crate::scene::state::Scene;
@@ -21,7 +21,7 @@ const FOUND: ElementFlags = ElementFlags::TUNED
     .union(ElementFlags::POSED);
 
 /// ω·dt of a micro-step above which an element's own vibration is not followed, rad: the root of `RESOLVED` in
-/// `dynamics::resolution`, above which more micro-steps are needed. Pinned by `messages::what_cannot_be_followed_is_told_once`.
+/// `dynamics::thresholds`, above which more micro-steps are needed. Pinned by `messages::what_cannot_be_followed_is_told_once`.
 const UNRESOLVED: f32 = 2.0;
 
 /// Components into which a captured rest length or angle and computed coefficients are written.
@@ -89,7 +89,7 @@ impl Scene {
             rest = others;
             let (readouts, mut ticks) = ContiguousMut::bypass_change_detection_split(readouts);
             let (now, ticks) = (ticks.this_run(), ticks.changed_mut());
-            let each = share_of(count, WORTH_SHARING);
+            let each = piece_of(count);
             let shown = readouts.chunks_mut(each).zip(ticks.chunks_mut(each));
             let pieces = rows.chunks(each).zip(entities.chunks(each)).zip(shown);
             threads::share(pieces, |((rows, entities), (readouts, ticks))| {

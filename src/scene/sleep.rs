@@ -147,6 +147,9 @@ impl Step {
         sight: &impl Sight,
     ) -> bool {
         // The surface of a small held body moves little when it turns, so its size counts.
+        if take!(row.flags, BodyFlags::COUNTED) {
+            return !row.has(BodyFlags::RESTS | BodyFlags::RESTS_LONG);
+        }
         let inside = inside || row.has(BodyFlags::LINGERS);
         let size = if inside { sight.size(row.id) } else { 1.0 };
         let time = self.plan.time as f32;

@@ -1,4 +1,4 @@
-//! Elements and the bodies they act on, as flat arrays kept from tick to tick.
+//! The resource that holds all data of the scene from tick to tick.
 
 use crate::backend::BodyId;
 use crate::scene::assembly::Assembly;
@@ -19,6 +19,8 @@ use std::sync::atomic::AtomicBool;
 pub struct Scene {
     /// Rows of all elements, in the order of the query that finds them, including elements with a fault.
     pub(crate) elements: Vec<ElementRow>,
+    /// Number that the last new element was given. See [`RareElement::serial`](crate::scene::rows::RareElement::serial).
+    pub(crate) last_serial: u32,
     /// Row index of each element.
     pub(crate) row_of: EntityHashMap<u32>,
     /// Row indices of elements that changed since the last step.

@@ -5,7 +5,7 @@ use crate::scene::rows::BodyRow;
 use bevy::prelude::{Entity, Vec3};
 
 /// A body that elements can move.
-pub(crate) struct Wanted {
+pub(crate) struct WantedBody {
     pub(crate) entity: Entity,
     pub(crate) id: BodyId,
     pub(crate) context: Entity,
@@ -18,7 +18,7 @@ pub(crate) struct Wanted {
     pub(crate) end: u32,
 }
 
-impl Wanted {
+impl WantedBody {
     /// Whether `row` is the row of this body.
     pub(crate) fn is(&self, row: &BodyRow) -> bool {
         row.entity == self.entity && row.id == self.id && row.rare.context == self.context

@@ -67,6 +67,8 @@ struct Noted {
     /// Whether some body was disturbed.
     disturbed: bool,
     touch_changed: bool,
+    /// Number of bodies that were read.
+    count: usize,
 }
 
 impl Noted {
@@ -186,11 +188,24 @@ impl WarmStart {
                     return;
                 };
                 *met = now;
+                noted.count += 1;
             }
         });
         let mut all = Noted::default();
         noted.iter().for_each(|noted| all.add(noted));
         all
+    }
+
+    /// Marks the bodies that were read, because they are read once more in this step.
+    fn mark_counted(&self, members: &Members, bodies: &mut Cut<BodyRow>) {
+        let Some(in_memory) = &self.in_memory else {
+            return;
+        };
+        let pieces = in_memory.bodies.chunks(PIECE).zip(&in_memory.noted);
+        for slot in pieces.flat_map(|(slots, noted)| &slots[..noted.count]) {
+            let row = &mut bodies[members.bodies[*slot as usize] as usize];
+            row.flags.insert(BodyFlags::COUNTED);
+        }
     }
 
     /// Forgets the bodies before they are read anew.
@@ -221,12 +236,10 @@ impl Assembly {
         let goes_on = self.place(step, members, elements, bodies, sight, &mut disturbed);
         if goes_on.is_none() {
             // Reading the bodies has cleared their flags, so set the flag again on one of them.
-            if let Some(first) = members.bodies.first() {
-                let row = &mut bodies[*first as usize];
-                if disturbed {
-                    row.flags.insert(BodyFlags::DISTURBED);
-                }
+            if let Some(first) = members.bodies.first().filter(|_| disturbed) {
+                bodies[*first as usize].flags.insert(BodyFlags::DISTURBED);
             }
+            self.warm.mark_counted(members, bodies);
             return false;
         }
         self.warm.restless |= disturbed;
@@ -301,8 +314,8 @@ impl Assembly {
         given.resize(members.bodies.len(), Given::default());
         each(&mut given, |slot, given| {
             let more = in_memory.met(slot).more as usize;
-            let (origin, flight) = (points.origin(slot), points.flight(slot));
-            *given = step.push_point(more, &origin, &flight).into();
+            let (origin, moved) = (points.origin(slot), points.step_of(slot));
+            *given = step.push_point(more, &origin, &moved).into();
         });
         let give = || {
             for (slot, met) in in_memory.bodies.iter().zip(&in_memory.met) {

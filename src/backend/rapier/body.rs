@@ -1,7 +1,7 @@
 //! Converts Rapier's bodies for the rest of the crate: implements the backend's `Sight` and `Engine`.
 
 use crate::backend::{BodyId, Engine, JointId, Push, Seen, Sight, Wrench};
-use crate::dynamics::body::{Body, Spin, turn};
+use crate::dynamics::body::{Body, Spin, shortest, turn};
 use bevy::math::{DQuat, DVec3, Vec3};
 use bevy_rapier3d::rapier::dynamics::{
     ImpulseJointHandle, LockedAxes, RigidBody, RigidBodyHandle, RigidBodySet, RigidBodyType,
@@ -116,10 +116,7 @@ pub(crate) fn turning_of(body: &RigidBody, time: f64) -> (DQuat, DVec3) {
     }
     let next = body.next_position().rotation.as_dquat().normalize();
     if body.next_position().rotation != body.position().rotation {
-        let mut by = next * now.inverse();
-        if by.w < 0.0 {
-            by = -by;
-        }
+        let by = shortest(next * now.inverse());
         return (now, by.to_scaled_axis() / time);
     }
     match body.body_type() {

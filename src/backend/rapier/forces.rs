@@ -3,7 +3,6 @@
 use super::body;
 use super::find::Contexts;
 use crate::backend::Wrench;
-use crate::scene::observe::share_of;
 use crate::scene::rows::{BodyFlags, BodyRow};
 use crate::scene::state::Scene;
 use crate::threads;
@@ -39,7 +38,7 @@ pub struct SpringLoad {
 /// Filter: disabled entities count too. Unlike `Allow`, it lets a query give whole tables.
 type WithDisabled = Or<(With<Disabled>, Without<Disabled>)>;
 
-/// Loads of bodies, including disabled bodies, whose share must be removed too. Whole tables cannot be had if the game has
+/// Loads of bodies, including disabled bodies, whose share must be removed too. The query cannot return whole tables if the game has
 /// registered a disabling component of sparse storage; then all is done one body at a time.
 pub(crate) type Loads<'w, 's> = Query<
     'w,
@@ -233,7 +232,7 @@ pub(crate) fn show(scene: &Scene, loads: &mut Loads) {
     };
     for (entities, loads, components) in tables {
         let (loads, _) = ContiguousMut::bypass_change_detection_split(loads);
-        let each = share_of(loads.len(), WORTH_SHARING);
+        let each = threads::piece_of(loads.len(), loads.len() >= WORTH_SHARING);
         let pieces = entities.chunks(each).zip(loads.chunks_mut(each));
         let Some(components) = components else {
             threads::share(pieces, |(entities, loads)| {

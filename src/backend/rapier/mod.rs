@@ -1,4 +1,4 @@
-//! The Rapier backend: the only module that knows Rapier.
+//! The Rapier backend: the only folder of the physics that knows Rapier.
 //!
 //! Three systems run the stages of [`crate::scene`]:
 //!

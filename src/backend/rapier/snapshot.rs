@@ -12,6 +12,7 @@ use bevy_rapier3d::rapier::dynamics::{
     MultibodyJointHandle, MultibodyJointSet, RigidBodyHandle, RigidBodySet,
 };
 use bevy_rapier3d::rapier::geometry::{BroadPhaseBvh, ColliderHandle, ColliderSet, NarrowPhase};
+use bevy_rapier3d::rapier::math::Pose;
 use bevy_rapier3d::rapier::pipeline::PhysicsPipeline;
 use std::collections::HashMap;
 
@@ -26,8 +27,8 @@ use std::collections::HashMap;
 /// - First despawn bodies, colliders and joints that were spawned after the snapshot.
 /// - In another world, handles are the same if everything was spawned in the same order and nothing was despawned before.
 ///
-/// Restoring also sets `Transform`, `Velocity` and `Sleeping` of bodies, as Rapier writes them after a step, and gives
-/// `RigidBodyDisabled` to the bodies that had it, and takes it from all others. A body that is disabled both in the snapshot and
+/// Restoring also sets `Transform`, `Velocity` and `Sleeping` of bodies, as Rapier writes them after a step, also while the game is
+/// paused. It restores the poses in `TransformInterpolation` of bodies that have it. It gives `RigidBodyDisabled` to the bodies that had it, and takes it from all others. A body that is disabled both in the snapshot and
 /// now keeps its `Transform`, because Rapier writes none of a disabled body.
 ///
 /// The snapshot contains no events and no other components of the game, such as `ExternalForce` of bodies without springs.
@@ -59,6 +60,8 @@ struct Context {
     handles: Handles,
     /// Bodies that the game has disabled.
     disabled: Vec<Entity>,
+    /// Start and end of the motion that is drawn, of each body that is drawn between two steps.
+    interpolations: Vec<(Entity, [Option<Pose>; 2])>,
 }
 
 /// The handle of each entity.
@@ -124,6 +127,7 @@ impl RapierSnapshot {
                         multibody_joints: sorted(joints.entity2multibody_joint()),
                     },
                     disabled: disabled(world, set),
+                    interpolations: interpolations(world, set),
                 },
             )
             .collect();
@@ -153,10 +157,14 @@ impl RapierSnapshot {
         // Rapier writes back only the bodies that are enabled by the components of both times.
         let mut behind = false;
         for context in &self.0 {
+            context.put_interpolations(world);
             behind |= context.set_disabled(false, world);
         }
+        // Rapier writes nothing back in a context that is paused.
+        let paused = set_active(world, |_, active| !active, true);
         // The write-back also records what it wrote, so that bevy_rapier does not take it for changes by the game.
         let written = world.run_system_cached(writeback_rigid_bodies);
+        set_active(world, |context, _| paused.contains(&context), false);
         for context in &self.0 {
             behind |= context.set_disabled(true, world);
         }
@@ -194,6 +202,15 @@ impl Context {
         simulation.pipeline = PhysicsPipeline::new();
     }
 
+    /// Restores between which poses bodies are drawn.
+    fn put_interpolations(&self, world: &mut World) {
+        for (entity, [start, end]) in &self.interpolations {
+            if let Some(mut drawn) = world.get_mut::<TransformInterpolation>(*entity) {
+                (drawn.start, drawn.end) = (*start, *end);
+            }
+        }
+    }
+
     /// Gives `RigidBodyDisabled` to the bodies that had it (`is`), or takes it from those that had it not. Returns whether the
     /// engine did not follow the component of such a body yet.
     fn set_disabled(&self, is: bool, world: &mut World) -> bool {
@@ -218,6 +235,39 @@ impl Context {
     }
 }
 
+/// Sets whether Rapier steps the contexts for which `is_meant` holds: it gets the context and whether Rapier steps it now. Returns
+/// those contexts. No system notices.
+fn set_active(
+    world: &mut World,
+    is_meant: impl Fn(Entity, bool) -> bool,
+    active: bool,
+) -> Vec<Entity> {
+    let mut meant = Vec::new();
+    let mut contexts = world.query::<(Entity, &mut RapierConfiguration)>();
+    for (context, mut configuration) in contexts.iter_mut(world) {
+        if is_meant(context, configuration.physics_pipeline_active) {
+            configuration
+                .bypass_change_detection()
+                .physics_pipeline_active = active;
+            meant.push(context);
+        }
+    }
+    meant
+}
+
+/// The bodies of a context that are drawn between two steps, sorted, with the poses between which they are drawn.
+fn interpolations(world: &World, set: &RapierRigidBodySet) -> Vec<(Entity, [Option<Pose>; 2])> {
+    let bodies = set.entity2body().keys();
+    let mut all: Vec<_> = bodies
+        .filter_map(|body| {
+            let drawn = world.get::<TransformInterpolation>(*body)?;
+            Some((*body, [drawn.start, drawn.end]))
+        })
+        .collect();
+    all.sort_unstable_by_key(|(body, _)| *body);
+    all
+}
+
 /// The bodies of a context that the game has disabled, sorted, so that the same world gives the same snapshot.
 fn disabled(world: &World, set: &RapierRigidBodySet) -> Vec<Entity> {
     let bodies = set.entity2body().keys().copied();
@@ -231,7 +281,10 @@ impl Handles {
     /// Checks that entities have the same handles in a context of a world.
     fn check(&self, context: Entity, world: &World) -> Result<(), SnapshotError> {
         use SnapshotError::{NoBody, NoCollider, NoContext, NoJoint};
-        let bodies = |e| world.get::<RapierRigidBodyHandle>(e).map(|h| h.0);
+        // Two contexts may have the same handles.
+        let is_here = |e| world.get(e) == Some(&RapierContextEntityLink(context));
+        let handle = |e| world.get::<RapierRigidBodyHandle>(e).map(|h| h.0);
+        let bodies = |e| handle(e).filter(|_| is_here(e));
         let colliders = |e| world.get::<RapierColliderHandle>(e).map(|h| h.0);
         let joints = |e| world.get::<RapierImpulseJointHandle>(e).map(|h| h.0);
         let multibody_joints = |e| world.get::<RapierMultibodyJointHandle>(e).map(|h| h.0);
@@ -313,7 +366,8 @@ impl MapEntities for RapierSnapshot {
             for (entity, _) in &mut handles.multibody_joints {
                 rename(entity, mapper);
             }
-            for entity in &mut context.disabled {
+            let drawn = context.interpolations.iter_mut().map(|(entity, _)| entity);
+            for entity in context.disabled.iter_mut().chain(drawn) {
                 rename(entity, mapper);
             }
         }

@@ -34,7 +34,8 @@ pub(crate) struct Spare {
     inside: Solver,
 }
 
-/// Computes the forces of all elements for the coming engine step and gives them to the engine.
+/// Computes the forces of all elements for the coming engine step and gives them to the engine. It is long because it is the list of
+/// what is done in each context, and takes the context apart for that.
 pub(crate) fn solve(
     mut scene: ResMut<Scene>,
     mut timesteps: Timesteps,
@@ -114,8 +115,8 @@ impl Scene {
         told.raise(&mut parameters.num_internal_pgs_iterations, sweeps);
     }
 
-    /// Notes how fast bodies move that the game puts to places. Rapier takes them there in the first of several steps of a
-    /// tick, and they stand in the others.
+    /// Notes how fast bodies move that the game moves by setting their positions. Rapier moves them in the first of several steps of
+    /// a tick, and they stand still in the others.
     fn note_led(&mut self, context: Entity, plan: &StepPlan, set: &RapierRigidBodySet) {
         if plan.calls < 2 {
             return;

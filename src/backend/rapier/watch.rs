@@ -40,7 +40,7 @@ impl Watch<'_, '_> {
     }
 }
 
-/// What can tell that [`prepare`](super::prepare::prepare) has something to look at.
+/// Queries that show whether [`prepare`](super::prepare::prepare) has anything to do.
 #[derive(SystemParam)]
 pub(crate) struct News<'w, 's> {
     elements: Query<'w, 's, (), Acts>,

@@ -2,7 +2,7 @@ use super::*;
 use crate::dynamics::kick::Memo;
 use bevy::math::DVec3;
 
-const STEP: f64 = 1.0 / 60.0;
+use crate::dynamics::tests::DT;
 
 /// A pair of which one end is held, with 1 kg at the other.
 fn pair(stiffness: f64, damping: f64, rest_length: f64, gravity: f64) -> Pair {
@@ -25,7 +25,7 @@ fn start(d: [f64; 2], v: [f64; 2]) -> Separation {
 fn run(pair: &Pair, mut state: Separation, steps: u32, count: u32) -> Separation {
     let mut memo = Memo::default();
     for _ in 0..steps {
-        pair.microsteps(&mut state, STEP, count, &mut memo);
+        pair.microsteps(&mut state, DT, count, &mut memo);
     }
     state
 }
@@ -45,7 +45,7 @@ fn uniform_rotation_is_exact() {
     ] {
         let turning = uniform(&pair, radius);
         let end = run(&pair, start([radius, 0.0], [0.0, turning * radius]), 600, 1);
-        let angle = turning * 600.0 * STEP;
+        let angle = turning * 600.0 * DT;
         let place = radius * DVec3::new(angle.cos(), angle.sin(), 0.0);
         let apart = (end.d - place).length();
         assert!(apart < most, "{apart:.1e} m");
@@ -58,7 +58,7 @@ fn uniform_rotation_is_exact() {
 fn motion_along_the_line_is_exact() {
     let pair = pair(400.0, 0.0, 1.0, 0.0);
     let end = run(&pair, start([1.2, 0.0], [1.0, 0.0]), 600, 1);
-    let (phase, omega) = (20.0 * 600.0 * STEP, 20.0);
+    let (phase, omega) = (20.0 * 600.0 * DT, 20.0);
     let length = 1.0 + 0.2 * phase.cos() + phase.sin() / omega;
     assert!((end.d.x - length).abs() < 1e-11 && end.d.y == 0.0);
 }
@@ -160,7 +160,7 @@ fn mean_energies(pair: &Pair, mut state: Separation, steps: u32) -> Vec<f64> {
     let mut memo = Memo::default();
     let mut sums = vec![0.0; 10];
     for i in 0..steps {
-        pair.microsteps(&mut state, STEP, 1, &mut memo);
+        pair.microsteps(&mut state, DT, 1, &mut memo);
         sums[(i * 10 / steps) as usize] += energy(pair, &state) * 10.0 / f64::from(steps);
     }
     sums

@@ -66,7 +66,7 @@ impl Network {
     ) {
         let ahead = |way: &f64| element.stiffness_ahead(line.length, *way);
         let stiffness = predicted_travel.iter().map(ahead).fold(0.0, f64::max);
-        for (hold, share) in line.holds.iter().zip(shares(line)) {
+        for (hold, share) in line.holds.iter().zip(shares(line.inverse_masses)) {
             if let Some(body) = hold.body {
                 self.stiffness[body] += stiffness * share;
                 self.damping[body] += damping * share;
@@ -84,8 +84,9 @@ impl Network {
 }
 
 /// Shares of an element's stiffness and damping that count at its two ends, 1/kg.
-fn shares(line: &Line) -> [f64; 2] {
-    let w = line.inverse_masses.map(f64::sqrt);
+#[inline(always)]
+pub(in crate::dynamics) fn shares(inverse_masses: [f64; 2]) -> [f64; 2] {
+    let w = inverse_masses.map(f64::sqrt);
     w.map(|own| own * (w[0] + w[1]))
 }
 
@@ -94,7 +95,7 @@ fn shares(line: &Line) -> [f64; 2] {
 pub(super) fn of_others(damping: &[f64], line: &Line, own: f64) -> f64 {
     line.holds
         .iter()
-        .zip(shares(line))
+        .zip(shares(line.inverse_masses))
         .filter_map(|(hold, share)| Some(damping[hold.body?] - own * share))
         .fold(0.0, f64::max)
 }

@@ -3,16 +3,17 @@
 use super::PLACED;
 use crate::dynamics::element::Element;
 use crate::dynamics::law::Drag;
-use crate::dynamics::poles::{RESOLVED_PHASE, UNRESOLVED_DECAY};
+use crate::dynamics::poles::{UNRESOLVED_DECAY, unresolved};
+use crate::dynamics::thresholds::is_resolved;
 use crate::functions::{cos, exp_m1};
 
 /// Ratio of damping to stiffness, in steps, with which a mode with z = (ω h)² has the [`UNRESOLVED_DECAY`] of a lone element.
 /// Slower modes decay less.
 pub(in crate::dynamics) fn settling(z: f64) -> f64 {
-    if z <= RESOLVED_PHASE * RESOLVED_PHASE {
+    if is_resolved(z) {
         return 0.0;
     }
-    2.0 * UNRESOLVED_DECAY * (1.0 - RESOLVED_PHASE * RESOLVED_PHASE / z) / z
+    2.0 * UNRESOLVED_DECAY * unresolved(z) / z
 }
 
 /// Slope of a damping force over the rate, or the slope of the secant from zero if that is steeper, N s/m. A force that

@@ -1,4 +1,4 @@
-//! Makes dampers whose force is limited hold at the speed zero.
+//! Lets a damper with a limited force bring its ends to rest and keep them there, as a clutch does.
 //!
 //! The force of a slipping clutch has no slope, so the linearised kick takes it as constant. In the step in which its ends come to
 //! rest against each other, that force would throw them back, and in the next step again. There the force falls with the speed, as

@@ -2,9 +2,9 @@
 
 use super::NonlinearPair;
 use crate::dynamics::arc::HALVED;
-use crate::dynamics::tolerance::{Least, Motion, VELOCITY_COUNTS};
+use crate::dynamics::tolerance::{Least, Steppable, VELOCITY_COUNTS};
 
-impl Motion for NonlinearPair<'_> {
+impl Steppable for NonlinearPair<'_> {
     fn save(&mut self, slot: usize) {
         self.saved[slot] = self.state;
     }

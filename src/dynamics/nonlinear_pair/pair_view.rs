@@ -21,10 +21,7 @@ impl PairView {
     /// Returns the view of an element with a law, if no other element holds its bodies and it does not turn them.
     pub(crate) fn of(element: &Element, bodies: &[Body]) -> Option<Self> {
         element.law.as_ref()?;
-        let free = |body: &Body| {
-            let w = body.inverse_mass;
-            body.spin == Spin::Ignored && w.x == w.y && w.y == w.z
-        };
+        let free = |body: &Body| body.spin == Spin::Ignored && body.moves_alike();
         let held = element.ends.iter().filter(|end| !end.is_path()).count();
         // If the component has more bodies, those of inert elements, they would not be moved.
         let complete = held == bodies.len() && bodies.iter().all(free);

@@ -1,6 +1,6 @@
 use super::*;
 use crate::dynamics::law::{DragLaw, Recipe, SpringForce, Stop};
-use crate::dynamics::tolerance::Motion;
+use crate::dynamics::tolerance::Steppable;
 
 fn pair(rest_length: f64, outside: DVec3) -> Pair {
     Pair {

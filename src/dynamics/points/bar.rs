@@ -2,7 +2,8 @@
 
 use super::{Exchanged, Line, State, Wire};
 use crate::dynamics::line;
-use crate::dynamics::network::{REVERSES, damper_placement, settling, together};
+use crate::dynamics::network::{REVERSES, damper_placement, settling, shares, together};
+use crate::dynamics::strut::stiff_force;
 use bevy::math::DVec3;
 
 /// The part of an element in the linear system. Every iteration reads it, so it is no larger than it must be.
@@ -39,7 +40,7 @@ impl Bar {
     /// Force that the relative acceleration `r` adds, N.
     #[inline(always)]
     pub(super) fn answer(&self, r: DVec3) -> DVec3 {
-        self.across * r + (self.along - self.across) * self.direction.dot(r) * self.direction
+        stiff_force([self.along, self.across], self.direction, r)
     }
 
     /// Relative acceleration of the ends.
@@ -122,13 +123,14 @@ impl Wire {
         if own + step * damping[0].max(damping[1]) <= REVERSES {
             return own;
         }
-        let shares = Self::shares(inverse_masses);
+        let shares = shares(inverse_masses);
         let others = [0, 1].map(|end| damping[end] - self.damping * shares[end]);
         together(own, step * others[0].max(others[1]).max(0.0))
     }
 
     /// Its part in a kick. `sums` are stiffness (1/s²) and damping (1/s) of all elements at each of its ends, over the mass there.
-    /// An element without a direction adds nothing.
+    /// An element without a direction adds nothing. It
+    /// is long because it is the whole formula of a kick.
     #[inline(always)]
     pub(super) fn measure(
         &self,

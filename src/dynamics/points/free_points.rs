@@ -20,9 +20,9 @@ pub(crate) struct FreePoint {
 
 /// Motion of a body over a step.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Flight {
+pub(crate) struct PointStep {
     /// Displacement, m.
-    pub moved: DVec3,
+    pub by: DVec3,
     /// Velocity at the end of the step, m/s.
     pub velocity: DVec3,
 }
@@ -117,9 +117,9 @@ impl Points {
 
     /// Motion of a body over the step.
     #[inline(always)]
-    pub(crate) fn flight(&self, body: usize) -> Flight {
-        Flight {
-            moved: self.points.positions[body] - self.start[0][body],
+    pub(crate) fn step_of(&self, body: usize) -> PointStep {
+        PointStep {
+            by: self.points.positions[body] - self.start[0][body],
             velocity: self.points.velocities[body],
         }
     }

@@ -3,7 +3,7 @@
 //!
 //! Work on single points or single elements is divided into pieces of equal length, [`PIECE`]. Elements that share a
 //! point must not add to it at the same time. Elements and points are sorted so that neighbours in the network are near
-//! in memory (`scene::order`). So the points of a run of elements overlap only those of the previous and the next run, if
+//! in memory (`scene::sequence`). So the points of a run of elements overlap only those of the previous and the next run, if
 //! runs are long enough.
 //! Every second run is processed at the same time ([`Stage::Even`]), and then the others ([`Stage::Odd`]).
 //!

@@ -23,7 +23,7 @@ impl Survey {
     fn add(&mut self, other: &Self) {
         self.energy.motion += other.energy.motion;
         self.energy.stored += other.energy.stored;
-        self.energy.place += other.energy.place;
+        self.energy.potential += other.energy.potential;
         self.rounding += other.rounding;
         self.power += other.power;
     }
@@ -38,7 +38,7 @@ impl Survey {
             let mass = inverse_mass.recip();
             let motion = 0.5 * mass * velocity.length_squared();
             self.energy.motion += motion;
-            self.energy.place -= mass * acceleration.dot(*position);
+            self.energy.potential -= mass * acceleration.dot(*position);
             self.rounding += 2.0 * UNIT * motion;
         }
     }

@@ -9,23 +9,9 @@ use crate::dynamics::tests;
 use crate::threads::{self, PIECE};
 use bevy::tasks::{ComputeTaskPool, TaskPoolBuilder};
 
-/// Pseudo-random numbers from −0.5 to 0.5.
-struct Dice(u64);
-
-impl Dice {
-    fn roll(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005) + 1;
-        (self.0 >> 33) as f64 / f64::from(1u32 << 31) - 0.5
-    }
-
-    fn vector(&mut self) -> DVec3 {
-        DVec3::new(self.roll(), self.roll(), self.roll())
-    }
-}
-
 /// A sheet of slightly displaced bodies that hangs from moving points.
 fn sheet(stiffness: f64, damping: f64) -> Component {
-    let mut dice = Dice(7);
+    let mut dice = tests::Dice(7);
     let (columns, rows) = (7, 6);
     let mut sheet = Component::default();
     let mut element = |a: End, b: End, rest_length: f64| {
@@ -34,16 +20,16 @@ fn sheet(stiffness: f64, damping: f64) -> Component {
     };
     for i in 0..columns * rows {
         let (x, y) = (i % columns, i / columns);
-        let at = DVec3::new(x as f64, -(y as f64), 0.0) + 0.2 * dice.vector();
-        let mass = 1.0 + dice.roll();
+        let at = DVec3::new(x as f64, -(y as f64), 0.0) + dice.vector(0.2);
+        let mass = 0.5 + dice.number();
         let gravity = DVec3::new(0.0, -9.81, 0.0);
         let body = Body {
-            velocity: dice.vector(),
+            velocity: dice.vector(1.0),
             ..tests::point(mass, at, gravity)
         };
         let own = |index| tests::held(index, DVec3::ZERO);
         if y == 0 {
-            let hook = Path::straight(at + DVec3::Y, dice.vector());
+            let hook = Path::straight(at + DVec3::Y, dice.vector(1.0));
             element(End::Path(hook), own(i), 0.8);
         } else {
             element(own(i - columns), own(i), 1.1);
@@ -123,16 +109,16 @@ fn ends_in_one_place_push_nowhere_until_they_part() {
 
 /// A net of so many rows and columns of points. Its elements are sorted by the smaller index of their ends.
 fn net(rows: usize, columns: usize) -> Component {
-    let mut dice = Dice(3);
+    let mut dice = tests::Dice(3);
     let mut net = Component::default();
     let own = |index: usize| End::Body {
         index,
         arm: DVec3::ZERO,
     };
     for i in 0..rows * columns {
-        let at = DVec3::new((i % columns) as f64, 0.0, (i / columns) as f64) + 0.1 * dice.vector();
+        let at = DVec3::new((i % columns) as f64, 0.0, (i / columns) as f64) + dice.vector(0.1);
         let body = Body {
-            velocity: dice.vector(),
+            velocity: dice.vector(1.0),
             ..tests::point(1.0, at, DVec3::ZERO)
         };
         net.bodies.push(body);

@@ -43,12 +43,6 @@ impl Wire {
         [points.inverse_mass(a), points.inverse_mass(b)]
     }
 
-    /// Shares of its stiffness and damping that count at its two ends, 1/kg.
-    pub(super) fn shares(inverse_masses: [f64; 2]) -> [f64; 2] {
-        let w = inverse_masses.map(f64::sqrt);
-        w.map(|own| own * (w[0] + w[1]))
-    }
-
     /// Vector from end A to end B, or the last known one if the ends coincide.
     #[inline(always)]
     pub(super) fn aimed(&self, [a, b]: [DVec3; 2]) -> DVec3 {

@@ -6,7 +6,7 @@ use crate::dynamics::body::{Body, is_within};
 use crate::dynamics::bound::{Bound, Common, slow_beside};
 use crate::dynamics::energy::Energy;
 use crate::dynamics::points::Points;
-use crate::dynamics::tolerance::{Accuracy, Method, Motion, Outcome};
+use crate::dynamics::tolerance::{Accuracy, Method, Outcome, Steppable};
 
 /// Number of attempts, each with half the motion of the previous one. After them nothing moves but the common centre of mass of a
 /// free network. Pinned by `keep::tests::a_network_stretches_as_far_as_its_energy_allows`.

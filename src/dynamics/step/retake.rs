@@ -7,7 +7,7 @@
 use super::Component;
 use crate::dynamics::bound::Bound;
 use crate::dynamics::energy::Energy;
-use crate::dynamics::tolerance::{Accuracy, Motion, Outcome};
+use crate::dynamics::tolerance::{Accuracy, Outcome, Steppable};
 
 /// Factor by which each repetition increases the number of micro-steps. Pinned by
 /// `retake::tests::a_step_that_gained_energy_becomes_only_as_fine_as_it_must`.

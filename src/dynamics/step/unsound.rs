@@ -1,10 +1,10 @@
-//! Leaves elements out of a step whose custom law gives no number where the step takes their ends. Otherwise the step would
+//! Leaves out of a step those elements whose custom law gives NaN or infinity at a length that the step reaches. Otherwise the step would
 //! have no result, and the whole network would stand still.
 
 use super::Component;
 use crate::dynamics::body::Body;
 use crate::dynamics::energy::Energy;
-use crate::dynamics::tolerance::Motion;
+use crate::dynamics::tolerance::Steppable;
 
 /// Parts of a micro-step of motion ahead at which a law is looked at. A kick uses the law at the length that it meets, and
 /// up to the end of its micro-step.

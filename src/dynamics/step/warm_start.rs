@@ -3,6 +3,7 @@
 use super::kinks::Kinks;
 use super::{Caution, Component};
 use crate::dynamics::body::Body;
+use crate::dynamics::bound::Bound;
 use crate::dynamics::points::Points;
 use crate::dynamics::tolerance::Controller;
 
@@ -23,7 +24,7 @@ impl Component {
         self.forget_points();
         self.forget_solutions();
         self.memory.kinks = Kinks::default();
-        self.memory.bound.forget();
+        self.memory.bound = Bound::default();
         self.memory.controller = Controller::default();
         self.memory.caution = Caution::default();
     }

@@ -1,24 +1,14 @@
 use crate::dynamics::kick::Memo;
 use crate::dynamics::moving::Moving;
 use crate::dynamics::pair::{Pair, Separation};
+use crate::dynamics::tests::{DT, Dice};
 use crate::dynamics::tolerance::{Accuracy, Controller};
 use crate::settings::RESOLVE;
 use bevy::math::DVec3;
 
-const STEP: f64 = 1.0 / 60.0;
-
-/// Random number generator, so that a scene is the same on every machine.
-struct Dice(u64);
-
-impl Dice {
-    /// A power of ten between two exponents.
-    fn power(&mut self, [from, to]: [f64; 2]) -> f64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1);
-        10_f64.powf(from + (to - from) * (self.0 >> 11) as f64 / (1_u64 << 53) as f64)
-    }
+/// A random power of ten between two exponents.
+fn power(dice: &mut Dice, [from, to]: [f64; 2]) -> f64 {
+    10_f64.powf(from + (to - from) * dice.number())
 }
 
 /// Takes a pair through `steps` steps with the default settings. Returns the greatest energy on the way as a share of the first.
@@ -33,7 +23,7 @@ fn greatest_energy(pair: &Pair, mut state: Separation, steps: u32) -> f64 {
     let mut greatest = first;
     for _ in 0..steps {
         let mut moving = Moving::new(pair, state, &mut memo);
-        controller.drive(&mut moving, STEP, accuracy);
+        controller.drive(&mut moving, DT, accuracy);
         state = moving.state;
         greatest = greatest.max(pair.energies(&state)[1]);
     }
@@ -53,22 +43,22 @@ fn ends_that_fly_past_each_other_win_nothing() {
         for seed in 0..250 {
             let mut dice = Dice(seed * 77 + 5);
             for _ in 0..3 {
-                dice.power([0.0, 1.0]);
+                power(&mut dice, [0.0, 1.0]);
             }
-            let omega = dice.power(omega) / STEP;
-            let rest_length = dice.power([-1.0, 1.0]);
+            let omega = power(&mut dice, omega) / DT;
+            let rest_length = power(&mut dice, [-1.0, 1.0]);
             let pair = Pair {
                 stiffness: omega * omega,
-                damping: damping.map_or(0.0, |exponents| dice.power(exponents) / STEP),
+                damping: damping.map_or(0.0, |exponents| power(&mut dice, exponents) / DT),
                 rest_length,
                 inverse_mass: 1.0,
                 outside: DVec3::ZERO,
                 rounding: 1e-9,
             };
             // The line may turn by up to ten radians in the first step.
-            let length = rest_length * dice.power([-0.7, 0.5]);
-            let speed = length / STEP * dice.power([-2.0, 1.0]);
-            let angle = dice.power([-1.0, 0.8]);
+            let length = rest_length * power(&mut dice, [-0.7, 0.5]);
+            let speed = length / DT * power(&mut dice, [-2.0, 1.0]);
+            let angle = power(&mut dice, [-1.0, 0.8]);
             let start = Separation::new(
                 length * DVec3::X,
                 speed * DVec3::new(angle.cos(), angle.sin(), 0.0),

@@ -1,6 +1,6 @@
 //! The ways to take a step, their errors, and the one with the fewest kicks.
 
-use super::Motion;
+use super::Steppable;
 use crate::functions::cbrt;
 
 /// One way to take a step.
@@ -13,7 +13,7 @@ pub(super) enum Plan {
 impl Plan {
     /// Replaces extrapolation by plain micro-steps with as many kicks where it would diverge. Plain micro-steps never
     /// diverge.
-    pub(super) fn sound(self, motion: &mut impl Motion, time: f64) -> Self {
+    pub(super) fn sound(self, motion: &mut impl Steppable, time: f64) -> Self {
         match self {
             Self::Extrapolated(m) if !motion.is_resolved(time / f64::from(m)) => Self::Plain(3 * m),
             plan => plan,
@@ -22,7 +22,7 @@ impl Plan {
 }
 
 /// Takes a step in that way. Returns the number of kicks.
-pub(super) fn take(motion: &mut impl Motion, time: f64, plan: Plan) -> u32 {
+pub(super) fn take(motion: &mut impl Steppable, time: f64, plan: Plan) -> u32 {
     match plan {
         Plan::Plain(n) => {
             motion.run(time, n);

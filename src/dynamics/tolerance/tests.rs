@@ -25,7 +25,7 @@ impl Model {
     }
 }
 
-impl Motion for Model {
+impl Steppable for Model {
     fn save(&mut self, slot: usize) {
         self.slots[slot] = self.now;
     }

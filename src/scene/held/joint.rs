@@ -81,13 +81,13 @@ pub(crate) struct Joints {
 
 /// The joints that an element needs.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Wanted {
+pub(crate) struct WantedJoints {
     pub damper: Option<SoftJoint>,
     springs: [Option<SoftJoint>; SPRINGS],
     count: usize,
 }
 
-impl Wanted {
+impl WantedJoints {
     /// Adds a spring, which is solved after the springs that were added before.
     pub(crate) fn push(&mut self, spring: SoftJoint) {
         self.springs[self.count] = Some(spring);
@@ -163,7 +163,7 @@ impl Joints {
     }
 
     /// Whether all wanted joints exist already, so that only their numbers must be changed.
-    pub(crate) fn fit(&self, wanted: &Wanted, set: &impl SoftJoints) -> bool {
+    pub(crate) fn fit(&self, wanted: &WantedJoints, set: &impl SoftJoints) -> bool {
         let there = |known: &Known| known.is_none_or(|(joint, _)| set.has(joint));
         let orders = [&wanted.damper].into_iter().chain(&wanted.springs);
         self.all()
@@ -180,14 +180,14 @@ impl Joints {
     }
 
     /// Inserts the damper that is solved before all springs, if one is wanted.
-    pub(crate) fn put_damper(&mut self, wanted: &Wanted, set: &mut impl SoftJoints) {
+    pub(crate) fn put_damper(&mut self, wanted: &WantedJoints, set: &mut impl SoftJoints) {
         self.damper = insert(set, &wanted.damper);
     }
 
     /// Inserts the springs. If `reversed`, the first spring is inserted last.
     pub(crate) fn put_springs(
         &mut self,
-        wanted: &Wanted,
+        wanted: &WantedJoints,
         reversed: bool,
         set: &mut impl SoftJoints,
     ) {
@@ -198,7 +198,7 @@ impl Joints {
     }
 
     /// Changes the numbers of all joints.
-    pub(crate) fn update(&mut self, wanted: &Wanted, set: &mut impl SoftJoints) {
+    pub(crate) fn update(&mut self, wanted: &WantedJoints, set: &mut impl SoftJoints) {
         update(set, &mut self.damper, &wanted.damper);
         for (known, wanted) in self.springs.iter_mut().zip(&wanted.springs) {
             update(set, known, wanted);

@@ -3,7 +3,7 @@
 mod joint;
 mod twist;
 
-pub(crate) use joint::{Along, Joints, KeptJoint, SoftJoint, SoftJoints, Wanted};
+pub(crate) use joint::{Along, Joints, KeptJoint, SoftJoint, SoftJoints, WantedJoints};
 pub(crate) use twist::Turn;
 
 use crate::backend::BodyId;
@@ -123,11 +123,6 @@ impl Inside {
             turn.arrive([self.from, seen], relative, self.slipped, time, energy);
         self.slipped = slipped;
         length
-    }
-
-    /// Whether its twist differs from the rotation of its bodies.
-    pub(crate) fn has_slipped(&self) -> bool {
-        self.slipped
     }
 
     /// Displacement of an end over the step, m, or for a torsion element the rotation of its body, rad. Returns none if that is

@@ -8,9 +8,10 @@ impl Memory {
         row.set_direction(self.direction);
         row.length = self.length;
         let rare = &mut *row.rare;
+        rare.serial = self.serial;
         rare.set_controller(self.controller);
         rare.places = self.places;
-        rare.leapt = false;
+        rare.leapt = self.leapt;
         rare.angle = self.angle;
         rare.set_facings(self.facings);
         rare.scales = self.scales.map(|scale| Some(scale?.as_vec3()));

@@ -77,6 +77,8 @@ pub(crate) struct KeptElement {
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Memory {
+    /// See [`crate::scene::rows::RareElement::serial`].
+    pub(crate) serial: u32,
     /// Last well-defined direction from end A to end B.
     pub(crate) direction: Option<DVec3>,
     /// Last length, m, or twist, rad.
@@ -84,6 +86,8 @@ pub(crate) struct Memory {
     pub(crate) controller: Controller,
     /// Positions of its ends after the last step, as in the element's row.
     pub(crate) places: [Option<DVec3>; 2],
+    /// Whether they are not those that the game moved the ends from.
+    pub(crate) leapt: bool,
     /// Last twist with full turns counted, rad.
     pub(crate) angle: f64,
     /// Rotations, after the last step, of the bodies at its ends.

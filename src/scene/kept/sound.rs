@@ -1,8 +1,10 @@
-//! Replaces numbers in a snapshot that no scene has. The snapshot may come from a file or from a player who cheats, and such
+//! Replaces numbers in a snapshot that cannot occur in any scene. The snapshot may come from a file or from a player who cheats, and such
 //! numbers would spoil the engine, or bodies and elements for ever.
 
 use super::{Kept, KeptBody, KeptElement, KeptInside, Memory};
+use crate::dynamics::guide::Guide;
 use crate::input::check::{MOST, Numbers};
+use crate::readout::SpringReadout;
 use crate::scene::held::Leeway;
 use crate::scene::rows::{Jump, Rest};
 use bevy::math::{DQuat, DVec3, Vec3};
@@ -37,7 +39,7 @@ fn limit(x: &mut f64, most: f64) {
 }
 
 impl Kept {
-    /// Replaces all numbers that no scene has by those of a new element or body.
+    /// Replaces all numbers that cannot occur in any scene by those of a new element or body.
     pub(crate) fn mend(&mut self) {
         if self.engine_stays {
             // Handles in an engine that was not restored name anything.
@@ -46,6 +48,9 @@ impl Kept {
         for element in &mut self.elements {
             limit(&mut element.ledger.dissipated, f64::MAX);
             limit(&mut element.ledger.work, f64::MAX);
+            if !element.readout.is_sound() {
+                element.readout = SpringReadout::default();
+            }
             element.memory.mend();
             if let Some(inside) = &mut element.inside {
                 inside.mend();
@@ -61,8 +66,8 @@ impl Kept {
 }
 
 impl KeptElement {
-    /// The numbers that acted last. A number that no element may have is replaced by that of the component, `given`.
-    pub(crate) fn numbers_or(&self, given: Numbers) -> Numbers {
+    /// The numbers that acted last. A number that no element with this guide may have is replaced by that of the component, `given`.
+    pub(crate) fn numbers_or(&self, given: Numbers, guide: Guide) -> Numbers {
         let of = |kept: f32, given| {
             if kept >= 0.0 && is_number(kept) {
                 kept
@@ -74,15 +79,12 @@ impl KeptElement {
             stiffness: of(self.numbers[0], given.stiffness),
             damping: of(self.numbers[1], given.damping),
             rest_length: match self.rest_length {
-                Some(rest) if !is_number(rest) => given.rest_length,
+                Some(rest) if !is_number(rest) || (guide == Guide::Centres && rest < 0.0) => {
+                    given.rest_length
+                }
                 rest => rest,
             },
         }
-    }
-
-    /// The rest length that acted last, if an element may have it.
-    pub(crate) fn sound_rest_length(&self) -> Option<f32> {
-        self.rest_length.filter(|rest| is_number(*rest))
     }
 }
 
@@ -112,7 +114,8 @@ impl Memory {
 impl KeptBody {
     fn mend(&mut self) {
         for share in self.user.iter_mut().chain(&mut self.elements) {
-            if !share.is_finite() {
+            // The sum of both must be finite, too.
+            if !share.length_squared().is_finite() {
                 *share = Vec3::ZERO;
             }
         }

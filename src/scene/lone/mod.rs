@@ -5,7 +5,7 @@
 //! ([`solve`]). Then their bodies get the results ([`deliver`]). An element with a special case is left to [`super::assembly`]:
 //! for one step if its ends coincide or one of two bodies is asleep, for good if a body has locked axes.
 
-mod alone;
+mod by_itself;
 mod deliver;
 mod solve;
 #[cfg(test)]
@@ -14,7 +14,6 @@ mod tests;
 use super::rows::{BodyRow, ElementFlags, ElementRow};
 use crate::backend::BodyId;
 use crate::scene::push::Given;
-use crate::threads;
 use bevy::prelude::{Entity, Vec3};
 pub(crate) use solve::{Piece, Worker};
 
@@ -22,13 +21,13 @@ pub(crate) use solve::{Piece, Worker};
 pub(crate) struct Lone {
     pub context: Entity,
     /// In the order of their rows.
-    pub pairs: Vec<Pair>,
+    pub pairs: Vec<LonePair>,
 }
 
 /// One lone element and the bodies that it moves: all that is needed to begin to read it. So the processor knows early
 /// which rows it must load from memory.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Pair {
+pub(crate) struct LonePair {
     /// Index of its row.
     pub element: u32,
     /// Row indices of the bodies that it moves, or [`NONE`].
@@ -42,7 +41,7 @@ pub(crate) struct Pair {
 /// Index that stands for no body.
 const NONE: u32 = u32::MAX;
 
-impl Pair {
+impl LonePair {
     fn of(index: usize, row: &ElementRow, bodies: &[BodyRow]) -> Self {
         let mut pair = Self {
             element: index as u32,
@@ -107,18 +106,7 @@ pub(crate) struct Way {
 }
 
 /// Number of elements from which on several threads are worth their start-up time. Pinned by the benchmark `own/isolated`.
-const WORTH_SHARING: usize = 1024;
-
-/// Number of pieces into which `elements` lone elements are divided.
-pub(crate) fn pieces(elements: usize) -> usize {
-    if elements < WORTH_SHARING {
-        return 1;
-    }
-    match threads::count() {
-        0 | 1 => 1,
-        threads => threads::PER_THREAD * threads,
-    }
-}
+pub(crate) const WORTH_SHARING: usize = 1024;
 
 /// Lists the lone elements of every context. `is_lone` says which of the plain elements are lone.
 pub(crate) fn list(
@@ -141,7 +129,7 @@ pub(crate) fn list(
             all.push(Lone { context, pairs });
             all.len() - 1
         });
-        all[of].pairs.push(Pair::of(index, row, bodies));
+        all[of].pairs.push(LonePair::of(index, row, bodies));
     }
     for lone in &mut all {
         lone.pairs.shrink_to_fit();

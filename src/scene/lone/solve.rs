@@ -1,7 +1,7 @@
 //! Reads lone elements and solves them. Only their own rows and results are written.
 
-use super::alone::Alone;
-use super::{Pair, Route, Way};
+use super::by_itself::Alone;
+use super::{LonePair, Route, Way};
 use crate::backend::Sight;
 use crate::dynamics::kick::Memo;
 use crate::dynamics::lanes::{LANES, Lanes, Stride, widest};
@@ -68,7 +68,7 @@ struct Found {
 
 /// A piece of all lone elements.
 pub(crate) struct Piece<'a, S> {
-    pub lone: &'a [Pair],
+    pub lone: &'a [LonePair],
     /// Rows that include those of the piece.
     pub rows: Cut<'a, ElementRow>,
     pub bodies: &'a [BodyRow],
@@ -102,7 +102,8 @@ impl Worker {
         }
     }
 
-    /// Reads an element, and solves it or puts it into a lane. If neither is possible, returns its route.
+    /// Reads an element, and solves it or puts it into a lane. If neither is possible, returns its route. It is
+    /// long because it is one decision after the other about the same data.
     #[inline(always)]
     fn take(
         &mut self,
@@ -175,7 +176,7 @@ impl Worker {
         &mut self,
         step: &Step,
         row: &mut ElementRow,
-        pair: &Pair,
+        pair: &LonePair,
         end: usize,
         bodies: &[BodyRow],
         sight: &impl Sight,

@@ -1,12 +1,13 @@
 //! Tests that an element has the same result in a lane beside others as alone.
 
 use super::Way;
-use super::alone::Alone;
+use super::by_itself::Alone;
 use super::solve::{Pace, plain};
 use crate::backend::StepPlan;
 use crate::dynamics::kick::Memo;
 use crate::dynamics::lanes::{LANES, Lanes, widest};
 use crate::dynamics::points::FreePoint;
+use crate::dynamics::tests::Dice;
 use crate::dynamics::tolerance::Accuracy;
 use crate::input::check::Numbers;
 use crate::scene::push::Given;
@@ -42,23 +43,7 @@ fn step(microsteps: u32, extrapolate: bool) -> Step {
     }
 }
 
-/// Pseudo-random numbers between 0 and 1, the same in each run.
-struct Dice(u64);
-
 impl Dice {
-    fn number(&mut self) -> f64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1);
-        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    fn vector(&mut self, size: f64) -> DVec3 {
-        let mut each = || size * (self.number() - 0.5);
-        DVec3::new(each(), each(), each())
-    }
-
     /// A random vector in the engine's single precision.
     fn rounded(&mut self, size: f64) -> DVec3 {
         self.vector(size).as_vec3().as_dvec3()

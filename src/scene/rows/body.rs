@@ -49,10 +49,10 @@ pub(crate) struct Searched {
     pub way: f32,
 }
 
-/// Data of a body that not every step needs.
+/// Data of a body that not every step needs. It has many fields because each is read alone, in another stage of a step.
 #[derive(Clone, Debug)]
 pub(crate) struct RareBody {
-    /// Entity of the engine's world that contains the body.
+    /// Entity of the context that contains the body.
     pub context: Entity,
     /// Index of its group.
     pub group: u32,

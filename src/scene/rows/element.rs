@@ -73,7 +73,7 @@ pub(crate) struct Solved {
 
 impl From<Outcome> for Solved {
     fn from(outcome: Outcome) -> Self {
-        // What is not even a number is no small error.
+        // NaN must not be reported as a small error.
         let number = |error: f64| if error.is_nan() { f64::MAX } else { error };
         Self {
             microsteps: outcome.microsteps,
@@ -130,6 +130,9 @@ pub(crate) struct ElementRow {
 /// Data of an element that not every step needs.
 #[derive(Clone, Debug)]
 pub(crate) struct RareElement {
+    /// Number of the element in the order in which elements became known; 0 if it has none yet. It decides where nothing else
+    /// distinguishes two elements. Unlike an entity, it is the same in another world.
+    pub serial: u32,
     pub ties: Ties,
     pub guide: Guide,
     pub held: [Held; 2],
@@ -203,6 +206,7 @@ impl ElementRow {
             trouble: Trouble::default(),
             inside: None,
             rare: Box::new(RareElement {
+                serial: 0,
                 ties: Ties::NONE,
                 guide: Guide::default(),
                 held: [Held::NOWHERE; 2],

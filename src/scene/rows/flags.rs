@@ -36,7 +36,7 @@ bitflags! {
         const JUMPED = 1 << 13;
         /// The game changed its parameters before the last step. The readout must give the force that an even change would leave.
         const LEADS = 1 << 14;
-        /// It did not act in its last step, as of a fault that solving found. So its energy was no part of its component's.
+        /// It did not act in its last step, for example because solving found a fault. So its energy was no part of its component's.
         const INERT = 1 << 15;
         /// The preload was computed in this tick, and `HoldPose` must be removed after the step.
         const POSED = 1 << 16;
@@ -87,6 +87,8 @@ bitflags! {
         const USER_TORQUE = 1 << 16;
         /// It counts as held: a contact or a joint holds it, or did a moment ago.
         const LINGERS = 1 << 17;
+        /// Its rest in this step is counted already.
+        const COUNTED = 1 << 18;
         /// The flags that a snapshot keeps. The other flags are found anew.
         const KEPT = !(Self::TURNS.bits() | Self::SHARES_TORQUE.bits()
             | Self::SECOND_SUBSTEP.bits() | Self::USER_TORQUE.bits());

@@ -6,5 +6,7 @@ mod apart;
 mod changed;
 mod film;
 mod held;
+mod paused;
 mod scenes;
+mod twins;
 mod wrong;

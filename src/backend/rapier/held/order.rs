@@ -1,4 +1,4 @@
-//! What one element does inside Rapier's solver in a step, and the joints that do it. `plan` makes an [`Order`] for each
+//! Computes the joints with which one element acts in Rapier's solver in a step. `plan` makes an [`Order`] for each
 //! element; `write` puts its joints into Rapier.
 
 use crate::backend::BodyId;
@@ -9,7 +9,7 @@ use crate::dynamics::line::{Line, Motion};
 use crate::dynamics::pieces::{Outreach, Pieces};
 use crate::dynamics::single;
 use crate::dynamics::soft::{self, Tangent, ramp};
-use crate::scene::held::{Along, Inside, SoftJoint, Turn, Wanted};
+use crate::scene::held::{Along, Inside, SoftJoint, Turn, WantedJoints};
 use crate::scene::rows::{ElementRow, Held};
 use bevy::math::{DMat3, DQuat, DVec3, Quat, Vec3};
 
@@ -204,14 +204,14 @@ impl Order {
     }
 
     /// Returns the joints of the element for substeps of `substep` seconds, or none if it has no force. `holders` are the bodies
-    /// at both ends, `bodies` those of the plan.
+    /// at both ends, `bodies` those of the plan. It is long because each piece of the law needs the same dozen numbers.
     pub(crate) fn joints(
         &mut self,
         row: &ElementRow,
         holders: [BodyId; 2],
         bodies: &[Body],
         [substep, time]: [f64; 2],
-    ) -> Option<Wanted> {
+    ) -> Option<WantedJoints> {
         let frame = self.frame(row, holders, time);
         let mobility = self.axis_mobility[self.steadier(time)].unwrap_or(0.0);
         let law = self.element.law.as_ref();
@@ -230,7 +230,7 @@ impl Order {
             let forces = [scale * force, (scale * most).min(bound)];
             frame.joint(substep, rates, target, forces)
         };
-        let mut wanted = Wanted::default();
+        let mut wanted = WantedJoints::default();
         for (i, piece) in self.pieces.iter().enumerate() {
             let Tangent {
                 stiffness, damping, ..

@@ -9,10 +9,10 @@ use crate::dynamics::guide::Guide;
 use crate::dynamics::line::Line;
 use crate::dynamics::pieces::Pieces;
 use crate::input::check::Fault;
-use crate::scene::element::element;
 use crate::scene::held::Turn;
 use crate::scene::rows::{BodyFlags, BodyRow, ElementFlags, ElementRow, Held, Members};
 use crate::scene::step::Step;
+use crate::scene::to_element::element;
 use bevy::math::DVec3;
 
 /// A held component before its step.

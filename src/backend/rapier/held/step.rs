@@ -129,7 +129,8 @@ impl Scene {
         !awake || !held
     }
 
-    /// Whether contacts or joints hold some body of a component, or may hold one within the step.
+    /// Whether contacts or joints hold some body of a component, or may hold one within the step. It is long because one loop finds
+    /// all that decides it.
     fn is_held(
         &mut self,
         g: usize,

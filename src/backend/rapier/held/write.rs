@@ -9,7 +9,7 @@ use crate::backend::rapier::held::plan::Plan;
 use crate::backend::{self, Push};
 use crate::dynamics::soft::Fineness;
 use crate::scene::group::Groups;
-use crate::scene::held::{Inside, Wanted};
+use crate::scene::held::{Inside, WantedJoints};
 use crate::scene::rows::{BodyFlags, BodyRow, ElementFlags, ElementRow, Members, Solved};
 use crate::scene::sleep::rouse;
 use crate::scene::step::Step;
@@ -56,13 +56,23 @@ impl Engine<'_> {
 pub(crate) struct Solver {
     plans: Vec<Plan>,
     used: usize,
-    wanted: Vec<Option<Wanted>>,
+    wanted: Vec<Option<WantedJoints>>,
     /// Number of sweeps over all joints and contacts per substep.
     sweeps: usize,
     /// Whether something in the world touches something else. Only found if a component needs it.
     touching: Option<bool>,
     /// Speed that springs can add to each body of the present component in the step, m/s.
     pub(crate) pushes: Vec<f32>,
+}
+
+/// Tells a body that the engine solves its elements, with `more` additional iterations and substeps of `substep` seconds.
+fn enter(row: &mut BodyRow, substep: f64, more: usize, engine: &mut Engine) {
+    row.rare.substep = substep;
+    row.flags.insert(BodyFlags::FRESH);
+    row.flags.remove(BodyFlags::IS_ALONE);
+    if let Some(body) = engine.bodies.get_mut(handle(row.id)) {
+        raise(&mut row.rare.raised, body, more);
+    }
 }
 
 impl Solver {
@@ -187,13 +197,7 @@ impl Solver {
                 };
             }
             for b in members.bodies {
-                let row = &mut bodies[*b as usize];
-                row.rare.substep = h;
-                row.flags.insert(BodyFlags::FRESH);
-                row.flags.remove(BodyFlags::IS_ALONE);
-                if let Some(body) = engine.bodies.get_mut(handle(row.id)) {
-                    raise(&mut row.rare.raised, body, chosen - own);
-                }
+                enter(&mut bodies[*b as usize], h, chosen - own, engine);
             }
             take_back_shares(&members, bodies, step.tick, &mut engine.world());
             groups.at(plan.group).inside = true;
@@ -267,7 +271,7 @@ fn leave(
 /// elements that do not act are removed in any case.
 fn leave_misfits(
     plan: &Plan,
-    wanted: &[Option<Wanted>],
+    wanted: &[Option<WantedJoints>],
     members: &Members,
     elements: &mut [ElementRow],
     engine: &mut Engine,
@@ -295,7 +299,7 @@ fn leave_misfits(
 /// Creates the joints of a component, or updates them.
 fn join(
     plan: &mut Plan,
-    wanted: &mut Vec<Option<Wanted>>,
+    wanted: &mut Vec<Option<WantedJoints>>,
     members: &Members,
     elements: &mut [ElementRow],
     engine: &mut Engine,
@@ -320,7 +324,7 @@ fn join(
     }
     let fit = leave_misfits(plan, wanted, members, elements, engine);
     let set = &mut engine.joints.impulse_joints;
-    let mut each = |act: &mut dyn FnMut(&mut Inside, &Wanted)| {
+    let mut each = |act: &mut dyn FnMut(&mut Inside, &WantedJoints)| {
         for (order, wanted) in plan.orders.iter().zip(&*wanted) {
             if let (Some(inside), Some(wanted)) = (&mut elements[order.row].inside, wanted) {
                 act(inside, wanted);
@@ -331,7 +335,7 @@ fn join(
         each(&mut |inside, wanted| inside.joints.update(wanted, set));
         return;
     }
-    let fixed = |wanted: &Wanted| {
+    let fixed = |wanted: &WantedJoints| {
         let mut bodies = wanted.bodies().into_iter().flatten();
         bodies.any(|body| {
             let body = engine.bodies.get(handle(body));

@@ -10,6 +10,7 @@ use crate::scene::rows::{BodyRow, Raised};
 use crate::scene::state::Scene;
 use crate::snapshot::SnapshotError;
 use bevy::ecs::entity::EntityHashSet;
+use bevy::platform::collections::HashSet;
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
 
@@ -70,14 +71,24 @@ impl Kept {
                 .clone()
                 .chain(self.left.iter().map(|(_, inside)| inside))
         };
-        let known: usize = insides().map(|inside| inside.joints.len()).sum();
+        let elements = self.elements.iter().filter_map(|element| {
+            let inside = element.inside.as_deref()?;
+            Some((self.context_of(element, world), inside))
+        });
+        let left = self.left.iter().map(|(of, inside)| (Some(*of), inside));
+        let joints = elements.chain(left).flat_map(|(of, inside)| {
+            let joints = inside.joints.iter();
+            joints.map(move |joint| (of, joint.id))
+        });
+        // A joint that is named twice counts once.
+        let known = joints.collect::<HashSet<_>>().len();
         let mut contexts = world.query::<(&RapierRigidBodySet, &RapierContextJoints)>();
         let mut there = 0;
         for (_, joints) in contexts.iter(world) {
             let ours = joints.impulse_joints.iter().filter(|(_, j)| is_ours(j));
             there += ours.count();
         }
-        let in_some = |inside: &crate::scene::kept::KeptInside| {
+        let in_some = |inside: &KeptInside| {
             let mut contexts = contexts.iter(world);
             contexts.any(|(set, joints)| is_in(inside, set, joints))
         };

@@ -4,6 +4,7 @@
 mod anew;
 mod check;
 mod put;
+mod put_body;
 mod take;
 
 pub(crate) use anew::{is_disturbed, note_engine};

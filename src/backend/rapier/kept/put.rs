@@ -5,17 +5,18 @@ use crate::backend::rapier::body::id;
 use crate::backend::rapier::find::RapierFinder;
 use crate::backend::rapier::forces::SpringLoad;
 use crate::backend::rapier::held::add_up;
-use crate::backend::{BodyId, Wrench};
+
 use crate::element::SpringTuning;
 use crate::input::companions::Companions;
 use crate::input::parts::{Acts, Parts};
 use crate::readout::SpringReadout;
-use crate::scene::kept::{Kept, KeptBody, KeptElement, NONE};
-use crate::scene::rows::{BodyFlags, BodyRow, ElementFlags, ElementRow, RareBody};
+use crate::scene::kept::{Kept, KeptElement, NONE};
+use crate::scene::rows::{BodyFlags, BodyRow, ElementFlags, ElementRow};
 use crate::scene::state::Scene;
 use crate::snapshot::SnapshotError;
-use bevy::ecs::change_detection::Tick;
 use bevy::ecs::entity::{EntityHashMap, EntityHashSet};
+use bevy::ecs::entity_disabling::Disabled;
+use bevy::ecs::query::Allow;
 use bevy::ecs::system::SystemState;
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
@@ -106,6 +107,8 @@ impl Kept {
             before.insert(row.entity, row);
         }
         scene.row_of.clear();
+        let serials = self.elements.iter().map(|kept| kept.memory.serial);
+        scene.last_serial = serials.max().unwrap_or(0);
         for (index, kept) in self.elements.iter().enumerate() {
             let mut row = ElementRow::new(kept.entity);
             if let Some(before) = before.remove(&kept.entity) {
@@ -268,13 +271,16 @@ impl Kept {
             if let Some(mut readout) = world.get_mut::<SpringReadout>(kept.entity) {
                 readout.set_if_neq(kept.readout);
             }
-            if let Some(rest) = kept.sound_rest_length()
+            let row = scene.row_of.get(&kept.entity);
+            let now = row.map(|row| scene.elements[*row as usize].numbers);
+            if kept.rest_length.is_some()
+                && let Some(rest) = now.and_then(|numbers| numbers.rest_length)
                 && !kept.is_provisional(world)
             {
                 write_rest(kept.entity, rest, world);
             }
         }
-        let mut loads = world.query_filtered::<Entity, With<SpringLoad>>();
+        let mut loads = world.query_filtered::<Entity, (With<SpringLoad>, Allow<Disabled>)>();
         let is_gone = |entity: &Entity| scene.body_row(*entity).is_none();
         let gone: Vec<Entity> = loads.iter(world).filter(is_gone).collect();
         for entity in gone {
@@ -316,7 +322,7 @@ impl KeptElement {
         let given = row.numbers;
         let rest = given.rest_length.or(self.rest_length);
         let differs = [given.stiffness, given.damping] != self.numbers || rest != self.rest_length;
-        row.numbers = self.numbers_or(given);
+        row.numbers = self.numbers_or(given, row.rare.guide);
         row.flags.remove(ElementFlags::KEPT);
         row.flags.insert(self.flags & ElementFlags::KEPT);
         row.ledger = self.ledger;
@@ -324,56 +330,6 @@ impl KeptElement {
         let inside = self.inside.as_deref();
         row.inside = inside.and_then(|inside| Some(inside.put(context?)));
         differs
-    }
-}
-
-impl KeptBody {
-    fn row(&self, id: BodyId, context: Entity) -> BodyRow {
-        let [force, torque] = self.user;
-        let new = BodyRow::new(self.entity, id, context);
-        let mut row = BodyRow {
-            flags: self.flags & BodyFlags::KEPT,
-            clear: self.clear,
-            rare: Box::new(RareBody {
-                rank: self.rank,
-                lingers: self.lingers,
-                now: self.now,
-                searched: self.searched,
-                rest: self.rest,
-                raised: self.raised,
-                substep: self.substep,
-                pulled: self.pulled,
-                turned: self.turned,
-                ..*new.rare
-            }),
-            ..new
-        };
-        row.set_user(Wrench { force, torque });
-        row
-    }
-
-    /// Writes both shares of the force without marking the component as changed, because a change would wake the body.
-    fn show(&self, slot: usize, mut body: EntityWorldMut, now: Tick) {
-        let [user, elements] =
-            [self.user, self.elements].map(|[force, torque]| ExternalForce { force, torque });
-        let (load, sum) = SpringLoad::again([user, elements], slot, self.raised_iterations);
-        match body.get_mut::<SpringLoad>() {
-            Some(mut known) => *known.bypass_change_detection() = load,
-            None => {
-                body.insert(load);
-            }
-        }
-        if let Some(mut force) = body.get_mut::<ExternalForce>() {
-            *force.bypass_change_detection() = sum;
-        } else {
-            body.insert(sum);
-        }
-        if let Some(mut force) = body.get_mut::<ExternalForce>() {
-            // Half the range of ticks ago, so before the last run of any system.
-            let long_ago = Tick::new(now.get().wrapping_sub(u32::MAX / 2));
-            force.set_last_added(long_ago);
-            force.set_last_changed(long_ago);
-        }
     }
 }
 

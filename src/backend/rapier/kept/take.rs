@@ -85,12 +85,13 @@ impl Kept {
 fn take_element(row: &ElementRow, places: &[u32], world: &World) -> KeptElement {
     // Fields that are not kept are found anew from the components.
     let RareElement {
+        serial,
         ties: _,
         guide: _,
         held: _,
         places: ends,
         facings: _,
-        leapt: _,
+        leapt,
         angle,
         jump,
         scales,
@@ -113,10 +114,12 @@ fn take_element(row: &ElementRow, places: &[u32], world: &World) -> KeptElement 
             .as_deref()
             .map(|inside| Box::new(KeptInside::of(inside))),
         memory: Memory {
+            serial,
             direction: row.direction(),
             length: row.length,
             controller: row.rare.controller(),
             places: ends,
+            leapt,
             angle,
             facings: row.rare.facings(),
             scales: scales.map(|scale| Some(scale?.as_dvec3())),

@@ -7,7 +7,7 @@ use crate::dynamics::element::rounding;
 use crate::dynamics::moving::Moving;
 use crate::dynamics::nonlinear_pair::NonlinearPair;
 use crate::dynamics::pair::{Pair, Separation};
-use crate::dynamics::points::{Flight, FreePoint};
+use crate::dynamics::points::{FreePoint, PointStep};
 use crate::dynamics::tolerance::{Method, Outcome};
 use crate::scene::rows::{ElementFlags, ElementRow, Solved};
 use crate::scene::step::Step;
@@ -73,14 +73,14 @@ impl Alone {
             };
             let share = sign * point.inverse_mass * mass;
             let pulled = time * point.acceleration;
-            let flight = Flight {
-                moved: time * (point.velocity + 0.5 * pulled) + share * moved,
+            let moved = PointStep {
+                by: time * (point.velocity + 0.5 * pulled) + share * moved,
                 velocity: point.velocity + pulled + share * sped,
             };
-            if !is_within(flight.moved, flight.velocity, step.plan.fastest, time) {
+            if !is_within(moved.by, moved.velocity, step.plan.fastest, time) {
                 return false;
             }
-            let push = step.push_point(more, point, &flight);
+            let push = step.push_point(more, point, &moved);
             way.given[end] = push.into();
             way.second_substep |= push.second_substep;
         }
