@@ -296,8 +296,6 @@ mod tests {
     use super::super::tests::{DT, element, point};
     use super::*;
 
-    /// Duration of a step, s.
-
     /// A bound of 100 J, of which all is lively.
     fn hundred(z: f64) -> Bound {
         let mut bound = Bound::default();

@@ -23,6 +23,8 @@ pub(crate) mod body;
 mod bound;
 mod conjugate;
 pub(crate) mod delivery;
+#[cfg(test)]
+pub(crate) mod dice;
 mod direct;
 pub(crate) mod element;
 pub(crate) mod energy;

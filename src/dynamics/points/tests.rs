@@ -2,6 +2,7 @@
 
 use super::parts::places;
 use super::*;
+use crate::dynamics::dice::Dice;
 use crate::dynamics::element::Path;
 use crate::dynamics::energy::Energy;
 use crate::dynamics::step::Component;
@@ -11,7 +12,7 @@ use bevy::tasks::{ComputeTaskPool, TaskPoolBuilder};
 
 /// A sheet of slightly displaced bodies that hangs from moving points.
 fn sheet(stiffness: f64, damping: f64) -> Component {
-    let mut dice = tests::Dice(7);
+    let mut dice = Dice(7);
     let (columns, rows) = (7, 6);
     let mut sheet = Component::default();
     let mut element = |a: End, b: End, rest_length: f64| {
@@ -109,7 +110,7 @@ fn ends_in_one_place_push_nowhere_until_they_part() {
 
 /// A net of so many rows and columns of points. Its elements are sorted by the smaller index of their ends.
 fn net(rows: usize, columns: usize) -> Component {
-    let mut dice = tests::Dice(3);
+    let mut dice = Dice(3);
     let mut net = Component::default();
     let own = |index: usize| End::Body {
         index,

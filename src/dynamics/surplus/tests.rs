@@ -1,7 +1,8 @@
+use crate::dynamics::dice::Dice;
 use crate::dynamics::kick::Memo;
 use crate::dynamics::moving::Moving;
 use crate::dynamics::pair::{Pair, Separation};
-use crate::dynamics::tests::{DT, Dice};
+use crate::dynamics::tests::DT;
 use crate::dynamics::tolerance::{Accuracy, Controller};
 use crate::settings::RESOLVE;
 use bevy::math::DVec3;
