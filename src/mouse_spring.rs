@@ -7,6 +7,7 @@ use crate::dynamics::single;
 use crate::element::{Anchors, MaxForce, SpringAxis, SpringDamper, SpringFault, SpringTuning};
 use crate::input::check::MOST;
 use crate::input::say::{Stays, say};
+use bevy::ecs::entity_disabling::Disabled;
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::{
     RapierContextEntityLink, RapierRigidBodyHandle, RapierRigidBodySet, RigidBody,
@@ -150,7 +151,7 @@ pub(crate) fn hold(
         Option<&Grip>,
         Has<SpringFault>,
     )>,
-    released: Query<(Entity, &Grip), Without<MouseSpring>>,
+    released: Query<(Entity, &Grip), Or<(Without<MouseSpring>, With<Disabled>)>>,
     bodies: Query<
         (
             &RapierRigidBodyHandle,
@@ -178,8 +179,17 @@ pub(crate) fn hold(
     for (entity, spring, mut at, grip, told) in &mut held {
         let wrong = spring.fault();
         let body = body_of(spring.body).filter(|_| wrong.is_none());
+        let masses =
+            body.map(|(body, scale)| AXES.map(|axis| mass_at(body, scale * spring.point, axis)));
+        let holds = |grip: &Grip| {
+            let pulls = |spring: Option<Entity>| spring.is_some_and(|one| springs.contains(one));
+            grip.of.pulls_like(spring)
+                && masses.is_some_and(|masses| {
+                    masses.map(|mass| mass.is_some()) == grip.springs.map(pulls)
+                })
+        };
         let grip = match grip {
-            Some(grip) if !(body.is_some() && grip.of.pulls_like(spring)) => {
+            Some(grip) if !holds(grip) => {
                 release(entity, grip, &mut commands);
                 None
             }
@@ -195,8 +205,6 @@ pub(crate) fn hold(
         for spring in below.filter(|child| is_grip(**child, entity, &springs)) {
             commands.entity(*spring).try_despawn();
         }
-        let masses =
-            body.map(|(body, scale)| AXES.map(|axis| mass_at(body, scale * spring.point, axis)));
         let heaviest = masses.into_iter().flatten().flatten().reduce(f32::max);
         let wrong = wrong.or_else(|| spring.is_too_stiff(heaviest?));
         tell(entity, wrong, told, &mut commands);

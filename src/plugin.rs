@@ -9,6 +9,7 @@ use crate::mouse_spring::{self, Grip, MouseSpring};
 use crate::readout::SpringReadout;
 use crate::scene::state::Scene;
 use crate::settings::{CoiloverSettings, MAX_ITERATIONS, MAX_MICROSTEPS, MAX_SUBSTEPS, RESOLVE};
+use bevy::ecs::entity_disabling::Disabled;
 use bevy::ecs::query::ArchetypeFilter;
 use bevy::ecs::schedule::ScheduleLabel;
 use bevy::prelude::*;
@@ -161,6 +162,7 @@ impl Plugin for CoiloverPlugin {
         }
         notice_strays(app);
         crate::backend::rapier::watch::watch(app);
+        crate::input::named_ends::watch(app);
 
         let schedule = self.settings.schedule;
         app.add_systems(
@@ -171,7 +173,7 @@ impl Plugin for CoiloverPlugin {
         app.add_systems(
             schedule,
             mouse_spring::hold
-                .run_if(any::<Or<(With<MouseSpring>, With<Grip>)>>)
+                .run_if(any::<(Or<(With<MouseSpring>, With<Grip>)>, AlsoDisabled)>)
                 .after(PhysicsSet::SyncBackend)
                 .before(CoiloverSystems::Prepare),
         );
@@ -214,6 +216,9 @@ fn order_sets(app: &mut App, schedule: impl ScheduleLabel) {
         ),
     );
 }
+
+/// Filter that every entity passes, also a disabled one.
+type AlsoDisabled = Or<(With<Disabled>, Without<Disabled>)>;
 
 /// Run condition: some entity passes the filter.
 fn any<F: ArchetypeFilter + 'static>(entities: Query<(), F>) -> bool {

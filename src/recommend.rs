@@ -1,5 +1,6 @@
 //! How many micro-steps springs that share bodies need.
 
+use crate::dynamics::thresholds::MOST_PHASE;
 use crate::settings::MAX_MICROSTEPS;
 
 /// Standard gravity, m/s².
@@ -7,9 +8,6 @@ const GRAVITY: f64 = 9.81;
 
 /// Assumed length of the element, m.
 const LENGTH: f64 = 1.0;
-
-/// Largest phase per micro-step, rad, at which a spring's own motion is certainly resolved.
-const RESOLVED: f64 = 2.0;
 
 /// Largest result: the default of [`CoiloverSettings::max_microsteps`](crate::CoiloverSettings::max_microsteps).
 const MOST: f64 = MAX_MICROSTEPS as f64;
@@ -51,7 +49,7 @@ pub fn recommend(stiffness: f32, damping: f32, mass: f32, dt: f32, tolerance: f3
     }
     let [k, c] = [k, c].map(|x| if sound(x) { x } else { 0.0 });
     let accurate = dt * (swing(k, c, m) / tolerance).sqrt();
-    let resolved = dt * (k / m).sqrt() / RESOLVED;
+    let resolved = dt * (k / m).sqrt() / MOST_PHASE;
     accurate.max(resolved).ceil().clamp(1.0, MOST) as u32
 }
 

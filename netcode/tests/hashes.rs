@@ -270,7 +270,7 @@ fn each_scene_ends_in_the_bits_that_are_noted() {
             "on the ground",
             on_the_ground,
             default(),
-            0xc9dc_f971_068c_a1de,
+            0x5ff5_6dc3_5835_b9dd,
         ),
         (
             "cloth, by a tolerance",

@@ -69,12 +69,12 @@ impl StepPlan {
     /// Schedule of a body that has `substeps` substeps in each engine step.
     pub(crate) fn schedule(&self, substeps: usize) -> Schedule {
         let substeps = u32::try_from(substeps.max(1)).unwrap_or(u32::MAX);
-        Schedule::new(self.time, substeps.saturating_mul(self.calls.max(1)))
+        Schedule::new(self.time, substeps, self.calls.max(1))
     }
 }
 
 /// Distance up to which an end counts as at the centre of mass of its body, m: the rounding of f32 in a body of a metre. An
-/// element at a greater distance turns the body: see the tests of `anchoring`.
+/// element at a greater distance turns the body. Pinned by `anchoring`.
 pub(crate) const SAME_PLACE: f64 = 1e-7;
 
 /// State of a body in the engine now. World frame unless a field says otherwise.

@@ -17,7 +17,8 @@ use bevy::math::DVec3;
 const SWAY: f64 = 0.02;
 
 /// Tolerance of the energy check where the step does not resolve the stiffest mode, as a share of kinetic and stored
-/// energy. There the step is the implicit midpoint rule, whose energy hardly oscillates. Pinned by the same test.
+/// energy. There the step is the implicit midpoint rule, whose energy hardly oscillates. Pinned by
+/// `bound::tests::energy_may_sway_by_two_per_cent_or_by_a_fifth_of_one_where_the_step_is_too_long`.
 const UNRESOLVED_SWAY: f64 = 0.002;
 
 /// Energy gain of one step up to which a surplus need not be removed yet, as a share of the tolerance. Rounding in one step
@@ -31,6 +32,10 @@ const REMEMBERED: f64 = 0.998;
 /// Greatest number of attempts to remove a surplus. Pinned by
 /// `energy::tests::a_surplus_is_taken_from_a_chain_at_once_though_each_element_disturbs_its_neighbours`.
 const ROUNDS: usize = 4;
+
+/// Share of a surplus that an attempt must remove. If it removes less, the motion is across the elements, and further attempts would
+/// be in vain. Pinned by `bound::tests::a_surplus_waits_only_where_the_step_itself_gained_little`.
+const NOTABLE: f64 = 0.01;
 
 /// The energy that a network may have.
 #[derive(Clone, Copy, Debug, Default)]
@@ -142,7 +147,7 @@ impl Bound {
                 return None;
             }
             let enough =
-                surplus <= energy.motion && take(elements, bodies, surplus) >= 0.01 * surplus;
+                surplus <= energy.motion && take(elements, bodies, surplus) >= NOTABLE * surplus;
             if !enough {
                 let waits = self.may_wait(&energy, surplus);
                 return waits.then(|| Energy::of(elements, bodies));

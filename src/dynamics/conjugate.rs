@@ -2,7 +2,7 @@
 //! positive definite, and the system to be solved multiplies its own vectors by it.
 
 /// Tolerance of the solution that moves the bodies. It is well below the rounding of the engine's f32. Pinned by
-/// `dynamics::tests`.
+/// `network::tests::what_turns_after_a_kick_is_known_well_enough`.
 pub(super) const LAST: f64 = 1e-10;
 
 /// Tolerance of a solution that only tells how lines turn after a kick. That part of the force is small, of second order in the

@@ -22,6 +22,8 @@ pub(crate) struct Schedule {
     pub time: f64,
     /// Number of equal substeps. Each is one velocity update and one position update.
     pub substeps: u32,
+    /// Number of substeps in each of the engine's steps, at the start of which it computes the inertia in the world.
+    pub substeps_each: u32,
     /// Duration of a substep, s.
     pub substep: f64,
     /// 1/`time`, 1/s.
@@ -52,13 +54,16 @@ pub(crate) struct Spinning<'a> {
 pub(crate) type TurnRule = fn(&Spinning, DVec3, &Delivery) -> (DQuat, DVec3);
 
 impl Schedule {
-    pub(crate) fn new(time: f64, substeps: u32) -> Self {
+    /// Schedule of `calls` steps of the engine with `substeps` substeps each, of `time` seconds in all.
+    pub(crate) fn new(time: f64, substeps_each: u32, calls: u32) -> Self {
+        let substeps = substeps_each.saturating_mul(calls);
         let n = f64::from(substeps);
         let beta = (n + 1.0) / (2.0 * n);
         let per_time = time.recip();
         Self {
             time,
             substeps,
+            substeps_each,
             substep: time / n,
             per_time,
             reach: beta * time,

@@ -7,10 +7,11 @@ use super::hold::Hold;
 use bevy::math::DVec3;
 
 /// Distance up to which two points count as coincident, as a share of their greatest coordinate. So short a distance may be
-/// rounding, and then it gives no direction.
+/// rounding, and then it gives no direction. It is between the rounding of f64, in which elements are solved, and that of the engine's
+/// f32. Pinned by `hard_cases`.
 pub(super) const COINCIDENT: f64 = 1e-9;
 
-/// Coordinate up to which [`COINCIDENT`] does not shrink further, m. At the origin it would be zero.
+/// Coordinate up to which [`COINCIDENT`] does not shrink further, m. At the origin it would be zero. Pinned by `hard_cases`.
 pub(super) const AT_ORIGIN: f64 = 1e-3;
 
 /// Velocity-dependent quantities of the line.

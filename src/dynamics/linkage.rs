@@ -9,8 +9,9 @@ use super::line::Line;
 use bevy::math::{DMat3, DVec3};
 use nalgebra::{DMatrix, DVector};
 
-/// Share of the greatest diagonal entry that is added to all diagonal entries, because constraints may be redundant. Pinned
-/// by `a_constraint_that_is_said_twice_counts_once`.
+/// Share of each diagonal entry that is added to it, because constraints may be redundant. It is not that of the greatest entry: a tiny
+/// body among large ones has one that is millions of times greater. Pinned by `a_constraint_that_is_said_twice_counts_once` and
+/// `a_needle_on_the_rod_leaves_the_hinge_as_firm_as_it_is`.
 const TWICE: f64 = 1e-9;
 
 /// A constraint row: the sum of linear · v + angular · ω over its sides is zero.
@@ -109,9 +110,8 @@ impl Linkage {
         let mut matrix = DMatrix::from_fn(count, count, |i, j| {
             coupling(&self.constraints[i], &self.constraints[j])
         });
-        let most = matrix.diagonal().iter().fold(0.0_f64, |m, x| m.max(*x));
         for i in 0..count {
-            matrix[(i, i)] += TWICE * most + f64::MIN_POSITIVE;
+            matrix[(i, i)] += TWICE * matrix[(i, i)] + f64::MIN_POSITIVE;
         }
         let moved =
             |by: &Constraint| DVector::from_fn(count, |i, _| coupling(&self.constraints[i], by));
@@ -166,20 +166,36 @@ mod tests {
     #[test]
     fn on_a_hinge_it_has_a_third_of_its_mass_at_the_end() {
         let (mut linkage, line) = rod();
-        let body = linkage.bodies[0];
-        for axis in DVec3::AXES {
-            let on = [None, Some((0, &body))];
-            linkage
-                .constraints
-                .push(Constraint::along(axis, DVec3::ZERO, on));
-        }
-        for axis in [DVec3::X, DVec3::Y] {
-            linkage
-                .constraints
-                .push(Constraint::about(axis, [None, Some(0)]));
-        }
+        linkage.constraints = hinge(&linkage.bodies[0]);
         let left = linkage.inverse_mass(&line);
         assert!((left - 1.5).abs() < 1e-6, "{left}");
+    }
+
+    /// Constraints that hold the middle of the rod's first end at the origin, and let it turn about z only.
+    fn hinge(rod: &Body) -> Vec<Constraint> {
+        let on = [None, Some((0, rod))];
+        let along = DVec3::AXES.map(|axis| Constraint::along(axis, DVec3::ZERO, on));
+        let about = [DVec3::X, DVec3::Y].map(|axis| Constraint::about(axis, [None, Some(0)]));
+        along.into_iter().chain(about).collect()
+    }
+
+    #[test]
+    fn a_needle_on_the_rod_leaves_the_hinge_as_firm_as_it_is() {
+        let [thick, thin] = [1e-4, 1e-8].map(|inertia| {
+            let (mut linkage, line) = rod();
+            let rod = linkage.bodies[0];
+            linkage.constraints = hinge(&rod);
+            let needle = point(1e-3, DVec3::X * 0.5, DVec3::ZERO);
+            let needle = turning(needle, DVec3::splat(inertia), DVec3::ZERO);
+            linkage.bodies.push(needle);
+            let on = [Some((0, &rod)), Some((1, &needle))];
+            let along = DVec3::AXES.map(|axis| Constraint::along(axis, DVec3::X * 0.5, on));
+            let about = DVec3::AXES.map(|axis| Constraint::about(axis, [Some(0), Some(1)]));
+            linkage.constraints.extend(along.into_iter().chain(about));
+            linkage.inverse_mass(&line)
+        });
+        assert!((thin / thick - 1.0).abs() < 1e-3, "{thin} and {thick} 1/kg");
+        assert!((thin / 1.5 - 1.0).abs() < 1e-2, "{thin} 1/kg");
     }
 
     #[test]

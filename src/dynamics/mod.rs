@@ -53,7 +53,7 @@ pub(crate) mod step;
 mod strut;
 mod surplus;
 mod system;
-mod thresholds;
+pub(crate) mod thresholds;
 pub(crate) mod tolerance;
 
 /// Rounds to single precision. Numbers that are too large become the largest finite number, and NaN becomes 0, so that no

@@ -77,6 +77,8 @@ struct Row {
     damping: f64,
     /// Its damping as it counts in [`Network::damping`], N s/m.
     braking: f64,
+    /// Share of the damping that is the element's. The rest settles what the step cannot resolve, and is no heat.
+    heating: f64,
 }
 
 impl Network {
@@ -101,6 +103,7 @@ impl Network {
                 drag: 0.0,
                 damping: 0.0,
                 braking: 0.0,
+                heating: 0.0,
             });
         }
     }
@@ -160,7 +163,8 @@ impl Network {
             let element = &mut elements[row.element];
             let gained = strut.relative(&self.acceleration).dot(row.line.direction);
             let rate = row.before.axial + 0.5 * step * gained;
-            element.heat += ((row.drag + row.damping * gained) * rate * step).max(0.0);
+            let heat = row.heating * (row.drag + row.damping * gained) * rate * step;
+            element.heat += heat.max(0.0);
             for (i, (end, sign)) in element.ends.iter().zip([-1.0, 1.0]).enumerate() {
                 if let End::Path(path) = end {
                     let hold = &row.line.holds[i];
@@ -260,7 +264,13 @@ impl Network {
             if c * step * line.inverse_mass > STRONG {
                 c = steep(drag, rate);
             }
+            let damper = c;
             c += settle * k;
+            row.heating = match (drag.force.abs(), (settle * k * rate).abs()) {
+                _ if c == damper => 1.0,
+                (0.0, _) => damper / c,
+                (force, settling) => force / (force + settling),
+            };
             let tension = elastic.force + drag.force + settle * k * rate;
             let own = c * step * line.inverse_mass;
             let damping = damper_placement(together(own, others)) * step * c;

@@ -30,7 +30,8 @@ const BENT: f64 = 0.04;
 /// ω h that the energy-conserving steps aim at. Pinned by
 /// `laws::one_way::a_strut_with_a_limit_and_a_damper_gives_a_cart_all_of_its_push`.
 const FINE: f64 = 0.2;
-/// Least and greatest number of energy-conserving steps in a micro-step.
+/// Least and greatest number of energy-conserving steps in a micro-step: two where damping is split between them, and so many that the
+/// greatest costs a few microseconds. Pinned by `nonlinear_pair::tests::no_law_gains_energy_at_any_step`.
 const PARTS: [f64; 2] = [2.0, 16.0];
 /// Number of iterations that estimate how far the motion can reach. Pinned by
 /// `nonlinear_pair::tests::no_law_gains_energy_at_any_step`.
@@ -38,6 +39,9 @@ const REACHES: usize = 6;
 /// Greatest number of bisections and secants that find the length at the end of a step. Pinned by
 /// `nonlinear_pair::tests::no_law_gains_energy_at_any_step`.
 const TRIES: usize = 80;
+
+/// Share of a linear damper's force above which no limit cuts it. No tuning constant: it only allows for rounding.
+const WHOLE: f64 = 0.999;
 
 /// A pair under a force law, and its present state.
 pub(crate) struct NonlinearPair<'a> {
@@ -89,7 +93,7 @@ impl<'a> NonlinearPair<'a> {
         let drag = self.law.drag(length, self.rest_length(), rate);
         let is_light = steep(drag, rate) * self.pair.inverse_mass * step < STRONG;
         let linear = self.law.drag.linear().unwrap_or(0.0);
-        let is_whole = drag.force.abs() >= 0.999 * (linear * rate).abs();
+        let is_whole = drag.force.abs() >= WHOLE * (linear * rate).abs();
         is_light.then(|| {
             if is_whole {
                 drag.slope.min(linear)

@@ -129,9 +129,13 @@ impl Pieces {
         match law.kink(rest_length) {
             None => {
                 let way = reach.way_between(law.uncut_between(rest_length));
-                let tangent = Tangent::chord(spring, way);
-                let tangent = Tangent { damping, ..tangent };
+                let mut tangent = Tangent::chord(spring, way);
                 let range = law.range();
+                tangent.damping = match (range, law.uncut_between(rest_length)) {
+                    ([0.0, _], [taut, _]) => reach.met(damping, &tangent, reach.beyond(taut, true)),
+                    ([_, 0.0], [_, met]) => reach.met(damping, &tangent, reach.beyond(met, false)),
+                    _ => damping,
+                };
                 pieces.push_softened(&reach, tangent, range);
                 let edges = [way[0].min(way[1]), way[0].max(way[1])];
                 pieces.push_hardening(&reach, edges, spring, [tangent.stiffness; 2], range);
@@ -147,7 +151,10 @@ impl Pieces {
                 continue;
             }
             let mut tangent = Tangent::chord(|length| law.stop_beyond(above, length), reach.way);
-            tangent.damping = law.stop_damping();
+            let beyond = reach
+                .way
+                .map(|length| -law.to_stop(above, length).unwrap_or(0.0));
+            tangent.damping = reach.met(law.stop_damping(), &tangent, beyond);
             let range = if above {
                 [0.0, f64::INFINITY]
             } else {
@@ -181,7 +188,10 @@ impl Pieces {
             .map(|side| Tangent::chord(&spring, reach.way_between(side)));
         if !free {
             // The damper of a rope or buffer is part of its one-sided piece.
-            sides[usize::from(least == 0.0)].damping = damping;
+            let pulls = least == 0.0;
+            let beyond = reach.beyond(if pulls { low } else { high }, pulls);
+            let side = &mut sides[usize::from(pulls)];
+            side.damping = reach.met(damping, side, beyond);
         }
         let slopes = sides.map(|tangent| tangent.stiffness);
         // A side on which the spring never acts must not reduce the share.
@@ -307,6 +317,26 @@ impl Outreach {
         } else {
             way
         }
+    }
+
+    /// How far the way is beyond a length at its start and its end, above it or below it, m.
+    fn beyond(&self, length: f64, above: bool) -> [f64; 2] {
+        self.way
+            .map(|way| if above { way - length } else { length - way })
+    }
+
+    /// Damping that a one-sided force has of its law's `damping` (N s/m) in this step. `beyond` is how far the force is pressed at the
+    /// start and at the end of the way, m. The engine cuts the sum of spring and damper, so a damper would act before its spring is
+    /// pressed, as far ahead as damping times rate over stiffness. It may do so no farther ahead than the way leads beyond that point.
+    fn met(&self, damping: f64, spring: &Tangent, beyond: [f64; 2]) -> f64 {
+        let (stiffness, rate) = (spring.stiffness.abs(), self.rate.abs());
+        let nearest = beyond[0].max(beyond[1]);
+        // Farther away it does not act, whatever its damping.
+        let may_act = stiffness * nearest + damping * rate > 0.0;
+        if beyond[0] >= 0.0 || beyond[1] < beyond[0] || !may_act {
+            return damping;
+        }
+        damping.min(stiffness * nearest.max(0.0) / rate.max(f64::MIN_POSITIVE))
     }
 
     /// Share to which a spring with this range is scaled down, at most 1. A second motor, as strong as the greatest force

@@ -13,6 +13,7 @@
 //! is corrected in the next step.
 
 use super::law::Elastic;
+use super::thresholds::SHORT;
 use super::tolerance::{Method, Outcome};
 
 /// ω h that the number of substeps aims at for the stiffest mode: a quarter of the stability limit of the symplectic
@@ -89,13 +90,13 @@ impl Tangent {
         let way = to - from;
         let size = from.abs() + to.abs();
         Self {
-            force: if way.abs() > 1e-7 * size {
+            force: if way.abs() > SHORT * size {
                 (last.energy - first.energy) / way
             } else {
                 force(middle).force
             },
             at: middle,
-            stiffness: if way.abs() > 1e-6 * size {
+            stiffness: if way.abs() > 10.0 * SHORT * size {
                 (last.force - first.force) / way
             } else {
                 first.stiffness

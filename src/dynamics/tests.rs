@@ -251,7 +251,7 @@ fn engine_substeps_reach_the_state_that_was_ordered() {
     let before = pair.bodies.clone();
     pair.advance(DT, accuracy(4, false));
     for n in [2, 4, 7, 32] {
-        let s = Schedule::new(DT, n);
+        let s = Schedule::new(DT, n, 1);
         for (start, end) in before.iter().zip(&pair.bodies) {
             let d = s.reach(
                 end.position - start.position - s.time * start.velocity,

@@ -167,8 +167,14 @@ const CALM: u32 = 24;
 /// Greatest number of steps between probes otherwise. Pinned by `tolerance::tests::a_motion_that_becomes_wild_is_probed_sooner`.
 const BUSY: u32 = 8;
 
-/// Growth of the error between two probes above which the next probe comes sooner. Pinned by the same test.
+/// Growth of the error between two probes above which the next probe comes sooner. Pinned by
+/// `tolerance::tests::a_motion_that_becomes_wild_is_probed_sooner`.
 const GROWTH: f64 = 2.0;
+
+/// Error of the fewest micro-steps below which a motion counts as calm, as a share of the tolerance, and number of probes in a row after
+/// which it is believed. Pinned by `tolerance::tests::the_tolerance_is_kept_with_few_kicks`.
+const CALM_ERROR: f64 = 0.25;
+const CALM_PROBES: u32 = 2;
 
 /// Memory of a motion's errors.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -279,7 +285,8 @@ impl Controller {
         }
         let known = self.known.unwrap_or_default();
         let (plan, capped) = cheapest(known, order, tolerance, [least, most]);
-        let calm = plan == Plan::Plain(least) && error_of(known, order, plan) < 0.25 * tolerance;
+        let calm =
+            plan == Plan::Plain(least) && error_of(known, order, plan) < CALM_ERROR * tolerance;
         let grows = known.0 > GROWTH * before.map_or(0.0, |known| known.0);
         self.put_off(grows, calm);
         let taken = match known.1 {
@@ -309,7 +316,11 @@ impl Controller {
             self.span.saturating_mul(2).min(BUSY)
         };
         self.calm = if calm { self.calm.saturating_add(1) } else { 0 };
-        self.age = if self.calm > 2 { CALM } else { self.span };
+        self.age = if self.calm > CALM_PROBES {
+            CALM
+        } else {
+            self.span
+        };
     }
 
     /// Takes as many micro-steps as asked, or more to follow the motion.

@@ -62,7 +62,9 @@ fn convert(
             let above = parents.iter_ancestors(end);
             let above = above.map_while(|parent| transforms.get(parent).ok());
             let global = above.fold(own, |below, parent| *parent * below);
-            Some(global.affine().inverse().transform_point3(point))
+            // On an end that is scaled to nothing, no point has a place.
+            let own = global.affine().inverse().transform_point3(point);
+            own.is_finite().then_some(own)
         };
         let [a, b] = parts.parameters().ok()?.ties.ends;
         match (local(a, points.a), local(b, points.b)) {
@@ -80,7 +82,6 @@ fn convert(
     let found: Vec<_> = elements.p0().iter().filter_map(on_ends).collect();
     tell(placeless, &names, &mut waiting);
     for (entity, anchors) in found {
-        // A point that cannot be converted (on an end scaled to zero) becomes NaN, and is reported like any bad anchor.
         if let Ok(mut given) = elements.p1().get_mut(entity) {
             given.set_if_neq(anchors);
         }
@@ -105,8 +106,8 @@ fn tell(
         }
         let who = who(entity, names.get(entity).ok());
         log::warn!(
-            "{who}: WorldAnchors::{field} cannot be converted, because {end} has no Transform; until it has one, the \
-             element acts on its Anchors"
+            "{who}: WorldAnchors::{field} cannot be converted, because {end} has no Transform or is scaled to \
+             nothing; until that changes, the element acts on its Anchors"
         );
     }
 }

@@ -1,5 +1,6 @@
 //! Looks up ends by name, before the step. Nothing here runs while no element waits for an end.
 
+use crate::compat::{Added, Removed};
 use crate::element::*;
 use crate::input::lists::with_elements;
 use crate::input::parts::IsElement;
@@ -9,6 +10,7 @@ use bevy::ecs::entity_disabling::Disabled;
 use bevy::ecs::system::{SystemParam, SystemState};
 use bevy::platform::collections::HashMap;
 use bevy::prelude::*;
+use std::mem::take;
 
 /// Most parents that are followed upwards: more than any real scene has. It keeps parents in a circle from hanging the
 /// game. Pinned by `ends`.
@@ -43,20 +45,46 @@ pub(crate) struct Chances<'w, 's> {
             )>,
         ),
     >,
-    nameless: RemovedComponents<'w, 's, Name>,
-    orphans: RemovedComponents<'w, 's, ChildOf>,
-    enabled: RemovedComponents<'w, 's, Disabled>,
+    news: ResMut<'w, NewsOfNames>,
+}
+
+/// Whether an entity has lost its name or its parent, or was disabled or enabled, since names were last looked up. Observers note
+/// this, for removals are forgotten after a frame, and a frame may have no tick.
+#[derive(Resource, Default)]
+pub(crate) struct NewsOfNames(bool);
+
+/// Adds what [`find_named_ends`] needs to an app.
+pub(crate) fn watch(app: &mut App) {
+    app.init_resource::<NewsOfNames>();
+    let world = app.world_mut();
+    let lost = [
+        world.register_component::<Name>(),
+        world.register_component::<ChildOf>(),
+        world.register_component::<Disabled>(),
+    ];
+    let hidden = lost[2];
+    world.spawn(Observer::new(lose).with_components(lost));
+    world.spawn(Observer::new(hide).with_component(hidden));
+}
+
+fn lose(_: Removed<()>, news: Option<ResMut<NewsOfNames>>) {
+    note(news);
+}
+
+fn hide(_: Added<()>, news: Option<ResMut<NewsOfNames>>) {
+    note(news);
+}
+
+fn note(news: Option<ResMut<NewsOfNames>>) {
+    if let Some(mut news) = news {
+        news.0 = true;
+    }
 }
 
 impl Chances<'_, '_> {
     /// Whether there was such a change since the last call.
     fn any(&mut self) -> bool {
-        let gone = [
-            self.nameless.read().count(),
-            self.orphans.read().count(),
-            self.enabled.read().count(),
-        ];
-        gone != [0; 3] || !self.names.is_empty() || !self.elements.is_empty()
+        take(&mut self.news.0) || !self.names.is_empty() || !self.elements.is_empty()
     }
 }
 

@@ -131,19 +131,19 @@ impl Step {
         if start.spin != Spin::Ignored {
             let inverse_inertia = start.inverse_inertia();
             let before = start.angular_velocity();
-            let Delivery { jump, rate } = {
+            let Delivery { mut jump, rate } = {
                 let rule = self.plan.turn;
                 terms
                     .schedule
                     .angular(start, manner.is_gyroscopic, end, rule)
             };
-            spin = Some((before + jump).as_vec3());
             torque = torque_for(rate, inverse_inertia) - start.torque;
             for axis in 0..3 {
                 if start.rotation_locked[axis] {
-                    torque[axis] = 0.0;
+                    (jump[axis], torque[axis]) = (0.0, 0.0);
                 }
             }
+            spin = Some((before + jump).as_vec3());
         }
         Push {
             velocity: Some(velocity),

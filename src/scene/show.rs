@@ -1,6 +1,7 @@
 //! Writes the results of a step into the components of elements: readouts, captured rest lengths and computed coefficients.
 
 use crate::dynamics::single;
+use crate::dynamics::thresholds::MOST_PHASE;
 use crate::element::{
     HoldPose, Spring, SpringDamper, SpringTuning, TorsionSpring, TorsionSpringDamper,
 };
@@ -20,9 +21,8 @@ const FOUND: ElementFlags = ElementFlags::TUNED
     .union(ElementFlags::CAPTURED)
     .union(ElementFlags::POSED);
 
-/// ω·dt of a micro-step above which an element's own vibration is not followed, rad: the root of `RESOLVED` in
-/// `dynamics::thresholds`, above which more micro-steps are needed. Pinned by `messages::what_cannot_be_followed_is_told_once`.
-const UNRESOLVED: f32 = 2.0;
+/// ω·dt of a micro-step above which an element's own vibration is not followed, rad.
+const UNRESOLVED: f32 = MOST_PHASE as f32;
 
 /// Components into which a captured rest length or angle and computed coefficients are written.
 pub(crate) type Springs<'a> = (

@@ -34,6 +34,8 @@ pub struct Scene {
     pub(crate) handles: Handles,
     /// Bodies that hold an element but that elements cannot move.
     pub(crate) walls: EntityHashSet,
+    /// Whether one of them has changed its kind. The engine may learn of that only after this tick's preparation.
+    pub(crate) wall_changed: bool,
     pub(crate) groups: Groups,
     pub(crate) assemblies: Vec<Assembly>,
     /// Elements that need no assembly, one list per context.

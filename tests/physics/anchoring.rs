@@ -73,14 +73,18 @@ fn an_end_below_an_entity_without_a_place_has_its_own_place_in_the_world() {
 }
 
 #[test]
-fn an_end_that_is_scaled_to_nothing_is_told_as_a_bad_anchor() {
+fn points_on_an_end_that_grows_from_nothing_wait_until_it_has_a_size() {
     let mut lab = Lab::weightless();
     let hook = lab.spawn(Transform::from_scale(Vec3::ZERO));
     let load = lab.body(1.0, Vec3::ZERO);
     let points = WorldAnchors::new(Vec3::Y, Vec3::X);
     let element = lab.spawn((Spring::new(hook, load), points));
     lab.run(0.1);
-    assert_eq!(lab.get::<SpringFault>(element).field, "Anchors::a");
+    assert!(lab.app.world().get::<SpringFault>(element).is_none());
+    lab.get_mut::<Transform>(hook).scale = Vec3::splat(0.5);
+    lab.tick();
+    assert!(lab.app.world().get::<WorldAnchors>(element).is_none());
+    assert_eq!(lab.get::<Anchors>(element).a, 2.0 * Vec3::Y);
 }
 
 #[test]
@@ -104,7 +108,7 @@ fn points_on_a_body_without_a_place_are_told_once_and_wait_until_it_has_one() {
     assert_eq!(told.len(), 2, "{told:?}");
     for (element, field) in [(on_b, "b"), (on_a, "a")] {
         let wanted = format!(
-            "{element}: WorldAnchors::{field} cannot be converted, because {load} has no Transform"
+            "{element}: WorldAnchors::{field} cannot be converted, because {load} has no Transform "
         );
         assert!(
             told.iter().any(|t| t.starts_with(&wanted)),

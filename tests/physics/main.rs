@@ -18,6 +18,7 @@ mod bad_input;
 mod car;
 mod carried;
 mod cloth;
+mod comes_and_goes;
 mod decay;
 mod dice;
 mod elastic_pendulum;

@@ -2,6 +2,7 @@
 
 use crate::harness::*;
 use crate::messages::Log;
+use bevy::ecs::entity_disabling::Disabled;
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use bevy_rapier3d::prelude::*;
@@ -326,4 +327,52 @@ fn what_moves_in_a_plane_is_pulled_in_it_without_a_word() {
     assert!(at.distance(Vec3::new(1.0, 0.5, 0.0)) < 1e-3, "{at}");
     assert_eq!(elements(&mut lab), 2, "across the plane there is none");
     assert_eq!(log.take(), Vec::<String>::new());
+}
+
+#[test]
+fn a_body_that_was_locked_when_it_was_grabbed_follows_once_it_is_free() {
+    let mut lab = Lab::weightless();
+    let body = lab.body(1.0, Vec3::ZERO);
+    lab.tick();
+    let mut locked = lab.app.world_mut().entity_mut(body);
+    locked.insert(LockedAxes::TRANSLATION_LOCKED);
+    lab.tick();
+    grab(&mut lab, body, Vec3::X);
+    lab.run(0.2);
+    assert_eq!(elements(&mut lab), 0, "nothing to pull");
+    *lab.get_mut::<LockedAxes>(body) = LockedAxes::empty();
+    lab.run(3.0);
+    assert_eq!(elements(&mut lab), 3);
+    let at = lab.position(body);
+    assert!(at.distance(Vec3::X) < 1e-3, "{at}");
+}
+
+#[test]
+fn a_pointer_whose_springs_the_game_despawns_takes_hold_anew() {
+    let mut lab = Lab::weightless();
+    let body = lab.body(1.0, Vec3::ZERO);
+    lab.tick();
+    let pointer = grab(&mut lab, body, Vec3::X);
+    lab.run(0.2);
+    lab.app.world_mut().entity_mut(pointer).despawn_children();
+    lab.run(3.0);
+    assert_eq!(elements(&mut lab), 3);
+    let at = lab.position(body);
+    assert!(at.distance(Vec3::X) < 1e-3, "{at}");
+}
+
+#[test]
+fn a_pointer_that_is_disabled_lets_go_silently_and_takes_hold_when_it_is_enabled() {
+    let log = Log::capture();
+    let mut lab = Lab::weightless();
+    let body = lab.body(1.0, Vec3::ZERO);
+    lab.tick();
+    let pointer = grab(&mut lab, body, Vec3::X);
+    lab.run(0.2);
+    lab.app.world_mut().entity_mut(pointer).insert(Disabled);
+    lab.run(0.2);
+    assert_eq!((log.take(), elements(&mut lab)), (Vec::new(), 0));
+    lab.app.world_mut().entity_mut(pointer).remove::<Disabled>();
+    lab.run(0.2);
+    assert_eq!((log.take(), elements(&mut lab)), (Vec::new(), 3));
 }

@@ -6,30 +6,30 @@ use bevy::ecs::entity_disabling::Disabled;
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 
-fn hook(name: &str) -> impl Bundle {
+pub fn hook(name: &str) -> impl Bundle {
     (
         Name::new(name.to_owned()),
         Transform::from_xyz(0.0, 2.0, 0.0),
     )
 }
 
-fn weight(name: &str) -> impl Bundle {
+pub fn weight(name: &str) -> impl Bundle {
     (Name::new(name.to_owned()), body(1.0, Vec3::ZERO))
 }
 
-fn spring(a: &str, b: &str) -> impl Bundle {
+pub fn spring(a: &str, b: &str) -> impl Bundle {
     (
         SpringDamper::default().with_stiffness(100.0),
         EndNames::new(a, b),
     )
 }
 
-fn ends(lab: &Lab, element: Entity) -> [Entity; 2] {
+pub fn ends(lab: &Lab, element: Entity) -> [Entity; 2] {
     let pair = lab.get::<SpringDamper>(element);
     [pair.body_a, pair.body_b]
 }
 
-fn fault(lab: &Lab, element: Entity) -> Option<String> {
+pub fn fault(lab: &Lab, element: Entity) -> Option<String> {
     let fault = lab.app.world().get::<SpringFault>(element)?;
     Some(format!("{} {}", fault.field, fault.reason))
 }

@@ -71,6 +71,33 @@ fn moments(lab: &Lab, bodies: [Entity; 2]) -> (DVec3, DVec3, f64) {
     (p, l, e)
 }
 
+/// Rapier computes the inertia in the world once for each of its steps, and a tick may have several.
+#[test]
+fn several_steps_of_the_engine_in_a_tick_keep_the_angular_momentum_as_one_does() {
+    let wander = |substeps| {
+        let engine = Engine {
+            substeps,
+            ..Engine::weightless()
+        };
+        let mut lab = Lab::with(CoiloverPlugin::default(), engine);
+        let (bodies, _) = pair(&mut lab, 200.0, 0.0);
+        lab.tick();
+        let (_, before, _) = moments(&lab, bodies);
+        let mut most = 0.0_f64;
+        for _ in 0..300 {
+            lab.tick();
+            let (_, now, _) = moments(&lab, bodies);
+            most = most.max((now - before).length() / before.length());
+        }
+        most
+    };
+    let [once, often] = [1, 4].map(wander);
+    println!(
+        "angular momentum wanders by {once:.1e} with one step in a tick, by {often:.1e} with four"
+    );
+    assert!(often < 3.0 * once + 1e-4, "{often:.1e}, {once:.1e}");
+}
+
 #[test]
 fn momentum_and_energy_stay_for_ten_seconds() {
     let mut lab = Lab::weightless();

@@ -8,7 +8,7 @@ use bevy_rapier3d::rapier::dynamics::{
 };
 use std::borrow::{Borrow, BorrowMut};
 
-/// Greatest rotation of a body in one pipeline step of Rapier (`MAX_ROTATION` in its solver), rad.
+/// Greatest rotation of a body in one pipeline step of Rapier (`MAX_ROTATION` in its solver), rad. No tuning constant.
 pub(crate) const FARTHEST_TURN: f64 = std::f64::consts::FRAC_PI_4;
 
 /// The bodies of a context, and its gravity, m/s².
@@ -206,11 +206,17 @@ fn set_spin(body: &mut Body, angular_velocity: DVec3) {
     }
 }
 
-/// Greatest radius of gyration of a body, clamped to 0.02 m to 1 m.
+/// Least and greatest radius (m) with which the angular velocity of a body counts as a speed of its surface. Pinned by
+/// `ground::play`.
+const SIZES: [f32; 2] = [0.02, 1.0];
+
+/// Greatest radius of gyration of a body, within [`SIZES`].
 fn size_of(body: &RigidBody) -> f32 {
     let properties = &body.mass_properties().local_mprops;
     let inertia = properties.principal_inertia().max_element();
-    (inertia * properties.inv_mass).sqrt().clamp(0.02, 1.0)
+    (inertia * properties.inv_mass)
+        .sqrt()
+        .clamp(SIZES[0], SIZES[1])
 }
 
 impl<B: Borrow<RigidBodySet> + Sync> Bodies<B> {

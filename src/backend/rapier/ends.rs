@@ -100,13 +100,16 @@ fn check(point: DVec3, field: &'static str) -> Result<(), Fault> {
     Err(Fault::new(field, reason))
 }
 
+/// Relative change of a scale up to which it is rounding. Pinned by `anchoring`.
+const STEADY: f64 = 1e-4;
+
 /// The body's global scale. The scale of a rotating transform changes in its last bits, which would make the anchor tremble.
-/// So relative changes below 1e-4 are ignored.
+/// So changes up to [`STEADY`] are ignored.
 fn steady_scale(global: Option<&GlobalTransform>, last: &mut Option<Vec3>) -> DVec3 {
     let now = global.map_or(Vec3::ONE, GlobalTransform::scale);
     let known = last.unwrap_or(Vec3::ONE);
     let [from, to] = [known, now].map(|scale| scale.as_dvec3());
-    let same = (to - from).abs().cmple(from.abs() * 1e-4).all();
+    let same = (to - from).abs().cmple(from.abs() * STEADY).all();
     let scale = if same { known } else { now };
     *last = Some(scale);
     scale.as_dvec3()

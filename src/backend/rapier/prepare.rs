@@ -8,6 +8,7 @@ use crate::backend::rapier::watch::Watch;
 use crate::input::companions::Companions;
 use crate::input::parts::{Acts, ChangedParts, Parts};
 use crate::scene::refresh::{refresh, still_computed, still_faulty};
+use crate::scene::rows::BodyFlags;
 use crate::scene::state::Scene;
 use bevy::ecs::bundle::NoBundleEffect;
 use bevy::ecs::system::SystemState;
@@ -53,7 +54,7 @@ fn look(
     let scene = &mut *scene;
     *scene.news.get_mut() = false;
     let mut same = !watch.saw_change(scene);
-    same &= !std::mem::take(&mut scene.stale);
+    same &= !std::mem::replace(&mut scene.stale, std::mem::take(&mut scene.wall_changed));
     companions.look(scene.since.take(), scene.touched.drain(..));
     // `Watch` sees entities that appear and disappear. The count covers other ways in which elements may disappear.
     same &= elements.iter().len() == scene.elements.len();
@@ -109,6 +110,7 @@ fn enter_loads(
     finder: &RapierFinder,
     commands: &mut Commands,
 ) {
+    let tick = scene.tick;
     let (mut new, mut new_loads) = (Vec::new(), Vec::new());
     for (slot, row) in scene.bodies.iter_mut().enumerate() {
         let Ok((load, force)) = loads.get_mut(row.entity) else {
@@ -118,6 +120,10 @@ fn enter_loads(
             let load = load.bypass_change_detection();
             load.slot = slot;
             load.mend();
+            if row.has(BodyFlags::NEW) {
+                // A new body in the engine began with the sum of both shares.
+                row.carry(&wrench(&load.elements));
+            }
             load.user
         });
         if let (Some(user), true) = (known, force.is_some()) {
@@ -136,7 +142,12 @@ fn enter_loads(
                 })
             });
         // A force written directly to the engine belongs to the user too.
-        let present = force.copied().or(engine).unwrap_or_default();
+        let mut present = force.copied().or(engine).unwrap_or_default();
+        if let Some(share) = row.share(tick).filter(|_| known.is_none()) {
+            // Its load was removed, but the force still contains the share of elements.
+            present.force -= share.force;
+            present.torque -= share.torque;
+        }
         row.set_user(wrench(&known.unwrap_or(present)));
         let load = SpringLoad::new(present, slot);
         match (known, force) {

@@ -10,6 +10,7 @@ use crate::element::*;
 use crate::input::companions::ChangedBeside;
 use crate::input::lists::{with_companions, with_elements};
 use crate::input::parts::{Acts, ChangedParts};
+use crate::scene::report::forget;
 use crate::scene::state::Scene;
 use bevy::ecs::entity::EntityHashSet;
 use bevy::ecs::entity_disabling::Disabled;
@@ -33,6 +34,7 @@ impl Watch<'_, '_> {
     pub(crate) fn saw_change(&mut self, scene: &mut Scene) -> bool {
         self.mass_modified.clear();
         self.mass_modified.extend(self.masses.read().map(|m| m.0));
+        scene.wall_changed |= self.changed.iter().any(|body| scene.walls.contains(&body));
         let is_loaded = |entity: &Entity| scene.body_row(*entity).is_some();
         let mut changed = self.changed.iter().any(|entity| scene.knows(entity));
         changed |= self.mass_modified.iter().any(is_loaded);
@@ -93,13 +95,20 @@ pub(crate) fn watch(app: &mut App) {
     world.spawn(Observer::new(come).with_components(bodies));
     let loads = ids![SpringLoad, ExternalForce];
     world.spawn(Observer::new(unload).with_components(loads));
+    let [loaded, _] = loads;
+    world.spawn(Observer::new(load).with_component(loaded));
     let laws = with_companions!(of_laws);
     world.spawn(Observer::new(leave).with_components(laws));
 }
 
 /// Marks the scene as disturbed if it is `concerned`. While a snapshot is restored there is no scene resource, and nothing is to
 /// be noted.
-fn notice(scene: Option<ResMut<Scene>>, concerned: impl Fn(&Scene) -> bool) {
+fn notice(entity: Entity, mut scene: Option<ResMut<Scene>>, concerned: impl Fn(&Scene) -> bool) {
+    if let Some(scene) = &mut scene
+        && scene.walls.contains(&entity)
+    {
+        scene.wall_changed = true;
+    }
     // When many entities go at once, only the first need be looked for.
     let is_noted = |scene: &Scene| scene.disturbed && !scene.undisturbed;
     if let Some(mut scene) = scene.filter(|scene| !is_noted(scene) && concerned(scene)) {
@@ -109,17 +118,35 @@ fn notice(scene: Option<ResMut<Scene>>, concerned: impl Fn(&Scene) -> bool) {
 
 /// Observes that a body or an element gets a component.
 fn come(on: Inserted<()>, scene: Option<ResMut<Scene>>) {
-    notice(scene, |scene| scene.knows(on.entity));
+    notice(on.entity, scene, |scene| scene.knows(on.entity));
 }
 
 /// Observes that an element or a body loses a component.
-fn lose(on: Removed<()>, scene: Option<ResMut<Scene>>) {
-    notice(scene, |scene| scene.knows(on.entity));
+fn lose(
+    on: Removed<()>,
+    scene: Option<ResMut<Scene>>,
+    faulty: Query<(), (With<SpringFault>, Allow<Disabled>)>,
+    mut commands: Commands,
+) {
+    notice(on.entity, scene, |scene| scene.knows(on.entity));
+    if faulty.contains(on.entity) {
+        // The scene does not know an element that is disabled or waits for its ends.
+        forget(on.entity, &mut commands);
+    }
 }
 
 /// Observes that a body that elements can move loses a component.
 fn unload(on: Removed<()>, scene: Option<ResMut<Scene>>) {
-    notice(scene, |scene| scene.body_row(on.entity).is_some());
+    notice(on.entity, scene, |scene| {
+        scene.body_row(on.entity).is_some()
+    });
+}
+
+/// Observes that a body gets a load. If elements cannot move it, it is the copy of another body, whose elements' share must go.
+fn load(on: Inserted<()>, scene: Option<ResMut<Scene>>) {
+    notice(on.entity, scene, |scene| {
+        scene.body_row(on.entity).is_none()
+    });
 }
 
 /// Observes that an element loses a companion component.

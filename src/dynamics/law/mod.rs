@@ -11,6 +11,7 @@ mod table;
 pub(crate) use drag::{Drag, DragLaw};
 pub(crate) use table::Table;
 
+use super::thresholds::SHORT;
 use std::fmt::Debug;
 use std::sync::Arc;
 
@@ -22,8 +23,7 @@ pub(crate) trait Function: Send + Sync + Debug {
     fn integral(&self, x: f64) -> f64;
 }
 
-/// Stretch at which the search for a law's limit ends, m. Pinned by
-/// `a_spring_that_is_beyond_its_limit_everywhere_has_the_limit`.
+/// Stretch at which the search for a law's limit ends, m. No tuning constant: any number far beyond a scene.
 const FARTHEST: f64 = 1e9;
 
 /// Tension (N) of a spring as a function of its stretch (m), before clamps.
@@ -284,7 +284,7 @@ impl Law {
 
     /// Mean tension between two lengths, N. Its work is exactly the change of stored energy.
     pub(crate) fn mean_force(&self, [from, to]: [f64; 2], rest_length: f64) -> f64 {
-        if (to - from).abs() > 1e-7 * (from.abs() + to.abs()) {
+        if (to - from).abs() > SHORT * (from.abs() + to.abs()) {
             let [a, b] = [from, to].map(|length| self.elastic(length, rest_length).energy);
             (b - a) / (to - from)
         } else {

@@ -135,6 +135,49 @@ fn what_acts_one_way_with_a_limit_damps_only_where_it_is_not_slack() {
 }
 
 #[test]
+fn a_rope_a_buffer_and_a_stop_damp_no_farther_ahead_than_the_step_leads_beyond() {
+    let endless = f64::INFINITY;
+    for (limits, travel, edge, sign) in [
+        ([0.0, endless], [-endless, endless], 1.0, 1.0),
+        ([-endless, 0.0], [-endless, endless], 1.0, -1.0),
+        ([-endless, endless], [-endless, 1.5], 1.5, 1.0),
+        ([-endless, endless], [0.5, endless], 0.5, -1.0),
+    ] {
+        let mut recipe = recipe(limits);
+        recipe.travel = travel;
+        recipe.drag = DragLaw::Linear(if limits == [-endless, endless] {
+            0.0
+        } else {
+            50.0
+        });
+        recipe.stop.damping = 100.0;
+        let law = Law::new(recipe);
+        // How far beyond: far away, on the way, over the edge, and pressed.
+        for way in [[-0.2, -0.19], [-0.01, -0.001], [-0.01, 0.005], [0.01, 0.02]] {
+            let lengths = way.map(|beyond: f64| edge + sign * beyond);
+            let rate = sign * 0.5;
+            let pieces = Pieces::of(&law, 1.0, reach(lengths, rate));
+            let damped = |length: f64| pieces.tension(length, rate) - pieces.tension(length, 0.0);
+            let begins = edge - sign * way[1].abs();
+            let last = if way[1] < 0.0 {
+                lengths[1]
+            } else {
+                begins - sign * 1e-6
+            };
+            let before = [lengths[0], last].map(|at| damped(at).abs());
+            let before = before[0].max(before[1]);
+            let case = format!("{limits:?} {travel:?} {way:?}");
+            if way[0] < 0.0 {
+                assert!(before < 1e-9, "{case}: {before} N before {begins}");
+            } else {
+                let now = damped(lengths[1]).abs();
+                assert!(now >= 25.0 - 1e-9, "{case}: {now} N");
+            }
+        }
+    }
+}
+
+#[test]
 fn a_slack_rope_is_ready_and_has_no_force() {
     let law = law([0.0, f64::INFINITY]);
     let pieces = Pieces::of(&law, 1.0, reach([0.9, 0.9], 0.0));

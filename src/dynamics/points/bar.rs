@@ -30,9 +30,9 @@ pub(super) struct Load {
     turning: f64,
     /// Centripetal acceleration of the line, m/s².
     turns: f64,
-    /// Damping force before the solve, N.
+    /// Force of its damper before the solve, N.
     drag: f64,
-    /// Damping force per relative acceleration along the line, N per m/s².
+    /// Force of its damper per relative acceleration along the line, N per m/s².
     damping: f64,
 }
 
@@ -192,6 +192,12 @@ impl Wire {
         bar.direction = u;
         bar.across = (theta * h2 + 0.5 * settle_across * step) * across;
         bar.along = theta * h2 * k + load.damping;
+        if c > 0.0 {
+            // What settles a motion that the step cannot resolve is no heat.
+            let own = self.damping / c;
+            load.drag *= own;
+            load.damping *= own;
+        }
         (bar, load)
     }
 }

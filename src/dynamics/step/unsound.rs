@@ -7,7 +7,7 @@ use crate::dynamics::energy::Energy;
 use crate::dynamics::tolerance::Steppable;
 
 /// Parts of a micro-step of motion ahead at which a law is looked at. A kick uses the law at the length that it meets, and
-/// up to the end of its micro-step.
+/// up to the end of its micro-step. Pinned by `laws::bad`.
 const PROBED: [f64; 3] = [0.0, 0.5, 1.0];
 
 impl Component {

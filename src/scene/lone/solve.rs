@@ -16,7 +16,7 @@ use crate::scene::step::Step;
 use pulp::{Simd, WithSimd};
 
 /// Number of groups of lanes that are filled before the first group is solved. Numbers that were just written one by one
-/// cannot be loaded as a vector at once.
+/// cannot be loaded as a vector at once. Pinned by the benchmark `own/isolated`.
 const GROUPS: usize = 2;
 
 /// Number of elements that are read before they are solved.

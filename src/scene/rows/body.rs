@@ -155,6 +155,15 @@ impl BodyRow {
         }
     }
 
+    /// Notes that the engine has this share of elements in the force of the body.
+    pub(crate) fn carry(&mut self, share: &Wrench) {
+        let turns = share.torque != Vec3::ZERO;
+        if turns || share.force != Vec3::ZERO {
+            self.flags.insert(BodyFlags::CARRIES_SHARE);
+            self.flags.set(BodyFlags::SHARES_TORQUE, turns);
+        }
+    }
+
     /// Force and torque of elements, if the body was given them in the tick with this number.
     #[inline(always)]
     pub(crate) fn share(&self, tick: u32) -> Option<Wrench> {

@@ -132,6 +132,42 @@ fn a_slack_rope_with_a_damper_neither_brakes_nor_pushes() {
 }
 
 #[test]
+fn a_slack_rope_and_an_untouched_stop_do_not_brake_a_load_on_its_rail() {
+    for stop in [false, true] {
+        let mut lab = Lab::weightless();
+        let rail = lab.spawn((RigidBody::Fixed, Transform::default()));
+        let load = lab.moving(body(10.0, Vec3::X), Velocity::linear(Vec3::X * 5.0));
+        let joint = ImpulseJoint::new(rail, PrismaticJointBuilder::new(Vec3::X));
+        lab.app.world_mut().entity_mut(load).insert(joint);
+        // Within damping · speed / stiffness, a quarter of a metre, spring and damper together would pull.
+        let element = if stop {
+            let travel = SpringTravel::new(0.0, 2.0, 1e4).with_stop_damping(500.0);
+            lab.spawn((
+                Spring::new(rail, load)
+                    .with_stiffness(0.0)
+                    .with_rest_length(1.0),
+                travel,
+            ))
+        } else {
+            let rope = SpringDamper::new(rail, load)
+                .with_stiffness(1e4)
+                .with_damping(500.0)
+                .with_rest_length(2.0);
+            lab.spawn((rope, SpringAction::Pull))
+        };
+        while lab.position(load).x + 5.0 * DT < 2.0 {
+            lab.tick();
+            let speed = lab.velocity(load).x;
+            assert!((speed - 5.0).abs() < 1e-3, "stop {stop}: {speed} m/s of 5");
+        }
+        assert_eq!(lab.readout(element).method, SpringMethod::Engine);
+        lab.run(0.5);
+        let speed = lab.velocity(load).x;
+        assert!(speed < 0.0, "it stops the load: {speed} m/s");
+    }
+}
+
+#[test]
 fn a_slack_rope_with_a_limit_does_not_brake_a_cart_on_its_rail() {
     let mut lab = Lab::weightless();
     let rail = lab.spawn((RigidBody::Fixed, Transform::default()));

@@ -18,6 +18,14 @@ use bevy_rapier3d::rapier::pipeline::QueryFilter;
 /// that a body that passes by stays free. Pinned by `ground::bounce`.
 pub(crate) const NEAR: f32 = 0.005;
 
+/// Factor by which a way is counted at the speed of now: bodies may gain speed within the step. Pinned by `ground::bounce`.
+const SAFE: f32 = 2.0;
+
+/// Distance within which a body may meet something that comes nearer at `speed` (m/s) for `time` seconds, m.
+pub(super) fn way_of(speed: f32, time: f32) -> f32 {
+    NEAR + SAFE * speed * time
+}
+
 /// Assumed greatest speed of other bodies in the search for near colliders, m/s. What is faster may arrive between two searches. A
 /// greater speed only costs time, because a larger region is searched: 4 m at 60 steps a second. Pinned by `near::tests`.
 const OTHERS: f32 = 30.0;
@@ -135,7 +143,7 @@ impl Outlook<'_> {
         let mut bodies =
             bodies.filter_map(|(row, push)| Some((self.bodies.get(handle(row.id))?, push)));
         bodies.any(|(body, push)| {
-            let way = NEAR + 2.0 * (speed_of(body) + push + other.speed) * self.time;
+            let way = way_of(speed_of(body) + push + other.speed, self.time);
             let theirs = other.collider.compute_aabb().loosened(way);
             self.of(body).any(|own| {
                 let (a, b) = (own, other.collider);

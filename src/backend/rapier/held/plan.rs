@@ -9,7 +9,7 @@ use crate::dynamics::guide::Guide;
 use crate::dynamics::line::Line;
 use crate::dynamics::pieces::Pieces;
 use crate::input::check::Fault;
-use crate::scene::held::Turn;
+use crate::scene::held::{Leeway, Turn};
 use crate::scene::rows::{BodyFlags, BodyRow, ElementFlags, ElementRow, Held, Members};
 use crate::scene::step::Step;
 use crate::scene::to_element::element;
@@ -147,7 +147,12 @@ impl Plan {
             return;
         };
         if has_moved {
-            row.account_for_leap(line.distance());
+            let slipped = row.inside.as_ref().is_some_and(|inside| inside.slipped);
+            row.account_for_leap(if slipped {
+                element.angle
+            } else {
+                line.distance()
+            });
         }
         let is_touched = |b: usize| bodies[b].has(BodyFlags::TOUCHED);
         let touched = row.all_movable().any(is_touched);
@@ -186,6 +191,9 @@ impl Plan {
             })
         });
         if by == [(false, false); 2] {
+            if let Some(inside) = &mut row.inside {
+                inside.leeway = Leeway::default();
+            }
             return;
         }
         let inside = row.inside.get_or_insert_default();

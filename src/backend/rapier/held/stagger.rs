@@ -10,6 +10,10 @@ use crate::dynamics::body::Body;
 use crate::scene::rows::{BodyFlags, BodyRow, ElementFlags, ElementRow, Members};
 use crate::scene::step::Step;
 
+/// (ω h)² of a substep up to which a spring is followed within it. Of the force of a stiffer one, the engine applies only a part.
+/// Pinned by `ground::winch`.
+const FOLLOWED: f64 = 1.0;
+
 /// Shifts the velocities of a component in time by `by` seconds (half a substep, either sign). Velocities stay within the engine's
 /// caps. Bodies under contact pressure are left out, because only the engine knows the forces on them.
 pub(crate) fn stagger(
@@ -54,9 +58,8 @@ pub(crate) fn absorb_jumps(
         if !row.has(ElementFlags::JUMPED) {
             continue;
         }
-        // A stiffer spring is not followed within a substep; the engine applies only a part of its force.
         let stiffness: f64 = order.pieces.iter().map(|p| p.tangent.stiffness).sum();
-        if stiffness * order.line.inverse_mass * substep * substep > 1.0 {
+        if stiffness * order.line.inverse_mass * substep * substep > FOLLOWED {
             continue;
         }
         let moved = moved.get_or_insert_with(|| plan.bodies.clone());

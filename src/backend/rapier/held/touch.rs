@@ -2,7 +2,9 @@
 
 use super::joint::is_ours;
 use crate::backend::rapier::body;
-use crate::backend::rapier::held::near::{NEAR, is_solid, may_press, place, skins, speed_of};
+use crate::backend::rapier::held::near::{
+    NEAR, is_solid, may_press, place, skins, speed_of, way_of,
+};
 use crate::compat;
 use crate::scene::rows::{BodyFlags, BodyRow, take};
 use bevy::math::Vec3;
@@ -192,7 +194,7 @@ impl<'a> Surroundings<'a> {
         if near(NEAR) {
             flags.insert(BodyFlags::PRESSED);
         }
-        let way = NEAR + 2.0 * (speed_of(body) + push) * time as f32;
+        let way = way_of(speed_of(body) + push, time as f32);
         lingers || flags.contains(BodyFlags::PRESSED) || near(way)
     }
 }
