@@ -33,7 +33,7 @@ use bevy::prelude::*;
 /// - `Transform` of ends that are not bodies, [`CoiloverSettings`](crate::CoiloverSettings), `Time<Fixed>`, and whatever
 ///   else the game's own systems read.
 ///
-/// It takes about 930 bytes for a spring with a body of its own (`cargo bench -p benches --bench snapshot`); see
+/// It takes about 860 bytes for a lone spring with its two bodies (`cargo bench -p benches --bench snapshot`); see
 /// [`bytes`](Self::bytes).
 ///
 /// ```

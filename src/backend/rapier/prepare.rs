@@ -1,6 +1,7 @@
 //! The system before the step. It checks whether the known scene is still valid. Usually it is, and then the system reads only
 //! ends that can move; otherwise it rebuilds all rows.
 
+use crate::backend::Wrench;
 use crate::backend::rapier::body::handle;
 use crate::backend::rapier::find::RapierFinder;
 use crate::backend::rapier::forces::{self, Handles, Loads, SpringLoad, wrench};
@@ -144,9 +145,16 @@ fn enter_loads(
         // A force written directly to the engine belongs to the user too.
         let mut present = force.copied().or(engine).unwrap_or_default();
         if let Some(share) = row.share(tick).filter(|_| known.is_none()) {
-            // Its load was removed, but the force still contains the share of elements.
-            present.force -= share.force;
-            present.torque -= share.torque;
+            // Its load was removed. The force still contains the share of elements; without it, the user's is that of the last step.
+            let user = row.user();
+            let [whole, part] = match force {
+                Some(_) => [wrench(&present), share],
+                None => [user, Wrench::default()],
+            };
+            present = ExternalForce {
+                force: whole.force - part.force,
+                torque: whole.torque - part.torque,
+            };
         }
         row.set_user(wrench(&known.unwrap_or(present)));
         let load = SpringLoad::new(present, slot);
