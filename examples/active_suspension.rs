@@ -194,13 +194,14 @@ fn trace(time: Res<Time>, mut bodies: Query<(&Transform, &mut Body)>, mut comman
 }
 
 fn check(world: &mut World) -> Vec<Finding> {
-    let mut bodies = world.query::<(Entity, &Body, &Transform, &Velocity)>();
+    let mut bodies = world.query::<(&Body, &Transform, &Velocity)>();
     let mut bodies: Vec<_> = bodies.iter(world).collect();
-    bodies.sort_by_key(|(entity, ..)| entity.index_u32());
+    // The passive one is behind.
+    bodies.sort_by(|a, b| a.1.translation.z.total_cmp(&b.1.translation.z));
     let start = level();
     let mut ways = Vec::new();
     let mut energies = Vec::new();
-    for (_, body, at, velocity) in &bodies {
+    for (body, at, velocity) in &bodies {
         let away = body.0.iter().map(|y| (y - start).powi(2)).sum::<f32>();
         ways.push(1e3 * (away / body.0.len() as f32).sqrt());
         energies

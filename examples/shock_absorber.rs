@@ -170,8 +170,8 @@ fn drive(time: Res<Time>, mut crossheads: Query<(&mut Transform, &Crosshead)>) {
 }
 
 /// Draws one cycle of points on the board: the damper's force in ivory, the total force in blue.
-fn draw(elements: Query<(Entity, &Track)>, mut commands: Commands) {
-    let Some((_, track)) = elements.iter().min_by_key(|(e, _)| e.index_u32()) else {
+fn draw(elements: Query<&Track>, mut commands: Commands) {
+    let Some(track) = elements.iter().min_by_key(|track| track.number()) else {
         return;
     };
     let cycle = 1.0 / FREQUENCY;

@@ -3,6 +3,7 @@
 use bevy::prelude::*;
 use bevy_coilover::prelude::*;
 use std::fmt;
+use std::sync::atomic::{AtomicU32, Ordering};
 
 /// Returns the larger of two numbers, or NaN if one is NaN. `f32::max` would pass over a NaN.
 pub fn larger<T: PartialOrd>(a: T, b: T) -> T {
@@ -69,11 +70,23 @@ impl Finding {
     }
 }
 
-/// On an element: its read-outs in each tick, with the time in seconds.
-#[derive(Component, Default)]
-pub struct Track(pub Vec<(f32, SpringReadout)>);
+/// On an element: its read-outs in each tick, with the time in seconds, and the number of the track in the order of spawning.
+#[derive(Component)]
+pub struct Track(pub Vec<(f32, SpringReadout)>, u32);
+
+impl Default for Track {
+    fn default() -> Self {
+        static COUNT: AtomicU32 = AtomicU32::new(0);
+        Self(Vec::new(), COUNT.fetch_add(1, Ordering::Relaxed))
+    }
+}
 
 impl Track {
+    /// Returns its number in the order of spawning.
+    pub fn number(&self) -> u32 {
+        self.1
+    }
+
     /// Returns how often a second the length rises through this value, Hz, or NaN with fewer than two crossings.
     pub fn frequency(&self, middle: f32) -> f32 {
         let crossings: Vec<f32> = self
@@ -103,12 +116,11 @@ impl Track {
     }
 }
 
-/// Returns all tracks, in the order of spawning.
+/// Returns all tracks, in the order of spawning. Entities are in another order after a restart, when their indices are used again.
 pub fn tracks(world: &mut World) -> Vec<&Track> {
-    let mut query = world.query::<(Entity, &Track)>();
-    let mut all: Vec<_> = query.iter(world).collect();
-    all.sort_by_key(|(entity, _)| entity.index_u32());
-    all.into_iter().map(|(_, track)| track).collect()
+    let mut all: Vec<_> = world.query::<&Track>().iter(world).collect();
+    all.sort_by_key(|track| track.number());
+    all
 }
 
 pub(super) fn record(time: Res<Time>, mut tracked: Query<(&SpringReadout, &mut Track)>) {
