@@ -20,7 +20,7 @@ use stage::{self, Begin};
 /// Duration of the script, s.
 pub const SECONDS: f32 = 78.0;
 /// Time of the screenshot, s: the car is in the air.
-pub const PICTURE: f32 = 57.0;
+pub const PICTURE: f32 = 56.5;
 
 pub fn setup(app: &mut App) {
     app.insert_resource(stage::SpaceIsTaken);
