@@ -1,6 +1,6 @@
 //! The physics plugin: schedule and system sets.
 
-use crate::backend::rapier::forces::SpringLoad;
+use crate::backend::rapier::forces::{SpringLoad, WithDisabled};
 use crate::backend::rapier::setup::Watched;
 use crate::element::*;
 use crate::input::lists::{with_companions, with_elements};
@@ -9,7 +9,6 @@ use crate::mouse_spring::{self, Grip, MouseSpring};
 use crate::readout::SpringReadout;
 use crate::scene::state::Scene;
 use crate::settings::{CoiloverSettings, MAX_ITERATIONS, MAX_MICROSTEPS, MAX_SUBSTEPS, RESOLVE};
-use bevy::ecs::entity_disabling::Disabled;
 use bevy::ecs::query::ArchetypeFilter;
 use bevy::ecs::schedule::ScheduleLabel;
 use bevy::prelude::*;
@@ -173,7 +172,7 @@ impl Plugin for CoiloverPlugin {
         app.add_systems(
             schedule,
             mouse_spring::hold
-                .run_if(any::<(Or<(With<MouseSpring>, With<Grip>)>, AlsoDisabled)>)
+                .run_if(any::<(Or<(With<MouseSpring>, With<Grip>)>, WithDisabled)>)
                 .after(PhysicsSet::SyncBackend)
                 .before(CoiloverSystems::Prepare),
         );
@@ -216,9 +215,6 @@ fn order_sets(app: &mut App, schedule: impl ScheduleLabel) {
         ),
     );
 }
-
-/// Filter that every entity passes, also a disabled one.
-type AlsoDisabled = Or<(With<Disabled>, Without<Disabled>)>;
 
 /// Run condition: some entity passes the filter.
 fn any<F: ArchetypeFilter + 'static>(entities: Query<(), F>) -> bool {

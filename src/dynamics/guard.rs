@@ -7,7 +7,7 @@ use super::body::Body;
 use super::element::{Element, End};
 use super::energy::slowed_by;
 use super::line::Line;
-use super::thresholds::{STRONG, UNNOTICED};
+use super::thresholds::{ROUNDED_GAIN, STRONG};
 use bevy::math::DVec3;
 
 /// Mechanical energy at the start of a step, in the frame of an end with prescribed motion.
@@ -53,7 +53,7 @@ impl Guard {
             return;
         };
         let surplus = energy - self.energy;
-        if surplus <= UNNOTICED * self.energy.abs() || line.inverse_mass <= 0.0 {
+        if surplus <= ROUNDED_GAIN * self.energy.abs() || line.inverse_mass <= 0.0 {
             return;
         }
         let rate = line.motion(element, bodies, step).axial;

@@ -10,7 +10,7 @@ use super::law::Law;
 use super::line;
 use super::nonlinear_pair::NonlinearPair;
 use super::pair::{Pair, Separation};
-use super::thresholds::{STRONG, UNNOTICED};
+use super::thresholds::{ROUNDED_GAIN, STRONG};
 use crate::functions::{cos, exp, sin};
 
 /// Gain of a step, as a share of kinetic and stored energy, above which the step is repeated. Pinned by
@@ -34,7 +34,7 @@ pub(super) fn remove(
 ) {
     let [scale, before] = pair.energies(start);
     let surplus = |state: &Separation| pair.energies(state)[1] - before;
-    let noticed = UNNOTICED * before.abs();
+    let noticed = ROUNDED_GAIN * before.abs();
     if surplus(state) <= noticed {
         return;
     }

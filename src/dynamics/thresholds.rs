@@ -22,8 +22,9 @@ pub(super) const STRONG: f64 = 0.5;
 /// the rounding of f64. No tuning constant.
 pub(super) const SHORT: f64 = 1e-7;
 
-/// Gain of energy that is not removed, as a share of the energy: it may be rounding, which is a thousandth of that. Pinned by `hard_cases::a_damper_passed_at_speed_only_takes_energy`.
-pub(super) const UNNOTICED: f64 = 1e-9;
+/// Gain of energy that is not removed, as a share of the energy: it may be rounding, which is a thousandth of that. Pinned by
+/// `hard_cases::a_damper_passed_at_speed_only_takes_energy`.
+pub(super) const ROUNDED_GAIN: f64 = 1e-9;
 
 /// Whether a spring of zero rest length must have an axis, because its damper is strong. `z` is (ω h)² and `decay` is c h/m.
 /// For a stiffer spring, its isotropic, implicit form matters more than an axis for the damper.

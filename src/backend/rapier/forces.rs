@@ -36,7 +36,7 @@ pub struct SpringLoad {
 }
 
 /// Filter: disabled entities count too. Unlike `Allow`, it lets a query give whole tables.
-type WithDisabled = Or<(With<Disabled>, Without<Disabled>)>;
+pub(crate) type WithDisabled = Or<(With<Disabled>, Without<Disabled>)>;
 
 /// Loads of bodies, including disabled bodies, whose share must be removed too. The query cannot return whole tables if the game has
 /// registered a disabling component of sparse storage; then all is done one body at a time.

@@ -146,15 +146,11 @@ fn enter_loads(
         let mut present = force.copied().or(engine).unwrap_or_default();
         if let Some(share) = row.share(tick).filter(|_| known.is_none()) {
             // Its load was removed. The force still contains the share of elements; without it, the user's is that of the last step.
-            let user = row.user();
-            let [whole, part] = match force {
-                Some(_) => [wrench(&present), share],
-                None => [user, Wrench::default()],
-            };
-            present = ExternalForce {
-                force: whole.force - part.force,
-                torque: whole.torque - part.torque,
-            };
+            let Wrench { force, torque } = force.map_or(row.user(), |sum| Wrench {
+                force: sum.force - share.force,
+                torque: sum.torque - share.torque,
+            });
+            present = ExternalForce { force, torque };
         }
         row.set_user(wrench(&known.unwrap_or(present)));
         let load = SpringLoad::new(present, slot);

@@ -28,8 +28,9 @@ use std::collections::HashMap;
 /// - In another world, handles are the same if everything was spawned in the same order and nothing was despawned before.
 ///
 /// Restoring also sets `Transform`, `Velocity` and `Sleeping` of bodies, as Rapier writes them after a step, also while the game is
-/// paused. It restores the poses in `TransformInterpolation` of bodies that have it. It gives `RigidBodyDisabled` to the bodies that had it, and takes it from all others. A body that is disabled both in the snapshot and
-/// now keeps its `Transform`, because Rapier writes none of a disabled body.
+/// paused. It restores the poses in `TransformInterpolation` of bodies that have it. It gives `RigidBodyDisabled` to
+/// the bodies that had it, and takes it from all others. A body that is disabled both in the snapshot and now keeps its `Transform`,
+/// because Rapier writes none of a disabled body.
 ///
 /// The snapshot contains no events and no other components of the game, such as `ExternalForce` of bodies without springs.
 /// Restore such a force with `bypass_change_detection`, because Rapier wakes a body whose force is written.

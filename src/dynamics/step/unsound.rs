@@ -1,5 +1,5 @@
-//! Leaves out of a step those elements whose custom law gives NaN or infinity at a length that the step reaches. Otherwise the step would
-//! have no result, and the whole network would stand still.
+//! Leaves out of a step those elements whose custom law gives NaN or infinity at a length that the step reaches. Otherwise the
+//! step would have no result, and the whole network would stand still.
 
 use super::Component;
 use crate::dynamics::body::Body;

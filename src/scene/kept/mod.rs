@@ -86,7 +86,7 @@ pub(crate) struct Memory {
     pub(crate) controller: Controller,
     /// Positions of its ends after the last step, as in the element's row.
     pub(crate) places: [Option<DVec3>; 2],
-    /// Whether they are not those that the game moved the ends from.
+    /// See [`crate::scene::rows::RareElement::leapt`].
     pub(crate) leapt: bool,
     /// Last twist with full turns counted, rad.
     pub(crate) angle: f64,

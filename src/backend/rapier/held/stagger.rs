@@ -12,7 +12,7 @@ use crate::scene::step::Step;
 
 /// (ω h)² of a substep up to which a spring is followed within it. Of the force of a stiffer one, the engine applies only a part.
 /// Pinned by `ground::winch`.
-const FOLLOWED: f64 = 1.0;
+const ABSORBED: f64 = 1.0;
 
 /// Shifts the velocities of a component in time by `by` seconds (half a substep, either sign). Velocities stay within the engine's
 /// caps. Bodies under contact pressure are left out, because only the engine knows the forces on them.
@@ -59,7 +59,7 @@ pub(crate) fn absorb_jumps(
             continue;
         }
         let stiffness: f64 = order.pieces.iter().map(|p| p.tangent.stiffness).sum();
-        if stiffness * order.line.inverse_mass * substep * substep > FOLLOWED {
+        if stiffness * order.line.inverse_mass * substep * substep > ABSORBED {
             continue;
         }
         let moved = moved.get_or_insert_with(|| plan.bodies.clone());
