@@ -98,3 +98,33 @@ fn bodies_fall_asleep_at_the_same_tick_though_an_end_leaps_at_once_after_going_b
     film.lab.get_mut::<Transform>(wall).translation = Vec3::ZERO;
     assert_same("leap", &first, &film.watch(300));
 }
+
+/// Bodies in the engine that belong to no entity.
+fn hidden_bodies(film: &mut Film) -> usize {
+    let world = film.lab.app.world_mut();
+    let mut sets = world.query::<&RapierRigidBodySet>();
+    let hidden = |set: &RapierRigidBodySet| set.bodies.len() - set.entity2body().len();
+    sets.iter(world).map(hidden).sum()
+}
+
+/// A box on the ground, on a spring to a point, for which the engine has a hidden body. Rapier removes the joint with the box.
+#[test]
+fn what_a_spring_has_in_the_engine_when_its_body_is_despawned_in_a_pause_goes_after_going_back() {
+    let mut film = Film::new(CoiloverPlugin::default());
+    film.ground();
+    let load = film.solid(Vec3::Y * 0.1, Collider::cuboid(0.1, 0.1, 0.1), 2.0);
+    let hook = film.point(Vec3::Y);
+    let spring = film.spawn(coil(hook, load, 10.0, 1.0).with_rest_length(0.9));
+    film.run(30);
+    assert_eq!(film.lab.readout(spring).method, SpringMethod::Engine);
+    film.lab.set_stepping(false);
+    film.lab.app.world_mut().despawn(load);
+    film.run(2);
+    assert_eq!(hidden_bodies(&mut film), 1, "the engine stands still");
+    let saved = Both::take(&film);
+    film.run(1);
+    saved.restore(&mut film);
+    film.lab.set_stepping(true);
+    film.run(2);
+    assert_eq!(hidden_bodies(&mut film), 0);
+}

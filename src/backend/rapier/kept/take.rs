@@ -1,6 +1,7 @@
 //! Reads the data of a snapshot from the scene.
 
 use crate::backend::Wrench;
+use crate::backend::rapier::body::joint_handle;
 use crate::backend::rapier::forces::{SpringLoad, wrench};
 use crate::readout::SpringReadout;
 use crate::scene::kept::{
@@ -9,6 +10,7 @@ use crate::scene::kept::{
 use crate::scene::rows::{BodyFlags, BodyRow, ElementFlags, ElementRow, RareBody, RareElement};
 use crate::scene::state::Scene;
 use bevy::prelude::*;
+use bevy_rapier3d::prelude::RapierContextJoints;
 
 impl Kept {
     /// Reads all data of the scene. Empty if there is no `CoiloverPlugin`.
@@ -21,7 +23,7 @@ impl Kept {
             unloaded: scene.unloaded.clone(),
             ..Self::default()
         };
-        kept.take_contexts(scene);
+        kept.take_contexts(scene, world);
         kept.bodies.reserve_exact(scene.bodies.len());
         kept.elements.reserve_exact(scene.elements.len());
         // For each body row, its index in `kept.bodies`.
@@ -64,7 +66,7 @@ impl Kept {
         kept
     }
 
-    fn take_contexts(&mut self, scene: &Scene) {
+    fn take_contexts(&mut self, scene: &Scene, world: &World) {
         let with_sweeps = scene
             .sweeps
             .keys()
@@ -77,8 +79,15 @@ impl Kept {
         }));
         self.contexts.sort_by_key(|context| context.entity);
         let left = scene.left.iter();
-        self.left
-            .extend(left.map(|(context, inside)| (*context, KeptInside::of(inside))));
+        self.left.extend(left.map(|(context, inside)| {
+            let mut inside = KeptInside::of(inside);
+            // Rapier removes joints with their bodies. In a pause, the rest of what is left stays in the engine.
+            inside.joints.retain(|kept| {
+                let joints = world.get::<RapierContextJoints>(*context);
+                joints.is_some_and(|all| all.impulse_joints.contains(joint_handle(kept.id)))
+            });
+            (*context, inside)
+        }));
     }
 }
 
