@@ -1,6 +1,7 @@
 //! Headless app with the real Rapier pipeline. Tests step it tick by tick.
 
 use crate::compat::begin;
+use bevy::ecs::entity::EntityHashSet;
 use bevy::ecs::schedule::SingleThreadedExecutor;
 use bevy::prelude::*;
 use bevy::time::TimeUpdateStrategy;
@@ -93,8 +94,27 @@ impl Lab {
         self.app.update();
     }
 
+    /// Runs one tick. No number of a body may become infinite or NaN in it: comparisons with NaN are false, so many a test
+    /// would not notice.
     pub fn tick(&mut self) {
+        let before = self.wild();
         self.app.update();
+        let after = self.wild();
+        let new: Vec<_> = after.difference(&before).collect();
+        assert!(new.is_empty(), "not finite any more: {new:?}");
+    }
+
+    /// Bodies with a position, rotation or velocity that is not finite.
+    fn wild(&mut self) -> EntityHashSet {
+        let world = self.app.world_mut();
+        let mut bodies =
+            world.query_filtered::<(Entity, &Transform, Option<&Velocity>), With<RigidBody>>();
+        let is_wild = |(_, at, velocity): &(Entity, &Transform, Option<&Velocity>)| {
+            let moves = velocity.is_none_or(|v| v.linear.is_finite() && v.angular.is_finite());
+            !(at.translation.is_finite() && at.rotation.is_finite() && moves)
+        };
+        let wild = bodies.iter(world).filter(is_wild);
+        wild.map(|(body, ..)| body).collect()
     }
 
     pub fn run(&mut self, seconds: f64) {

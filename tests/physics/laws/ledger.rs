@@ -133,13 +133,13 @@ fn in_a_scene_with_every_law_nothing_is_lost_in_a_minute() {
     let turned_over = scene.heat();
     println!(
         "ledger over 60 s: {turned_over:.1} J turned to heat, balance within {worst:.2e} J (bar {:.2e}), start {start:.1}",
-        5e-3 * turned_over
+        2e-5 * turned_over
     );
     for element in &scene.elements {
         let seen = scene.lab.readout(*element);
         assert!(seen.dissipated_energy >= -1e-3, "{seen:?}");
     }
-    assert!(worst <= 5e-3 * turned_over, "{worst}");
+    assert!(worst <= 2e-5 * turned_over, "{worst}");
 
     let store = scene.lab.app.world().resource::<DiagnosticsStore>();
     let value = |path: DiagnosticPath| {

@@ -44,7 +44,7 @@ fn period_and_decay_are_exact_at_any_stiffness_that_the_step_resolves() {
             worst = worst.max((f64::from(lab.readout(element).length) - wanted).abs());
         }
         println!("torsion, ω·dt {step} ζ {zeta}: angle within {worst:.1e} of {REST} rad");
-        assert!(worst < 2e-4, "{worst}");
+        assert!(worst < 2e-5, "{worst}");
     }
 }
 
