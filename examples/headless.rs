@@ -15,14 +15,9 @@ fn main() -> AppExit {
     app.add_plugins((
         MinimalPlugins,
         TransformPlugin,
+        CoiloverPlugin::at_hz(60.0),
         RapierPhysicsPlugin::<NoUserData>::default().in_fixed_schedule(),
-        CoiloverPlugin::default(),
-    ))
-    .insert_resource(TimestepMode::Fixed {
-        dt: 1.0 / 60.0,
-        substeps: 1,
-    })
-    .insert_resource(Time::<Fixed>::from_hz(60.0));
+    ));
     // One fixed tick per update, whatever the clock says.
     let tick = app.world().resource::<Time<Fixed>>().timestep();
     app.insert_resource(TimeUpdateStrategy::ManualDuration(tick));

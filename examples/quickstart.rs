@@ -8,19 +8,18 @@ fn main() {
     App::new()
         .add_plugins((
             DefaultPlugins,
+            CoiloverPlugins::at_hz(60.0),
             RapierPhysicsPlugin::<NoUserData>::default().in_fixed_schedule(),
-            CoiloverPlugins,
         ))
-        .insert_resource(TimestepMode::Fixed {
-            dt: 1.0 / 60.0,
-            substeps: 1,
-        })
-        .insert_resource(Time::<Fixed>::from_hz(60.0))
         .add_systems(Startup, setup)
         .run();
 }
 
-fn setup(mut commands: Commands) {
+fn setup(
+    mut commands: Commands,
+    mut meshes: ResMut<Assets<Mesh>>,
+    mut materials: ResMut<Assets<StandardMaterial>>,
+) {
     commands.spawn((Camera3d::default(), Transform::from_xyz(0.0, 0.0, 5.0)));
     commands.spawn((
         DirectionalLight::default(),
@@ -33,6 +32,8 @@ fn setup(mut commands: Commands) {
             Collider::ball(0.3),
             ColliderMassProperties::Mass(20.0),
             Transform::from_xyz(0.4, 0.3, 0.0),
+            Mesh3d(meshes.add(Sphere::new(0.3))),
+            MeshMaterial3d(materials.add(Color::srgb(0.8, 0.3, 0.2))),
         ))
         .id();
     commands.spawn(coilover(hook, ball));

@@ -73,7 +73,7 @@ impl CoiloverPlugin {
     ///
     /// It sets two rates, which must be equal: the rate of physics (`TimestepMode::Fixed` with one substep) and the
     /// rate of the schedule (`Time<Fixed>`). If you insert one of these resources later, yours takes its place. `hertz`
-    /// must be finite and above zero; otherwise an error is logged and both rates stay as they are.
+    /// must be from 1e-6 to 1e9; otherwise an error is logged and both rates stay as they are.
     ///
     /// ```
     /// # use bevy::prelude::*;
@@ -247,10 +247,10 @@ pub(crate) fn register_elements(app: &mut App) {
 /// Sets the rate of physics and the rate of `FixedUpdate`, both to `hertz`.
 fn set_rates(app: &mut App, hertz: f64) {
     let seconds = hertz.recip();
-    if !(seconds.is_normal() && seconds > 0.0 && seconds < 1e6) {
+    // Bevy counts a tick in whole nanoseconds, and panics at none.
+    if !(1e-9..=1e6).contains(&seconds) {
         log::error!(
-            "bevy_coilover: CoiloverPlugin::at_hz({hertz}): a rate must be finite and above zero; the rates stay \
-             as they are"
+            "bevy_coilover: CoiloverPlugin::at_hz({hertz}): a rate must be from 1e-6 to 1e9; the rates stay as they are"
         );
         return;
     }

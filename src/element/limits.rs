@@ -48,8 +48,8 @@ pub struct MaxForce(pub f32);
 /// the force `stop_stiffness` · p · (1 + `progression` · p), and `stop_damping` takes energy while the stop is pressed.
 /// A stop never holds back an end that leaves it.
 ///
-/// `stop_stiffness`, `progression` and `stop_damping` must be from 0 to 1e12, and `max_length` must be above `min_length`.
-/// Otherwise the element gets a [`SpringFault`](crate::SpringFault) and does not act. On a torsion element, lengths are
+/// `stop_stiffness`, `progression` and `stop_damping` must be from 0 to 1e12, and `max_length` must be above `min_length`. A
+/// `min_length` below zero is only for a torsion element and beside a [`SpringAxis`](crate::SpringAxis). Otherwise the element gets a [`SpringFault`](crate::SpringFault) and does not act. On a torsion element, lengths are
 /// angles (rad), and forces are moments (N m).
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
 #[type_path = "bevy_coilover"]
