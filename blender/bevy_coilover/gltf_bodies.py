@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
 """Blender's rigid bodies as KHR_physics_rigid_bodies and KHR_implicit_shapes.
 
-Blender's shapes are centred at the object's origin and as large as the bounding box of its mesh; its engine multiplies
-friction and restitution of two bodies. Both are said so in the file.
+Blender's shapes are centred at the object's origin and as large as the bounding box of its mesh. Its engine has the
+centre of mass there too, and multiplies friction and restitution of two bodies. All this is said so in the file.
 """
 
 from . import ends, gltf_joints
@@ -47,7 +47,8 @@ def motion_of(obj, scene):
         return {"isKinematic": True}
     if rigid.type == "PASSIVE" or not rigid.enabled:
         return None
-    motion = {"mass": short(rigid.mass)}
+    # Without a centre the reader takes that of the shapes, which is another one for a cone, a hull or a compound.
+    motion = {"mass": short(rigid.mass), "centerOfMass": [0.0, 0.0, 0.0]}
     world = scene.rigidbody_world
     share = world.effector_weights.gravity if world is not None and world.effector_weights is not None else 1.0
     share = share if scene.use_gravity else 0.0
@@ -87,6 +88,15 @@ def filter_of(rigid, everyone):
     return {"collisionSystems": [system(own)], "collideWithSystems": touched or ["nothing"]}
 
 
+def mesh_node(obj, node, gathered):
+    """The number of a node that has the mesh of a body and none else."""
+    if not node.children:
+        return gathered.number[id(node)]
+    # A reader takes the meshes of all nodes below it too, but in Blender a body has its own mesh alone. So that mesh
+    # gets one more node, which is in no scene and is not drawn.
+    return gathered.add(gltf_joints.new_node((obj.name, "Shape"), mesh=node.mesh))
+
+
 def collider_of(obj, node, gathered, document, everyone, settings):
     rigid = obj.rigid_body
     if rigid.collision_shape == "COMPOUND":
@@ -97,7 +107,7 @@ def collider_of(obj, node, gathered, document, everyone, settings):
     elif node.mesh is None:
         return None
     else:
-        geometry = {"node": gathered.number[id(node)], "convexHull": rigid.collision_shape != "MESH"}
+        geometry = {"node": mesh_node(obj, node, gathered), "convexHull": rigid.collision_shape != "MESH"}
     collider = {
         "geometry": geometry,
         "physicsMaterial": document.shared(BODIES, "physicsMaterials", material_of(rigid)),

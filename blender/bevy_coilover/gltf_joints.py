@@ -10,7 +10,8 @@ from mathutils import Quaternion
 from .axes import short, to_gltf
 
 BODIES = "KHR_physics_rigid_bodies"
-#: Marks the nodes made here, so that an import knows the constraint's object again.
+#: Marks the nodes that this add-on adds, with the name of the object that each is made for. An import takes them out
+#: again, and knows a constraint's object by the name.
 MARK = "coilover_joint"
 #: Blender's axes x, y, z in the file, with Y up.
 AXIS = {"x": 0, "y": 2, "z": 1}
@@ -94,16 +95,21 @@ def pose(target, obj):
     return body.inverted_safe() @ own.translation, turn
 
 
-def new_node(name, place, turn):
-    """A node with a pose in its parent's frame as Blender has it."""
+def new_node(name, **content):
+    """A marked node. The name is in words, of which the first is the object that it is made for."""
     from io_scene_gltf2.io.com import gltf2_io
 
+    fields = dict.fromkeys(
+        ("camera", "extensions", "matrix", "mesh", "rotation", "scale", "skin", "translation", "weights"))
+    fields.update(children=[], extras={MARK: name[0]}, name=" ".join(name), **content)
+    return gltf2_io.Node(**fields)
+
+
+def frame_node(name, place, turn):
+    """A node with a pose in its parent's frame as Blender has it."""
     vector = to_gltf((turn.x, turn.y, turn.z))
-    return gltf2_io.Node(
-        camera=None, children=[], extensions=None, extras={MARK: name[0]}, matrix=None, mesh=None, name=" ".join(name),
-        rotation=[*(short(x) for x in vector), short(turn.w)], scale=None, skin=None,
-        translation=[short(x) for x in to_gltf(place)], weights=None,
-    )
+    rotation = [*(short(x) for x in vector), short(turn.w)]
+    return new_node(name, rotation=rotation, translation=[short(x) for x in to_gltf(place)])
 
 
 def frames(obj, gathered, node):
@@ -114,7 +120,7 @@ def frames(obj, gathered, node):
     if None in below:
         return None
     return [
-        gathered.add(new_node((obj.name, "Joint", end), *pose(target, obj)), number)
+        gathered.add(frame_node((obj.name, "Joint", end), *pose(target, obj)), number)
         for end, target, number in zip("AB", targets, below)
     ]
 

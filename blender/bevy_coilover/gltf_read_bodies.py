@@ -9,17 +9,32 @@ import bpy
 
 from .gltf_bodies import BODIES, SHAPES
 from .gltf_joints import AXIS, MARK, turned
+from .tree import parents, steps
 
+#: What Python raises where a file lacks something, or has something of another kind.
+WRONG = (AttributeError, IndexError, KeyError, OverflowError, TypeError, ValueError)
 KIND = {"box": "BOX", "sphere": "SPHERE", "capsule": "CAPSULE"}
+
+
+def table(x):
+    """An object inside of an extension or extras; an empty one in place of anything else."""
+    return x if isinstance(x, dict) else {}
+
+
+def item(items, index):
+    """An item of a list of the file. In Python, -1 would be the last one."""
+    if index < 0:
+        raise IndexError(f"no item {index}")
+    return items[index]
 
 
 def shape_kind(collider, shapes):
     """Blender's shape of a collider."""
     geometry = collider.get("geometry", {})
     if "shape" in geometry:
-        shape = shapes[geometry["shape"]]
+        shape = item(shapes, geometry["shape"])
         if shape["type"] == "cylinder":
-            return "CONE" if shape["cylinder"].get("radiusTop") == 0.0 else "CYLINDER"
+            return "CONE" if shape.get("cylinder", {}).get("radiusTop") == 0.0 else "CYLINDER"
         return KIND.get(shape["type"], "CONVEX_HULL")
     return "CONVEX_HULL" if geometry.get("convexHull") else "MESH"
 
@@ -68,12 +83,13 @@ def read_body(obj, said, root, shapes):
     if rigid.type == "ACTIVE" and "mass" not in motion:
         weigh(obj)
     if "physicsMaterial" in collider:
-        material = root["physicsMaterials"][collider["physicsMaterial"]]
+        material = item(root["physicsMaterials"], collider["physicsMaterial"])
         # The defaults of the specification's schema.
         rigid.friction = material.get("dynamicFriction", 0.6)
         rigid.restitution = material.get("restitution", 0.0)
     if "collisionFilter" in collider:
-        systems = root["collisionFilters"][collider["collisionFilter"]].get("collisionSystems", [])
+        touching = item(root["collisionFilters"], collider["collisionFilter"])
+        systems = touching.get("collisionSystems", [])
         numbers = {int(n) for s in systems if s.startswith("layers") for n in s.split()[1:] if n.isdigit()}
         if systems and systems[0].startswith("layers"):
             rigid.collision_collections = [i + 1 in numbers for i in range(20)]
@@ -106,10 +122,12 @@ def constraint_type(said):
 
 
 def read_joint(obj, said, first, second, collide):
+    # What is wrong with the limits shows here, before there is a constraint.
+    constraint = constraint_type(said)
     activate(obj)
     bpy.ops.rigidbody.constraint_add()
     rigid = obj.rigid_body_constraint
-    rigid.type = constraint_type(said)
+    rigid.type = constraint
     rigid.object1, rigid.object2 = first, second
     rigid.disable_collisions = not collide
     for part, kind in (("lin", "linear"), ("ang", "angular")):
@@ -147,18 +165,22 @@ class Joint:
 
 
 def take_joints(gltf):
-    """The joints that this add-on wrote. Their frames, the last nodes of its files, are taken out of the document:
-    the constraint's own object has their pose.
+    """The joints that this add-on wrote. The nodes that it made, the last ones of its files, are taken out of the
+    document: frames of joints, whose pose the constraint's own object has, and meshes of bodies, which these have too.
     """
+    from .gltf_read import warn
+
     nodes = gltf.data.nodes or []
+    parent = parents(nodes)
     marked = [i for i, node in enumerate(nodes) if isinstance(node.extras, dict) and MARK in node.extras]
-    parent = {child: i for i, node in enumerate(nodes) for child in node.children or []}
     joints = []
     for i in marked:
         said = (nodes[i].extensions or {}).get(BODIES, {}).get("joint")
-        if said is not None:
-            above = (parent.get(i), parent.get(said.get("connectedNode")))
+        if isinstance(said, dict) and isinstance(said.get("connectedNode"), int):
+            above = (parent.get(i), parent.get(said["connectedNode"]))
             joints.append(Joint(nodes[i].extras[MARK], said, above))
+        elif said is not None:
+            warn(gltf, f"{nodes[i].name}: this joint ties no node, and is not read")
     if marked == list(range(len(nodes) - len(marked), len(nodes))):
         for i in marked:
             if parent.get(i) is not None:
@@ -167,31 +189,64 @@ def take_joints(gltf):
     return joints
 
 
+def read_node(gltf, obj, node, root, shapes):
+    """The body of a node."""
+    from .gltf_read import vector, warn
+
+    said = node.extensions[BODIES]
+    if "joint" in said and MARK not in table(node.extras):
+        warn(gltf, f"{obj.name}: this joint was not written by this add-on, and is not read")
+    if "motion" not in said and "collider" not in said:
+        return
+    if obj.type != "MESH":
+        warn(gltf, f"{obj.name}: this body has no mesh, and Blender has rigid bodies of meshes alone")
+        return
+    read_body(obj, said, root, shapes)
+    centre = vector(table(said.get("motion")).get("centerOfMass")) or [0.0]
+    if max(map(abs, centre)) > 1e-6:
+        warn(gltf, f"{obj.name}: its centre of mass is not at its origin, where Blender has it")
+
+
+def by_name(nodes):
+    """The numbers of all nodes of each name. Blender may name an object otherwise, where it had one of that name."""
+    found = {}
+    for i, node in enumerate(nodes):
+        found.setdefault(node.name, []).append(i)
+    return found
+
+
+def holder(joint, named, parent, of):
+    """The object that becomes a joint's constraint; None where there is none of its name, or none that is free.
+
+    Copies of a collection have nodes of equal names. The writer took the bodies nearest to each constraint.
+    """
+    free = [i for i in named.get(joint.name, []) if of.get(i) is not None and of[i].rigid_body_constraint is None]
+    return of.get(min(free, key=lambda i: sum(steps(parent, i, body) for body in joint.above), default=None))
+
+
 def read(gltf, of, joints):
-    """All bodies and joints of a file; `of` gives the object of a node."""
+    """All bodies and joints of a file; `of` gives the object of a node. What is wrong with one ends that one alone."""
     from .gltf_read import warn
 
-    top = gltf.data.extensions or {}
+    top, nodes = gltf.data.extensions or {}, gltf.data.nodes or []
     root, shapes = top.get(BODIES, {}), top.get(SHAPES, {}).get("shapes", [])
     active = bpy.context.view_layer.objects.active
-    for index, node in enumerate(gltf.data.nodes or []):
-        said, obj = (node.extensions or {}).get(BODIES), of.get(index)
-        if said is None or obj is None or obj.rigid_body is not None:
+    for index, node in enumerate(nodes):
+        obj = of.get(index)
+        if obj is None or obj.rigid_body is not None or BODIES not in (node.extensions or {}):
             continue
-        if "joint" in said and MARK not in (node.extras or {}):
-            warn(gltf, f"{obj.name}: this joint was not written by this add-on, and is not read")
-        if "motion" not in said and "collider" not in said:
-            continue
-        if obj.type == "MESH":
-            read_body(obj, said, root, shapes)
-        else:
-            warn(gltf, f"{obj.name}: this body has no mesh, and Blender has rigid bodies of meshes alone")
-    # By the names that the file has: Blender may have others, where it knew such an object already.
-    by_name = {node.name: of[i] for i, node in enumerate(gltf.data.nodes or []) if of.get(i) is not None}
+        try:
+            read_node(gltf, obj, node, root, shapes)
+        except WRONG as error:
+            warn(gltf, f"{obj.name}: this body could not be read in full: {error!r}")
+    named, parent = by_name(nodes), parents(nodes)
     for joint in joints:
-        holder = by_name.get(joint.name)
-        if holder is not None:
-            first, second = (owner(of.get(number)) for number in joint.above)
-            said = root["physicsJoints"][joint.said["joint"]]
-            read_joint(holder, said, first, second, joint.said.get("enableCollision", False))
+        try:
+            obj = holder(joint, named, parent, of)
+            if obj is not None:
+                first, second = (owner(of.get(number)) for number in joint.above)
+                said = item(root["physicsJoints"], joint.said["joint"])
+                read_joint(obj, said, first, second, joint.said.get("enableCollision", False))
+        except WRONG as error:
+            warn(gltf, f"{joint.name}: this joint could not be read in full: {error!r}")
     bpy.context.view_layer.objects.active = active

@@ -12,6 +12,7 @@ from . import gltf_bodies, gltf_joints
 from .axes import short, to_gltf
 from .fields import COMPANIONS, NAME, has_damper, has_spring, is_torsion
 from .properties import is_element, variant_prop
+from .tree import parents, steps
 
 
 def value(group, name, field, axes=to_gltf):
@@ -110,37 +111,25 @@ class Gathered:
         """Takes the file's list of nodes; what is not in it is forgotten."""
         self.nodes = nodes
         self.number = {id(node): i for i, node in enumerate(nodes)}
-        self.parent = {child: i for i, node in enumerate(nodes) for child in node.children or []}
+        self.parent = parents(nodes)
         self.pairs = [(node, obj) for node, obj in self.pairs if id(node) in self.number]
-
-    def path(self, number):
-        """From a node to its root."""
-        while number is not None:
-            yield number
-            number = self.parent.get(number)
 
     def near(self, obj, node):
         """The number of an object's node; of several, as collections drawn twice have, the nearest one in the tree."""
         found = [self.number[id(n)] for n, o in self.pairs if o == obj]
         if len(found) < 2:
             return found[0] if found else None
-        own = list(self.path(self.number[id(node)]))
+        own = self.number[id(node)]
+        return min(found, key=lambda other: steps(self.parent, own, other))
 
-        def steps(other):
-            for up, ancestor in enumerate(self.path(other)):
-                if ancestor in own:
-                    return own.index(ancestor) + up
-            return len(own) + len(list(self.path(other)))
-
-        return min(found, key=steps)
-
-    def add(self, node, parent):
-        """A new node below another one."""
+    def add(self, node, parent=None):
+        """A new node below another one, or outside the scene."""
         self.nodes.append(node)
         number = len(self.nodes) - 1
         self.number[id(node)] = number
-        self.parent[number] = parent
-        self.nodes[parent].children = (self.nodes[parent].children or []) + [number]
+        if parent is not None:
+            self.parent[number] = parent
+            self.nodes[parent].children = (self.nodes[parent].children or []) + [number]
         return number
 
 

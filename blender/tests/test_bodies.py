@@ -40,6 +40,54 @@ def test_hulls_and_meshes_collide_as_their_own_node(scene, kind, hull):
     assert glb.name(geometry["node"]) == "Body" and geometry["convexHull"] is hull
 
 
+@pytest.mark.parametrize("kind", ["CONVEX_HULL", "MESH"])
+def test_a_chassis_with_a_child_collides_as_its_own_mesh_alone(scene, kind):
+    """A reader takes the meshes of all nodes below the one that a collider names."""
+    chassis = scene.body("Chassis", (0, 0, 1), shape=kind)
+    bpy.ops.mesh.primitive_cone_add(location=(0, 0, 3))
+    bpy.context.object.name, bpy.context.object.parent = "Mast", chassis
+    first = scene.export("first.glb")
+    number = first.said("Chassis", BODIES)["collider"]["geometry"]["node"]
+    assert first.json["nodes"][number]["mesh"] == first.node("Chassis")["mesh"]
+    assert not {"children", "translation", "rotation", "scale"} & set(first.json["nodes"][number])
+    drawn = [n for s in first.json["scenes"] + first.json["nodes"] for n in s.get("nodes", s.get("children", []))]
+    assert number not in drawn
+
+    again(scene, "first.glb")
+    assert {obj.name for obj in bpy.data.objects} == {"Chassis", "Mast"}
+    assert bpy.data.objects["Chassis"].rigid_body.collision_shape == kind
+    second = scene.export("second.glb")
+    assert [n["name"] for n in second.json["nodes"]] == [n["name"] for n in first.json["nodes"]]
+    assert second.said("Chassis", BODIES) == first.said("Chassis", BODIES)
+
+
+def test_a_chassis_with_a_child_and_a_joint_comes_back_with_both(scene):
+    chassis, ground = scene.body("Chassis", (0, 0, 1), shape="CONVEX_HULL"), scene.body("Ground", (0, 0, 0), active=False)
+    scene.empty("Eye", (0, 0, 1), parent=chassis)
+    joint(scene, "Hinge", "HINGE", ground, chassis)
+    scene.export("first.glb")
+    again(scene, "first.glb")
+    assert {obj.name for obj in bpy.data.objects} == {"Chassis", "Ground", "Eye", "Hinge"}
+    rigid = bpy.data.objects["Hinge"].rigid_body_constraint
+    assert (rigid.type, rigid.object1.name, rigid.object2.name) == ("HINGE", "Ground", "Chassis")
+
+
+@pytest.mark.parametrize("pin, turns", [(0.0, False), (0.5, True)])
+def test_the_centre_of_mass_is_at_the_origin_as_in_blenders_own_simulation(scene, pin, turns):
+    """A hull about a point beside its origin hangs still by the origin, and turns where it hangs by that point."""
+    bar = scene.body("Bar", (0, 0, 0), shape="CONVEX_HULL")
+    for vertex in bar.data.vertices:
+        vertex.co.x += 0.5
+    bar.data.update()
+    joint(scene, "Joint", "POINT", scene.body("Frame", (0, 3, 0), active=False), bar, (pin, 0, 0))
+    assert scene.export().said("Bar", BODIES)["motion"]["centerOfMass"] == [0, 0, 0]
+    for number in range(1, 20):
+        bpy.context.scene.frame_set(number)
+    matrix = bar.evaluated_get(bpy.context.evaluated_depsgraph_get()).matrix_world
+    along = matrix.to_3x3() @ Vector((1, 0, 0))
+    assert (along.x < 0.9) is turns and (along.x > 0.999) is not turns
+
+
 def test_what_moves_and_what_stands_is_as_in_blender(scene):
     load = scene.body("Load", (0, 0, 0), mass=7.5)
     scene.body("Ground", (0, 0, -1), active=False)
@@ -48,7 +96,7 @@ def test_what_moves_and_what_stands_is_as_in_blender(scene):
     asleep.rigid_body.enabled = False
     load.rigid_body.friction, load.rigid_body.restitution = 0.8, 0.25
     glb = scene.export()
-    assert glb.said("Load", BODIES)["motion"] == {"mass": 7.5}
+    assert glb.said("Load", BODIES)["motion"] == {"mass": 7.5, "centerOfMass": [0, 0, 0]}
     assert "motion" not in glb.said("Ground", BODIES) and "motion" not in glb.said("Off", BODIES)
     assert glb.said("Lift", BODIES)["motion"] == {"isKinematic": True}
     material = glb.json["extensions"][BODIES]["physicsMaterials"][glb.said("Load", BODIES)["collider"]["physicsMaterial"]]
@@ -67,7 +115,7 @@ def test_a_compound_body_is_one_body_of_several_colliders(scene):
     scene.body("Left", (-1, 0, 0), parent=frame)
     scene.body("Right", (1, 0, 0), parent=frame, active=False)
     glb = scene.export()
-    assert glb.said("Frame", BODIES) == {"motion": {"mass": 3}}
+    assert glb.said("Frame", BODIES) == {"motion": {"mass": 3, "centerOfMass": [0, 0, 0]}}
     assert set(glb.said("Left", BODIES)) == set(glb.said("Right", BODIES)) == {"collider"}
 
 
