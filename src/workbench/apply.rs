@@ -13,6 +13,8 @@ pub(super) fn apply(world: &mut World) {
     let edits = std::mem::take(&mut world.resource_mut::<Bench>().pending);
     for (entity, from, to) in edits {
         let Ok(mut element) = world.get_entity_mut(entity) else {
+            let wrong = "the element of this edit is gone".to_owned();
+            world.resource_mut::<Bench>().message = Some(wrong);
             continue;
         };
         if let Some(mut now) = Snapshot::read(element.as_readonly()) {

@@ -40,6 +40,8 @@ pub(crate) enum Plots {
 pub(crate) struct Clock {
     pub paused: bool,
     pub speed: f32,
+    /// Whether the springs are in a schedule of fixed ticks, one of which can be run alone.
+    pub steps: bool,
 }
 
 impl Default for Clock {
@@ -47,6 +49,7 @@ impl Default for Clock {
         Self {
             paused: false,
             speed: 1.0,
+            steps: true,
         }
     }
 }
@@ -56,6 +59,8 @@ impl Default for Clock {
 pub(crate) struct Bench {
     pub rows: Rows,
     pub selected: Option<Entity>,
+    /// Element that was clicked in the scene in this frame.
+    pub picked: Option<Entity>,
     pub subject: Option<Subject>,
     pub history: History,
     pub record: Record,
@@ -98,9 +103,11 @@ impl Bench {
             return;
         }
         let (entity, before) = (subject.entity, subject.now.clone());
+        let title = subject.title.clone();
         self.carry(entity, before.clone(), after.clone());
         self.history.note(Edit {
             entity,
+            title,
             what,
             before,
             after,
@@ -110,7 +117,7 @@ impl Bench {
     /// Undoes the last edit.
     pub fn undo(&mut self) {
         if let Some(edit) = self.history.undo() {
-            self.message = Some(format!("{} is as before", edit.what));
+            self.message = Some(format!("{}: {} is as before", edit.title, edit.what));
             self.carry(edit.entity, edit.after, edit.before);
         }
     }
@@ -118,17 +125,17 @@ impl Bench {
     /// Redoes the edit that was undone last.
     pub fn redo(&mut self) {
         if let Some(edit) = self.history.redo() {
-            self.message = Some(format!("{} is changed again", edit.what));
+            self.message = Some(format!("{}: {} is changed again", edit.title, edit.what));
             self.carry(edit.entity, edit.before, edit.after);
         }
     }
 
-    /// Resets the chosen element to its numbers before its first edit that is kept.
+    /// Resets the chosen element: takes back all of its edits that are kept. What the game itself changed meanwhile stays.
     pub fn reset(&mut self) {
         let Some(subject) = &self.subject else {
             return;
         };
-        if let Some(original) = self.history.original(subject.entity).cloned() {
+        if let Some(original) = self.history.without(subject.entity, &subject.now) {
             self.history.close();
             self.edit("all numbers", original);
             self.history.close();

@@ -15,10 +15,11 @@ use crate::readout::SpringReadout;
 use crate::settings::CoiloverSettings;
 use bevy::ecs::entity_disabling::Disabled;
 use bevy::ecs::query::Allow;
+use bevy::ecs::schedule::ScheduleLabel;
 use bevy::ecs::system::{SystemParam, SystemState};
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::{
-    RapierConfiguration, RapierContextEntityLink, RigidBody, Sleeping, TimestepMode,
+    GravityScale, RapierConfiguration, RapierContextEntityLink, RigidBody, Sleeping, TimestepMode,
 };
 
 /// Number of frames over which the numbers in the list are refreshed once.
@@ -53,6 +54,8 @@ pub(super) struct Look<'w, 's> {
     timestep: Option<Res<'w, TimestepMode>>,
     clock: Option<Res<'w, Time<Virtual>>>,
     real: Res<'w, Time<Real>>,
+    scales: Query<'w, 's, &'static GravityScale>,
+    buttons: Option<Res<'w, ButtonInput<MouseButton>>>,
 }
 
 /// State of the list between frames: the time of its last sorting, s, and whether its elements or names have changed.
@@ -86,6 +89,7 @@ pub(super) fn gather(world: &mut World, state: &mut SystemState<Look>, mut looke
             bench.clock = Clock {
                 paused: clock.is_paused(),
                 speed: clock.relative_speed(),
+                steps: look.is_fixed(),
             };
         }
         bench.subject = chosen.map(|(entity, snapshot)| {
@@ -101,7 +105,20 @@ pub(super) fn gather(world: &mut World, state: &mut SystemState<Look>, mut looke
 }
 
 impl Look<'_, '_> {
-    /// Updates the list of elements.
+    /// Whether springs are solved in a schedule of fixed ticks.
+    fn is_fixed(&self) -> bool {
+        let settings = self.settings.as_ref();
+        let fixed = [
+            FixedFirst.intern(),
+            FixedPreUpdate.intern(),
+            FixedUpdate.intern(),
+            FixedPostUpdate.intern(),
+            FixedLast.intern(),
+        ];
+        settings.is_some_and(|settings| fixed.contains(&settings.schedule))
+    }
+
+    /// Updates the list of elements. Its order stays while a button is down, so that a click chooses the row that was pressed.
     fn list(&self, bench: &mut Bench, looked: &mut Looked) {
         let rows = &mut bench.rows;
         looked.stale |= self.readouts.iter().len() != rows.total()
@@ -125,7 +142,9 @@ impl Look<'_, '_> {
                 row.read(readout);
             }
         }
-        if due {
+        let pressed = self.buttons.as_ref();
+        let pressed = pressed.is_some_and(|buttons| buttons.pressed(MouseButton::Left));
+        if due && !pressed {
             looked.at = Some(now);
             rows.arrange();
         }
@@ -217,13 +236,24 @@ impl Look<'_, '_> {
         self.bodies.get(self.bearer(entity)?).ok()
     }
 
-    /// Returns gravity in the Rapier context of the ends' bodies, m/s². Each context has its own. Zero if no end is a
-    /// body.
+    /// Returns gravity on the ends' bodies, m/s²: that of their Rapier context times their gravity scale, as for a
+    /// `SpringTuning` the greater one if two scales differ. Zero if no end is a body.
     fn gravity(&self, ends: [Entity; 2]) -> Vec3 {
         let context = |end| self.body(end)?.2;
         let context = ends.into_iter().find_map(context);
         let configuration = context.and_then(|link| self.configurations.get(link.0).ok());
-        configuration.map_or(Vec3::ZERO, |configuration| configuration.gravity)
+        let gravity = configuration.map_or(Vec3::ZERO, |configuration| configuration.gravity);
+        let movable = ends.into_iter().filter_map(|end| self.bearer(end));
+        let movable = movable.filter(|body| {
+            let kind = self.bodies.get(*body);
+            kind.is_ok_and(|(kind, ..)| *kind == RigidBody::Dynamic)
+        });
+        let scale = |body| self.scales.get(body).map_or(1.0, |scale| scale.0);
+        let scales = movable.map(scale);
+        gravity
+            * scales
+                .max_by(|a, b| a.abs().total_cmp(&b.abs()))
+                .unwrap_or(1.0)
     }
 
     fn end(&self, entity: Entity, anchor: Vec3) -> End {

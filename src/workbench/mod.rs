@@ -36,6 +36,9 @@ use std::path::PathBuf;
 /// It needs [`CoiloverPlugin`](crate::CoiloverPlugin), a window and a camera. If the app adds an `EguiPlugin` itself,
 /// add that first. While the workbench is closed, only the system that watches the key runs.
 ///
+/// The panel is on the camera with `bevy_egui`'s `PrimaryEguiContext`: the first camera of the app. If that camera is despawned,
+/// the panel goes to another one that draws into the primary window.
+///
 /// ```no_run
 /// # use bevy::prelude::*;
 /// # use bevy_coilover::prelude::*;
@@ -76,7 +79,7 @@ impl Plugin for CoiloverWorkbenchPlugin {
     fn build(&self, app: &mut App) {
         if !app.is_plugin_added::<EguiPlugin>() {
             app.add_plugins(EguiPlugin::default());
-            // Mouse and keys used in a panel must not reach the game behind it.
+            // Keys that are typed into a field must not reach the game behind it, nor a mouse that drags out of a panel.
             if let Some(mut settings) = app.world_mut().get_resource_mut::<EguiGlobalSettings>() {
                 settings.enable_absorb_bevy_input_system = true;
             }
@@ -84,12 +87,25 @@ impl Plugin for CoiloverWorkbenchPlugin {
         app.init_resource::<CoiloverWorkbench>()
             .init_resource::<Bench>()
             .init_resource::<handles::Handles>()
+            .init_resource::<pointer::Free>()
             .init_resource::<grab::Hand>()
             .add_systems(
                 PreUpdate,
                 toggle
                     .after(InputSystems)
                     .before(EguiPreUpdateSet::ProcessInput),
+            )
+            .add_systems(
+                PreUpdate,
+                scene::find_camera
+                    .run_if(is_open)
+                    .before(EguiPreUpdateSet::InitContexts),
+            )
+            .add_systems(
+                PreUpdate,
+                pointer::absorb
+                    .run_if(is_open)
+                    .after(EguiPreUpdateSet::ProcessInput),
             )
             .add_systems(
                 Update,

@@ -1,6 +1,10 @@
 //! The mouse in the scene: its position, and whether the panel uses it.
+//!
+//! egui draws the workbench around the middle of the window, in its background. It does not take the pointer for its own there
+//! before a widget is pressed. So the workbench itself knows which part of the window it covers.
 
 use bevy::ecs::system::SystemParam;
+use bevy::input::mouse::{MouseButtonInput, MouseWheel};
 use bevy::prelude::*;
 use bevy::window::PrimaryWindow;
 use bevy_egui::PrimaryEguiContext;
@@ -9,9 +13,38 @@ use bevy_egui::input::EguiWantsInput;
 /// Greatest movement of the pointer during a click, pixels.
 pub(super) const STILL: f32 = 4.0;
 
+/// The part of the window that the workbench leaves free, logical pixels. `None` before it is drawn.
+#[derive(Resource, Default, Debug)]
+pub(super) struct Free(pub Option<Rect>);
+
+/// Hides the mouse from the game while the pointer is over the workbench.
+pub(super) fn absorb(
+    free: Res<Free>,
+    windows: Query<&Window, With<PrimaryWindow>>,
+    mut buttons: ResMut<ButtonInput<MouseButton>>,
+    mut pressed: ResMut<Messages<MouseButtonInput>>,
+    mut turned: ResMut<Messages<MouseWheel>>,
+) {
+    let at = windows.iter().find_map(Window::cursor_position);
+    if free.covers(at) {
+        buttons.reset_all();
+        pressed.clear();
+        turned.clear();
+    }
+}
+
+impl Free {
+    /// Whether the workbench covers a position in the window.
+    fn covers(&self, at: Option<Vec2>) -> bool {
+        let covered = self.0.zip(at).map(|(free, at)| !free.contains(at));
+        covered.unwrap_or(false)
+    }
+}
+
 /// The pointer, and the camera of the workbench.
 #[derive(SystemParam)]
 pub(super) struct Pointer<'w, 's> {
+    free: Res<'w, Free>,
     buttons: Res<'w, ButtonInput<MouseButton>>,
     keys: Res<'w, ButtonInput<KeyCode>>,
     egui: Option<Res<'w, EguiWantsInput>>,
@@ -28,7 +61,7 @@ impl Pointer<'_, '_> {
     /// Whether the panel uses the pointer, so that clicks and drags do not affect the scene.
     pub fn is_taken(&self) -> bool {
         let egui = self.egui.as_ref();
-        egui.is_some_and(|egui| egui.wants_any_pointer_input())
+        self.free.covers(self.at()) || egui.is_some_and(|egui| egui.wants_any_pointer_input())
     }
 
     /// Returns the position if the left button was pressed over the scene in this frame.

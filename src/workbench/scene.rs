@@ -4,15 +4,17 @@ use super::bench::Bench;
 use super::grab::Hand;
 use super::handles::Handles;
 use super::model::snapshot::Snapshot;
-use super::pointer::{Pointer, STILL};
+use super::pointer::{Free, Pointer, STILL};
 use super::{CoiloverWorkbench, commands, is_open, view};
 use crate::input::parts::IsElement;
+use bevy::camera::RenderTarget;
 use bevy::gizmos::AppGizmoBuilder;
 use bevy::gizmos::config::{GizmoConfigGroup, GizmoConfigStore};
 use bevy::gizmos::gizmos::Gizmos;
 use bevy::prelude::*;
-use bevy_egui::egui::{Align2, Color32, FontId, LayerId, Ui, UiBuilder, pos2};
-use bevy_egui::{EguiContexts, PrimaryEguiContext};
+use bevy::window::WindowRef;
+use bevy_egui::egui::{Align2, Color32, FontId, LayerId, Pos2, Ui, UiBuilder, pos2};
+use bevy_egui::{EguiContext, EguiContexts, PrimaryEguiContext};
 
 /// Greatest distance from the pointer to an element, pixels, at which a click picks it.
 const NEAR: f32 = 12.0;
@@ -80,11 +82,36 @@ fn mark(
     }
 }
 
+/// Puts the panel on the uppermost camera that draws into the primary window, if the camera that had it is gone: egui chooses
+/// only the first camera of an app.
+pub(super) fn find_camera(
+    holders: Query<(), With<PrimaryEguiContext>>,
+    cameras: Query<(Entity, &Camera, &RenderTarget)>,
+    mut commands: Commands,
+) {
+    if !holders.is_empty() {
+        return;
+    }
+    let is_seen = |(_, camera, target): &(Entity, &Camera, &RenderTarget)| {
+        camera.is_active && matches!(target, RenderTarget::Window(WindowRef::Primary))
+    };
+    let uppermost = cameras
+        .iter()
+        .filter(is_seen)
+        .max_by_key(|(.., camera, _)| camera.order);
+    if let Some((entity, ..)) = uppermost {
+        commands
+            .entity(entity)
+            .insert((EguiContext::default(), PrimaryEguiContext));
+    }
+}
+
 /// Draws the panel, and the names of the ends next to their anchors.
 pub(super) fn show(
     mut contexts: EguiContexts,
     mut bench: ResMut<Bench>,
     mut workbench: ResMut<CoiloverWorkbench>,
+    mut free: ResMut<Free>,
     cameras: Query<(&Camera, &GlobalTransform), With<PrimaryEguiContext>>,
     mut looked: Local<bool>,
 ) {
@@ -98,12 +125,14 @@ pub(super) fn show(
         .layer_id(LayerId::background())
         .max_rect(context.viewport_rect());
     let mut ui = Ui::new(context.clone(), "coilover_workbench".into(), place);
+    // Users zoom egui with Ctrl and plus or minus: then its points are no logical pixels of the window.
+    let zoom = context.zoom_factor();
     if let (Some(subject), Some((camera, eye))) = (&bench.subject, cameras.iter().next()) {
         for (letter, end) in ["A", "B"].into_iter().zip(&subject.facts.ends) {
             let on_screen = end.at.and_then(|at| camera.world_to_viewport(eye, at).ok());
             if let Some(at) = on_screen {
                 let text = format!("{letter}: {}", end.name);
-                let at = pos2(at.x + 14.0, at.y);
+                let at = pos2(at.x / zoom + 14.0, at.y / zoom);
                 let font = FontId::proportional(13.0);
                 // A shadow, so that the text is readable on any background.
                 let shadow = at + bevy_egui::egui::vec2(1.0, 1.0);
@@ -119,7 +148,9 @@ pub(super) fn show(
             }
         }
     }
-    view::show(&mut ui, &mut bench);
+    let middle = view::show(&mut ui, &mut bench);
+    let corner = |at: Pos2| zoom * Vec2::new(at.x, at.y);
+    free.0 = Some(Rect::from_corners(corner(middle.min), corner(middle.max)));
     if workbench.selected != bench.selected {
         workbench.selected = bench.selected;
     }
@@ -163,7 +194,7 @@ pub(super) fn pick(
         .min_by(|a, b| a.1.total_cmp(&b.1));
     if let Some((entity, _)) = nearest {
         commands.queue(move |world: &mut World| {
-            world.resource_mut::<CoiloverWorkbench>().selected = Some(entity);
+            world.resource_mut::<Bench>().picked = Some(entity);
         });
     }
 }

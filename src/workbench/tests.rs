@@ -275,6 +275,21 @@ fn what_is_no_preset_is_told_when_it_is_pasted() {
     assert_eq!(person.lamp().stiffness, 80.0);
 }
 
+/// The camera of a menu, which is despawned when the level starts.
+#[test]
+fn it_opens_on_another_camera_when_the_first_one_is_gone() {
+    let mut person = Person::new();
+    person.look();
+    let eye = person.eye;
+    person.app.world_mut().despawn(eye);
+    person.look();
+    person.eye = person::spawn_eye(person.app.world_mut());
+    person.look();
+    person.key(KeyCode::F9);
+    person.look();
+    assert!(person.sees("Sort by"));
+}
+
 #[test]
 fn nothing_is_read_while_it_is_closed() {
     let mut person = Person::new();

@@ -47,7 +47,7 @@ pub(crate) struct Facts {
     pub is_disabled: bool,
     pub fault: Option<String>,
     pub ends: [End; 2],
-    /// Magnitude of gravity in the Rapier context of its bodies, m/s².
+    /// Magnitude of gravity on its bodies, m/s².
     pub gravity: f32,
     /// Cosine between gravity and the direction from the end that is not dynamic to the dynamic end, the load. It is
     /// 1 for a hanging load and -1 for a load that stands on the element. `None` if not exactly one end is dynamic.
@@ -73,6 +73,11 @@ impl Facts {
         let load = self.load();
         let linear = snapshot.spring_is_linear() && !self.custom[0];
         (linear && load.is_sound()).then_some(load)
+    }
+
+    /// Whether the damping of the element alone determines the damper's force.
+    pub fn damper_is_linear(&self, snapshot: &Snapshot) -> bool {
+        snapshot.damper_is_linear() && !self.custom[1]
     }
 
     /// Sets the stiffness that gives a sag, m, and the rest length with which the load stays where it rests.

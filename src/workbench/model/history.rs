@@ -10,6 +10,8 @@ const MOST: usize = 200;
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Edit {
     pub entity: Entity,
+    /// Title of the element, for messages.
+    pub title: String,
     pub what: &'static str,
     pub before: Snapshot,
     pub after: Snapshot,
@@ -70,10 +72,19 @@ impl History {
         [&self.done, &self.undone].map(|edits| edits.last().map(|edit| edit.what))
     }
 
-    /// Returns the numbers of an element before its first edit that is kept.
-    pub fn original(&self, entity: Entity) -> Option<&Snapshot> {
-        let mine = |edit: &&Edit| edit.entity == entity;
-        self.done.iter().find(mine).map(|edit| &edit.before)
+    /// Whether there is an edit of an element.
+    pub fn has(&self, entity: Entity) -> bool {
+        self.done.iter().any(|edit| edit.entity == entity)
+    }
+
+    /// Returns the numbers that an element would have without its edits. `now` are its present numbers. `None` if it has no
+    /// edits.
+    pub fn without(&self, entity: Entity, now: &Snapshot) -> Option<Snapshot> {
+        let mut out = now.clone();
+        for edit in self.done.iter().rev().filter(|edit| edit.entity == entity) {
+            out.carry(&edit.after, &edit.before);
+        }
+        self.has(entity).then_some(out)
     }
 }
 
@@ -91,6 +102,7 @@ mod tests {
     fn edit(before: f32, after: f32) -> Edit {
         Edit {
             entity: Entity::PLACEHOLDER,
+            title: String::new(),
             what: "stiffness",
             before: of(before),
             after: of(after),
@@ -104,7 +116,8 @@ mod tests {
         history.note(edit(2.0, 3.0));
         history.close();
         history.note(edit(3.0, 4.0));
-        assert_eq!(history.original(Entity::PLACEHOLDER), Some(&of(1.0)));
+        let original = history.without(Entity::PLACEHOLDER, &of(4.0));
+        assert_eq!(original, Some(of(1.0)));
         assert_eq!(history.undo(), Some(edit(3.0, 4.0)));
         assert_eq!(history.undo(), Some(edit(1.0, 3.0)));
         assert_eq!(history.undo(), None);
@@ -128,6 +141,8 @@ mod tests {
             ..edit(2.0, 3.0)
         });
         let mut now = preloaded(3.0);
+        let original = history.without(Entity::PLACEHOLDER, &now);
+        assert_eq!(original, Some(preloaded(1.0)));
         let undone = history.undo().expect("an edit");
         now.carry(&undone.after, &undone.before);
         assert_eq!(now, preloaded(1.0));

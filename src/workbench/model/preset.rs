@@ -187,6 +187,16 @@ impl<'de> Visitor<'de> for Preset<'_> {
         if !found {
             return Err(A::Error::custom("this preset has no spring or damper"));
         }
+        let name = out.part.name();
+        for (law, has_law, number) in [
+            ("SpringLaw", out.spring_law.is_some(), out.part.stiffness()),
+            ("DampingLaw", out.damping_law.is_some(), out.part.damping()),
+        ] {
+            if has_law && number.is_none() {
+                let wrong = format!("a {law} does not fit the element, which is a {name}");
+                return Err(A::Error::custom(wrong));
+            }
+        }
         // Anchors belong to the bodies more than to the spring. A preset without anchors leaves them as they are.
         out.anchors = out.anchors.or(self.snapshot.anchors);
         Ok(limits(out, NO_LIMIT, f32::INFINITY))

@@ -62,13 +62,13 @@ pub(crate) struct Record {
 
 impl Record {
     pub fn add(&mut self, sample: Sample) {
-        // If the time goes back, the scene has started again.
-        if self
+        // Time goes back with a saved state, and stands still in a pause of a game whose springs are in no fixed schedule.
+        while self
             .samples
             .back()
-            .is_some_and(|last| last.time > sample.time)
+            .is_some_and(|last| last.time >= sample.time)
         {
-            self.samples.clear();
+            self.samples.pop_back();
         }
         self.samples.push_back(sample);
         while self.samples.len() > MOST
@@ -135,23 +135,26 @@ impl Record {
             ]
         };
         let mut out = format!(
-            "time_s,{motion},stored_energy_J,dissipated_energy_J,work_J,omega_dt,{mass},microsteps\n"
+            "time_s,{motion},stored_energy_J,dissipated_power_W,dissipated_energy_J,work_J,omega_dt,{mass},microsteps,error_m,capped\n"
         );
         for Sample { time, readout } in &self.samples {
             // Writing to a string cannot fail.
             let _ = writeln!(
                 out,
-                "{time},{},{},{},{},{},{},{},{},{},{}",
+                "{time},{},{},{},{},{},{},{},{},{},{},{},{},{}",
                 readout.length,
                 readout.rate,
                 readout.spring_force,
                 readout.damper_force,
                 readout.stored_energy,
+                readout.dissipated_power,
                 readout.dissipated_energy,
                 readout.work,
                 readout.omega_dt,
                 readout.effective_mass,
                 readout.microsteps,
+                readout.error,
+                readout.capped,
             );
         }
         out
@@ -201,10 +204,26 @@ mod tests {
     }
 
     #[test]
-    fn time_that_goes_back_starts_again() {
+    fn time_that_goes_back_is_recorded_anew_from_there() {
         let mut record = record(100, 0.1);
+        let [first, last] = record.span().expect("samples");
+        record.add(Sample {
+            time: last - 0.25,
+            ..Sample::default()
+        });
+        assert_eq!(record.iter().count(), 98);
         record.add(Sample::default());
-        assert_eq!(record.iter().count(), 1);
+        assert_eq!((record.iter().count(), first), (1, 0.0));
+    }
+
+    #[test]
+    fn a_pause_adds_no_samples() {
+        let mut record = record(100, 0.1);
+        let last = record.iter().last().copied().expect("samples");
+        for _ in 0..1_000 {
+            record.add(last);
+        }
+        assert_eq!(record.iter().count(), 100);
     }
 
     #[test]
@@ -242,10 +261,10 @@ mod tests {
             csv.lines().next().map(String::from)
         };
         let linear = "time_s,length_m,rate_m_per_s,spring_force_N,damper_force_N,stored_energy_J,\
-                      dissipated_energy_J,work_J,omega_dt,effective_mass_kg,microsteps";
+                      dissipated_power_W,dissipated_energy_J,work_J,omega_dt,effective_mass_kg,microsteps,error_m,capped";
         assert_eq!(head(false).as_deref(), Some(linear));
         let torsion = "time_s,angle_rad,rate_rad_per_s,spring_moment_N_m,damper_moment_N_m,stored_energy_J,\
-                       dissipated_energy_J,work_J,omega_dt,effective_inertia_kg_m2,microsteps";
+                       dissipated_power_W,dissipated_energy_J,work_J,omega_dt,effective_inertia_kg_m2,microsteps,error_m,capped";
         assert_eq!(head(true).as_deref(), Some(torsion));
     }
 }

@@ -2,12 +2,14 @@
 
 use super::facts::{EndKind, Facts, Stepping};
 use super::snapshot::Snapshot;
+use crate::dynamics::poles::RESOLVED_PHASE;
 use crate::readout::SpringMethod;
 use crate::recommend::{error_per_second, recommend};
 
-/// Phase ω·dt per kick up to which the motion is followed closely, and beyond which it is not resolved, rad.
+/// Phase ω·dt per kick up to which the motion is followed closely, rad.
 const CLOSE: f32 = 1.0;
-const UNRESOLVED: f32 = 2.5;
+/// Phase ω·dt per kick beyond which the motion is not resolved, rad.
+const UNRESOLVED: f32 = RESOLVED_PHASE as f32;
 
 /// Tolerances for which `recommend` is asked, m per s.
 const TOLERANCES: [f32; 2] = [1e-3, 1e-5];
@@ -209,7 +211,7 @@ fn advice(now: &Snapshot, facts: &Facts) -> Vec<Sentence> {
     } else {
         let error = error_per_second(stiffness, damping, load.mass, dt, microsteps);
         let text = format!(
-            "With {microsteps} micro-step{} a step, swinging adds an error of at most about {} a second.",
+            "With {microsteps} micro-step{} a step, swinging adds an error of about {} a second.",
             if microsteps == 1 { "" } else { "s" },
             metres(error)
         );
@@ -300,10 +302,7 @@ pub(crate) mod tests {
         assert!(text.contains("Resolved: ω·dt is 0.37"), "{text}");
         assert!(text.contains("End A is fixed; end B moves."), "{text}");
         assert!(text.contains("Damping ratio 0.11"), "{text}");
-        assert!(
-            text.contains("adds an error of at most about 377.8 µm"),
-            "{text}"
-        );
+        assert!(text.contains("adds an error of about 377.8 µm"), "{text}");
         assert!(text.contains("recommend: 1 micro-step for 1 mm"), "{text}");
     }
 

@@ -4,6 +4,7 @@ use super::person::{EYE, Person, project};
 use crate::prelude::*;
 use crate::workbench::CoiloverWorkbench;
 use bevy::input::ButtonState;
+use bevy::input::mouse::MouseButtonInput;
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
 
@@ -224,13 +225,7 @@ fn nothing_is_pulled_below_the_panel_or_without_the_key() {
     person.run(3);
     assert_eq!(springs_of_a_hand(&mut person), 0);
     person.let_go();
-    // Pressed on the list of elements, which covers the scene.
-    let below = person.place("Lamp spring").expect("in the list");
     person.hold(KeyCode::ShiftLeft, ButtonState::Pressed);
-    person.press_at(below);
-    person.run(3);
-    assert_eq!(springs_of_a_hand(&mut person), 0);
-    person.let_go();
     // Without a key in the settings.
     let mut settings = person.app.world_mut().resource_mut::<CoiloverWorkbench>();
     settings.grab = None;
@@ -250,6 +245,101 @@ fn a_body_that_is_gone_is_let_go() {
     assert_eq!(springs_of_a_hand(&mut person), 1);
     person.app.world_mut().entity_mut(lamp).despawn();
     person.run(5);
+    assert_eq!(springs_of_a_hand(&mut person), 0);
+    person.let_go();
+}
+
+/// Spawns a hook, a body and a spring between them in the plane of the other springs. The body is seen at a place of the window.
+fn behind(person: &mut Person, at: Vec2) -> Entity {
+    // Pixels per metre, and the place of the origin in the window.
+    let origin = project(Vec3::ZERO, EYE);
+    let metre = project(Vec3::X, EYE).x - origin.x;
+    let by = (at - origin) / metre;
+    let place = Vec3::new(by.x, -by.y, 0.0);
+    assert!((project(place, EYE) - at).length() < 0.1);
+    let world = person.app.world_mut();
+    let hook = world.spawn(Transform::from_translation(place + Vec3::X));
+    let hook = hook.id();
+    let body = (
+        RigidBody::Dynamic,
+        AdditionalMassProperties::Mass(2.0),
+        GravityScale(0.0),
+        Transform::from_translation(place),
+    );
+    let body = world.spawn(body).id();
+    // Last in the list, so that the rows above it stay where they are.
+    let name = Name::new("Zither string");
+    world.spawn((name, SpringDamper::new(hook, body))).id()
+}
+
+/// What the game's own code sees of the mouse.
+#[derive(Resource, Default, Debug, PartialEq)]
+struct Game {
+    presses: u32,
+    messages: u32,
+}
+
+fn play(
+    buttons: Res<ButtonInput<MouseButton>>,
+    mut messages: MessageReader<MouseButtonInput>,
+    mut game: ResMut<Game>,
+) {
+    game.presses += u32::from(buttons.just_pressed(MouseButton::Left));
+    game.messages += messages.read().count() as u32;
+}
+
+/// Below the list's rows, on a row, and in the bar right of the buttons there is a body behind the panel.
+#[test]
+fn a_press_on_the_panel_reaches_neither_the_scene_nor_the_game() {
+    let mut person = Person::at_the_bench();
+    person.app.init_resource::<Game>().add_systems(Update, play);
+    let row = person.place("Lamp spring").expect("in the list");
+    for at in [
+        row + 60.0 * Vec2::X,
+        row + 300.0 * Vec2::Y,
+        Vec2::new(620.0, 12.0),
+    ] {
+        let element = behind(&mut person, at);
+        person.run(20);
+        let before = person.app.world().resource::<CoiloverWorkbench>().selected;
+        person.hold(KeyCode::ShiftLeft, ButtonState::Pressed);
+        person.press_at(at);
+        person.run(3);
+        assert_eq!(springs_of_a_hand(&mut person), 0, "{at}");
+        person.let_go();
+        person.hold(KeyCode::ShiftLeft, ButtonState::Released);
+        person.click_at(at + 8.0 * Vec2::X);
+        let after = person.app.world().resource::<CoiloverWorkbench>().selected;
+        assert!(
+            after == before || after == Some(person.lamp),
+            "{at}: {after:?}"
+        );
+        assert_ne!(after, Some(element), "{at}");
+    }
+    assert_eq!(*person.app.world().resource::<Game>(), Game::default());
+    // In the scene, it sees them.
+    person.click_at(project(Vec3::new(0.5, 0.2, 0.0), EYE));
+    let seen = person.app.world().resource::<Game>();
+    assert_eq!(
+        *seen,
+        Game {
+            presses: 1,
+            messages: 2
+        }
+    );
+}
+
+#[test]
+fn a_drag_that_reaches_the_panel_ends_there() {
+    let mut person = Person::at_the_bench();
+    let lamp = body(&person, person.lamp);
+    person.hold(KeyCode::ShiftLeft, ButtonState::Pressed);
+    person.press_at(project(place(&person, lamp), EYE));
+    person.run(3);
+    assert_eq!(springs_of_a_hand(&mut person), 1);
+    let list = person.place("Lamp spring").expect("in the list");
+    person.move_to(list);
+    person.run(3);
     assert_eq!(springs_of_a_hand(&mut person), 0);
     person.let_go();
 }

@@ -24,6 +24,8 @@ struct Seen(Vec<(String, egui::Rect)>);
 pub struct Person {
     pub app: App,
     window: Entity,
+    /// The camera.
+    pub eye: Entity,
     pub lamp: Entity,
     pub bell: Entity,
     pointer: Vec2,
@@ -69,6 +71,24 @@ pub fn project(at: Vec3, eye: Vec3) -> Vec2 {
     Vec2::new(0.5 + 0.5 * clip.x, 0.5 - 0.5 * clip.y) * SIZE.as_vec2()
 }
 
+/// Spawns a camera.
+pub fn spawn_eye(world: &mut World) -> Entity {
+    let projection = PerspectiveProjection {
+        aspect_ratio: SIZE.x as f32 / SIZE.y as f32,
+        ..default()
+    };
+    let projection = Projection::Perspective(projection);
+    let mut camera = Camera::default();
+    camera.computed.clip_from_view = projection.get_clip_from_view();
+    camera.computed.target_info = Some(RenderTargetInfo {
+        physical_size: SIZE,
+        scale_factor: 1.0,
+    });
+    let place = Transform::from_translation(EYE);
+    let eye = (Camera3d::default(), camera, projection, place);
+    world.spawn(eye).id()
+}
+
 impl Person {
     /// Starts a game with a lamp and a bell on springs. The workbench is closed.
     pub fn new() -> Self {
@@ -103,23 +123,7 @@ impl Person {
         let tick = app.world().resource::<Time<Fixed>>().timestep();
         app.insert_resource(TimeUpdateStrategy::ManualDuration(tick));
 
-        let projection = PerspectiveProjection {
-            aspect_ratio: SIZE.x as f32 / SIZE.y as f32,
-            ..default()
-        };
-        let projection = Projection::Perspective(projection);
-        let mut camera = Camera::default();
-        camera.computed.clip_from_view = projection.get_clip_from_view();
-        camera.computed.target_info = Some(RenderTargetInfo {
-            physical_size: SIZE,
-            scale_factor: 1.0,
-        });
-        app.world_mut().spawn((
-            Camera3d::default(),
-            camera,
-            projection,
-            Transform::from_translation(EYE),
-        ));
+        let eye = spawn_eye(app.world_mut());
         let mut windows = app
             .world_mut()
             .query_filtered::<Entity, With<PrimaryWindow>>();
@@ -129,6 +133,7 @@ impl Person {
         let mut person = Self {
             app,
             window,
+            eye,
             lamp: window,
             bell: window,
             pointer: Vec2::ZERO,
@@ -333,6 +338,7 @@ impl Person {
         let logical = match key {
             KeyCode::F9 => Key::F9,
             KeyCode::Enter => Key::Enter,
+            KeyCode::ArrowDown => Key::ArrowDown,
             other => panic!("no such key: {other:?}"),
         };
         self.press(key, logical, None);

@@ -230,3 +230,21 @@ fn the_slope_of_an_axis_of_a_is_that_of_the_body_that_a_belongs_to() {
     let is_one = slope.is_some_and(|slope| (slope - 1.0).abs() < 1e-5);
     assert!(is_one, "{slope:?}");
 }
+
+#[test]
+fn the_sag_is_that_of_a_body_with_its_gravity_scale() {
+    let mut person = Person::at_the_bench();
+    person.click("Lamp spring");
+    let body = person.lamp().body_b;
+    // 2 kg at 9.81 m/s² on 80 N/m, and twice that.
+    for (scale, sag) in [(1.0, "0.24525 m"), (2.0, "0.4905 m")] {
+        let scale = GravityScale(scale);
+        person.app.world_mut().entity_mut(body).insert(scale);
+        person.run(20);
+        assert!(person.sees(sag), "{:?}", person.texts());
+    }
+    let none = GravityScale(0.0);
+    person.app.world_mut().entity_mut(body).insert(none);
+    person.run(20);
+    assert!(!person.sees("sag"));
+}

@@ -40,7 +40,9 @@ pub(super) fn show(ui: &mut Ui, draft: &mut Snapshot, facts: &Facts) {
             line(ui, "tension", value, force, Drag::Even(0.5))
         });
     }
-    let most = MaxForce(1_000.0);
+    // A new limit must not drop the load.
+    let strong = 1_000.0_f32.max(2.0 * facts.readout.force().abs());
+    let most = MaxForce(strong);
     if optional(ui, "force limit", &mut draft.max_force, most)
         && let Some(MaxForce(value)) = &mut draft.max_force
     {
@@ -68,7 +70,7 @@ pub(super) fn show(ui: &mut Ui, draft: &mut Snapshot, facts: &Facts) {
             line(ui, "stop damping", damping, units.damping, Drag::Share);
         });
     }
-    let breaks = Breakable::at_force(1_000.0);
+    let breaks = Breakable::at_force(strong);
     if optional(ui, "breaks", &mut draft.breakable, breaks)
         && let Some(limit) = &mut draft.breakable
     {

@@ -18,7 +18,9 @@ pub(super) fn show(ui: &mut Ui, bench: &mut Bench) {
         ui.label("Choose an element in the list, or click it in the scene.");
         return;
     };
-    ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+    // Fields of two elements must not be the same to egui: it keeps what is typed by field.
+    let fields = ScrollArea::vertical().id_salt(subject.entity);
+    fields.auto_shrink(false).show(ui, |ui| {
         ui.add_space(2.0);
         ui.label(RichText::new(&subject.title).heading());
         ends(ui, &subject.now, &subject.facts);
@@ -80,8 +82,9 @@ fn ends(ui: &mut Ui, draft: &Snapshot, facts: &Facts) {
 fn numbers(ui: &mut Ui, draft: &mut Snapshot, facts: &Facts) {
     let torsion = draft.part.is_torsion();
     let units = draft.part.units();
-    // A law with coefficients of its own does not use the element's.
+    // A law with coefficients of its own does not use the element's, nor does a function of the game.
     let used = match draft.spring_law {
+        _ if facts.custom[0] => None,
         None | Some(SpringLaw::Linear) => Some(units.stiffness),
         Some(SpringLaw::Cubic) => Some(units.stiffness_cubed),
         Some(SpringLaw::Polynomial { .. } | SpringLaw::Table(_)) => None,
@@ -89,7 +92,7 @@ fn numbers(ui: &mut Ui, draft: &mut Snapshot, facts: &Facts) {
     if let (Some(value), Some(unit)) = (draft.part.stiffness_mut(), used) {
         line(ui, "stiffness", value, unit, Drag::Share);
     }
-    let linear = draft.damper_is_linear();
+    let linear = facts.damper_is_linear(draft);
     if let Some(value) = draft.part.damping_mut().filter(|_| linear) {
         line(ui, "damping", value, units.damping, Drag::Share);
     }
@@ -141,7 +144,8 @@ fn figures(ui: &mut Ui, draft: &mut Snapshot, facts: &Facts) {
         return;
     }
     let (torsion, units) = (draft.part.is_torsion(), draft.part.units());
-    let damping = draft.part.damping().filter(|_| draft.damper_is_linear());
+    let damping = draft.part.damping();
+    let damping = damping.filter(|_| facts.damper_is_linear(draft));
     let mut frequency = load.frequency(stiffness);
     ui.label("frequency");
     if is_changed(ui, &mut frequency, " Hz", Drag::Share) && frequency > 0.0 {
@@ -219,10 +223,10 @@ fn exports(ui: &mut Ui, bench: &mut Bench, title: &str, draft: &Snapshot) {
     ui.horizontal(|ui| {
         let edited = bench
             .selected
-            .is_some_and(|entity| bench.history.original(entity).is_some());
+            .is_some_and(|entity| bench.history.has(entity));
         let reset = ui.add_enabled(edited, Button::new("Reset"));
         if reset
-            .on_hover_text("As it was before it was first edited")
+            .on_hover_text("Takes back all edits of this element")
             .clicked()
         {
             bench.reset();

@@ -18,6 +18,9 @@ pub(super) enum Drag {
 /// Change per pixel as a fraction of the number, for [`Drag::Share`].
 const SHARE: f64 = 0.01;
 
+/// Least change per pixel for [`Drag::Share`], so that a drag also leaves zero.
+const SLOWEST: f64 = 1e-4;
+
 /// Formats a number with six significant digits, or more if it has more before the point, without trailing zeros.
 /// Very large and very small numbers have an exponent.
 pub(crate) fn significant(value: f64) -> String {
@@ -51,8 +54,13 @@ pub(super) fn brief(value: f64) -> String {
 /// Parses a typed number, with comma or point, and with or without a unit.
 fn parse(text: &str) -> Option<f64> {
     let text = text.trim().replace(',', ".");
-    if text.eq_ignore_ascii_case("inf") {
-        return Some(f64::INFINITY);
+    let (sign, size) = match text.strip_prefix('-') {
+        Some(size) => (-1.0, size),
+        None => (1.0, &*text),
+    };
+    let word = size.split_whitespace().next().unwrap_or_default();
+    if word.eq_ignore_ascii_case("inf") {
+        return Some(sign * f64::INFINITY);
     }
     let end = text.find(|c: char| !(c.is_ascii_digit() || "+-.eE".contains(c)));
     text[..end.unwrap_or(text.len())].trim().parse().ok()
@@ -60,13 +68,13 @@ fn parse(text: &str) -> Option<f64> {
 
 /// Shows a number that can be dragged and typed.
 pub(super) fn number(ui: &mut Ui, value: &mut f32, unit: &str, drag: Drag) -> Response {
-    let size = f64::from(value.abs());
+    // With infinity, an arrow key would make NaN.
+    let size = Some(f64::from(value.abs())).filter(|size| size.is_finite());
     let (speed, least) = match drag {
-        Drag::Share => ((SHARE * size).max(1e-4), 0.0),
-        Drag::Even(speed) => (speed, -1e12),
+        Drag::Share => ((SHARE * size.unwrap_or(0.0)).max(SLOWEST), 0.0),
+        Drag::Even(speed) => (speed, f32::NEG_INFINITY),
         Drag::Positive(speed) => (speed, 0.0),
     };
-    let least = least as f32;
     // Showing a number must not change it, so a number outside the range is not clamped.
     let range = least..=f32::INFINITY;
     // NaN differs from itself, and egui discards typed text if the number differs from that of the last frame. So a
@@ -84,7 +92,8 @@ pub(super) fn number(ui: &mut Ui, value: &mut f32, unit: &str, drag: Drag) -> Re
     };
     let get_set = move |new: Option<f64>| {
         if let Some(new) = new {
-            *value = new as f32;
+            // The arrow keys go below the range.
+            *value = (new as f32).max(least);
         }
         if value.is_nan() {
             0.0
@@ -106,8 +115,21 @@ pub(super) fn number(ui: &mut Ui, value: &mut f32, unit: &str, drag: Drag) -> Re
 
 /// Shows a number from which other numbers are computed. Returns whether it has changed. The egui response cannot be
 /// used for that: it also reports typed letters that are not accepted yet. Numbers recomputed from an unchanged
-/// number would differ by rounding, and a field whose number has changed forgets the typed text.
+/// number would differ by rounding.
+///
+/// A field whose number has changed forgets the typed text. So the number stands still while the field is in use, and in the
+/// pass after that, in which egui may read the text.
 pub(super) fn is_changed(ui: &mut Ui, value: &mut f32, unit: &str, drag: Drag) -> bool {
+    let id = ui.next_auto_id();
+    let (key, typing) = (id.with("held"), ui.memory(|memory| memory.has_focus(id)));
+    *value = ui.data_mut(|data| match data.get_temp(key) {
+        Some(held) => held,
+        None if typing => *data.get_temp_mut_or(key, *value),
+        None => *value,
+    });
+    if !typing {
+        ui.data_mut(|data| data.remove::<f32>(key));
+    }
     let before = *value;
     number(ui, value, unit, drag);
     !is_like(&*value, &before)
@@ -161,6 +183,7 @@ mod tests {
         assert_eq!(parse(" 80 N/m"), Some(80.0));
         assert_eq!(parse("1e5"), Some(1e5));
         assert_eq!(parse("inf"), Some(f64::INFINITY));
+        assert_eq!(parse("-Inf m"), Some(f64::NEG_INFINITY));
         assert_eq!(parse("much"), None);
         assert_eq!(parse(""), None);
     }

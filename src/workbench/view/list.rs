@@ -3,6 +3,7 @@
 use super::field::brief;
 use crate::workbench::bench::Bench;
 use crate::workbench::model::rows::{Order, Row};
+use bevy::prelude::Entity;
 use bevy_egui::egui::text::{LayoutJob, TextWrapping};
 use bevy_egui::egui::{
     Align2, Color32, Rect, ScrollArea, Sense, TextEdit, TextStyle, Ui, WidgetInfo, WidgetType,
@@ -12,7 +13,8 @@ use bevy_egui::egui::{
 /// Width of a column of numbers, logical pixels.
 const NUMBER: f32 = 58.0;
 
-pub(super) fn show(ui: &mut Ui, bench: &mut Bench) {
+/// Draws the list. Returns the element that was clicked.
+pub(super) fn show(ui: &mut Ui, bench: &mut Bench) -> Option<Entity> {
     ui.add_space(2.0);
     let rows = &mut bench.rows;
     let hint = format!("Search {} elements", rows.total());
@@ -37,7 +39,7 @@ pub(super) fn show(ui: &mut Ui, bench: &mut Bench) {
     let height = ui.text_style_height(&TextStyle::Body) + 2.0;
     let (place, _) = ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::hover());
     let weak = ui.visuals().weak_text_color();
-    let titles = ["force, N", "ω·dt", "energy, J"].map(String::from);
+    let titles = ["force", "ω·dt", "energy, J"].map(String::from);
     columns(ui, place, "name", titles, weak);
     ui.separator();
     let (mut chosen, selected, rows) = (None, bench.selected, &bench.rows);
@@ -50,9 +52,7 @@ pub(super) fn show(ui: &mut Ui, bench: &mut Bench) {
                 }
             }
         });
-    if chosen.is_some() {
-        bench.select(chosen);
-    }
+    chosen
 }
 
 /// Shows one row of the list, and returns whether it was clicked. The row is a single widget with painted texts. A

@@ -10,54 +10,74 @@ mod plots;
 use super::bench::{Ask, Bench};
 use super::model::facts::Subject;
 use bevy::input::keyboard::KeyCode;
-use bevy_egui::egui::{self, Panel, RichText, Ui};
+use bevy_egui::egui::{self, Panel, Rect, RichText, Ui};
 
 pub(crate) use field::significant;
 
 /// Speeds of the clock to choose from, relative to real time.
 const SPEEDS: [f32; 7] = [1.0 / 32.0, 0.0625, 0.125, 0.25, 0.5, 1.0, 2.0];
 
-/// Draws the whole workbench, around the middle of the window.
-pub(crate) fn show(ui: &mut Ui, bench: &mut Bench) {
-    Panel::top("coilover_workbench_bar").show(ui, |ui| bar(ui, bench));
+/// Draws the whole workbench, around the middle of the window. Returns the rectangle that it leaves free.
+///
+/// Drawing a field carries out what was typed into it before the user clicked elsewhere. So undo, redo and a new choice wait
+/// until all fields are drawn.
+pub(crate) fn show(ui: &mut Ui, bench: &mut Bench) -> Rect {
+    let mut step = None;
+    Panel::top("coilover_workbench_bar").show(ui, |ui| step = bar(ui, bench));
     Panel::bottom("coilover_workbench_plots")
         .default_size(230.0)
         .size_range(140.0..=500.0)
         .resizable(true)
         .show(ui, |ui| plots::show(ui, bench));
+    let mut chosen = None;
     Panel::left("coilover_workbench_list")
         .default_size(285.0)
         .resizable(true)
-        .show(ui, |ui| list::show(ui, bench));
+        .show(ui, |ui| chosen = list::show(ui, bench));
     Panel::right("coilover_workbench_element")
         .default_size(345.0)
         .resizable(true)
         .show(ui, |ui| element::show(ui, bench));
-    shortcuts(ui, bench);
-    // Without a pressed button or a focused field, the edit in progress has ended.
-    let at_work = ui.input(|input| input.pointer.any_down())
-        || ui.memory(|memory| memory.focused().is_some());
-    if !at_work {
+    match step.or_else(|| shortcut(ui)) {
+        Some(Step::Back) => bench.undo(),
+        Some(Step::Again) => bench.redo(),
+        None => {}
+    }
+    if let Some(entity) = chosen.or(bench.picked.take()) {
+        bench.select(Some(entity));
+    }
+    // A drag changes its number in each frame. A typed number changes once.
+    if !ui.input(|input| input.pointer.any_down()) {
         bench.history.close();
     }
+    ui.available_rect_before_wrap()
 }
 
-fn shortcuts(ui: &Ui, bench: &mut Bench) {
+/// A step in the history.
+#[derive(Clone, Copy, Debug)]
+enum Step {
+    Back,
+    Again,
+}
+
+/// Returns the step whose keys were pressed.
+fn shortcut(ui: &Ui) -> Option<Step> {
     if ui.ctx().egui_wants_keyboard_input() {
-        return;
+        return None;
     }
     use egui::{Key, KeyboardShortcut, Modifiers};
     let again = KeyboardShortcut::new(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
     let back = KeyboardShortcut::new(Modifiers::COMMAND, Key::Z);
     if ui.input_mut(|input| input.consume_shortcut(&again)) {
-        bench.redo();
-    } else if ui.input_mut(|input| input.consume_shortcut(&back)) {
-        bench.undo();
+        return Some(Step::Again);
     }
+    let back = ui.input_mut(|input| input.consume_shortcut(&back));
+    back.then_some(Step::Back)
 }
 
-/// Draws the bar at the top: clock, undo and messages.
-fn bar(ui: &mut Ui, bench: &mut Bench) {
+/// Draws the bar at the top: clock, undo and messages. Returns the step that was clicked.
+fn bar(ui: &mut Ui, bench: &mut Bench) -> Option<Step> {
+    let mut clicked = None;
     ui.horizontal(|ui| {
         ui.label(RichText::new("Springs").strong());
         ui.separator();
@@ -66,7 +86,10 @@ fn bar(ui: &mut Ui, bench: &mut Bench) {
         if ui.button(pause).clicked() {
             bench.asks.push(Ask::Pause(!paused));
         }
-        if ui.button("Step").on_hover_text("One tick").clicked() {
+        let step = ui.add_enabled(bench.clock.steps, egui::Button::new("Step"));
+        let step = step.on_hover_text("One tick");
+        let step = step.on_disabled_hover_text("The springs are not in a fixed schedule");
+        if step.clicked() {
             bench.asks.push(Ask::Step);
         }
         let speed = bench.clock.speed;
@@ -90,10 +113,10 @@ fn bar(ui: &mut Ui, bench: &mut Bench) {
             button.on_hover_text(what.unwrap_or_default()).clicked()
         };
         if button(ui, "Undo", undo) {
-            bench.undo();
+            clicked = Some(Step::Back);
         }
         if button(ui, "Redo", redo) {
-            bench.redo();
+            clicked = Some(Step::Again);
         }
         ui.separator();
         if let Some(message) = &bench.message {
@@ -103,6 +126,7 @@ fn bar(ui: &mut Ui, bench: &mut Bench) {
         let right = egui::Layout::right_to_left(egui::Align::Center);
         ui.with_layout(right, |ui| ui.add(hint));
     });
+    clicked
 }
 
 /// Returns a hint about what the mouse does in the scene.
