@@ -113,7 +113,7 @@ fn is_same(one: &Handle<Mesh>, other: &Handle<Mesh>) -> bool {
 }
 
 /// Transform of a part that is not drawn.
-fn nothing() -> GlobalTransform {
+pub(super) fn nothing() -> GlobalTransform {
     GlobalTransform::from_scale(Vec3::ZERO)
 }
 

@@ -185,13 +185,21 @@ mod tests {
                     Part::Bump,
                     Part::SeatA,
                     Part::SeatB,
+                    Part::EyeA,
+                    Part::EyeB,
                     Part::Custom(1.0),
                 ] {
                     let (at, scale) = layout.lay(part, length);
                     assert!(at.is_finite() && scale.is_finite(), "{part:?} at {length}");
+                    let is_there = match part {
+                        Part::Coil | Part::SeatA | Part::SeatB => coil.is_some(),
+                        Part::EyeA | Part::EyeB => telescope.eyes,
+                        _ => true,
+                    };
+                    let least = scale.min_element();
                     assert!(
-                        scale.min_element() > 0.0 || coil.is_none(),
-                        "{part:?} at {length}"
+                        least > 0.0 || (!is_there && least >= 0.0),
+                        "{part:?} at {length}: {scale}"
                     );
                 }
             }

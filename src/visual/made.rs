@@ -8,8 +8,10 @@ use bevy::ecs::system::SystemParam;
 use bevy::prelude::*;
 
 /// Marks a child that the crate made. A child that users bring along, such as a [`SpringSkin`](super::SpringSkin), does
-/// not have it.
-#[derive(Component, Clone, Copy, Debug, Default)]
+/// not have it. It is reflected, so that children which a saved world brings back are known.
+#[derive(Component, Reflect, Clone, Copy, Debug, Default)]
+#[type_path = "bevy_coilover"]
+#[reflect(Component, Default, Debug, Clone)]
 pub(super) struct Made;
 
 /// Makes children of elements and removes them. It handles the children of one kind, or all of them with [`Made`] as
@@ -25,10 +27,23 @@ pub(super) struct Maker<'w, 's, Kind: Component> {
 impl<Kind: Component> Maker<'_, '_, Kind> {
     /// Spawns a child of an element.
     pub fn make(&mut self, element: Entity, kind: Kind, looks: impl Bundle) {
-        let mut child = self.commands.spawn((Made, kind, looks, ChildOf(element)));
-        if let Ok(layers) = self.layers.get(element) {
-            child.insert(layers.clone());
-        }
+        let layers = self.layers.get(element).ok().cloned();
+        self.commands.queue(move |world: &mut World| {
+            // The element may be despawned in the same frame.
+            if world.get_entity(element).is_err() {
+                return;
+            }
+            let mut child = world.spawn((Made, kind, looks, ChildOf(element)));
+            if let Some(layers) = layers {
+                child.insert(layers);
+            }
+        });
+    }
+
+    /// Whether an element has made children.
+    pub fn has(&self, element: Entity) -> bool {
+        let children = self.children.get(element).into_iter().flatten();
+        children.into_iter().any(|child| self.made.contains(*child))
     }
 
     /// Despawns the made children of an element.

@@ -36,6 +36,7 @@ pub use skin::SpringSkin;
 pub use telescope::Telescope;
 pub use torsion_coil::TorsionCoil;
 
+use crate::plugin::CoiloverSystems;
 use bevy::asset::{AssetEventSystems, AssetServer, Assets};
 use bevy::camera::visibility::VisibilitySystems;
 use bevy::mesh::Mesh;
@@ -70,6 +71,7 @@ impl Plugin for CoiloverVisualPlugin {
             .register_type::<SpringGizmos>()
             .register_type::<Helix>()
             .register_type::<RoundWire>()
+            .register_type::<made::Made>()
             .init_resource::<shapes::Shapes>()
             .init_resource::<twist::Spirals>()
             .insert_resource(IsDrawn)
@@ -79,6 +81,8 @@ impl Plugin for CoiloverVisualPlugin {
                 CoiloverVisualSystems
                     // Only after this, the ends are where they will be drawn, interpolation included.
                     .after(TransformSystems::Propagate)
+                    // If physics runs in the same schedule, elements may break there.
+                    .after(CoiloverSystems::Readout)
                     .after(VisibilitySystems::UpdateFrusta)
                     .before(VisibilitySystems::VisibilityPropagate)
                     .before(VisibilitySystems::CalculateBounds)
@@ -89,6 +93,7 @@ impl Plugin for CoiloverVisualPlugin {
             .add_systems(
                 PostUpdate,
                 (
+                    parts::drop_loaded,
                     parts::take_skins,
                     parts::hide_disabled,
                     parts::build,

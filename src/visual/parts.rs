@@ -9,7 +9,7 @@ use super::round_wire::RoundWireMaterial;
 use super::shapes::{CoilMeshes, Finish, Shapes};
 use super::skin::SpringSkin;
 use super::telescope::Telescope;
-use super::twist::Twist;
+use super::twist::{Twist, Winding};
 use crate::input::strays::Strays;
 use bevy::asset::{Assets, Handle};
 use bevy::camera::visibility::RenderLayers;
@@ -34,6 +34,35 @@ pub(super) struct Workshop<'w, 's> {
     meshes: ResMut<'w, Assets<Mesh>>,
     materials: ResMut<'w, Assets<StandardMaterial>>,
     wires: ResMut<'w, Assets<RoundWireMaterial>>,
+    children: Query<'w, 's, &'static Children>,
+    painted: Query<'w, 's, (&'static Part, &'static mut MeshMaterial3d<StandardMaterial>)>,
+    wired: Query<'w, 's, &'static mut MeshMaterial3d<RoundWireMaterial>>,
+}
+
+/// The looks for which an element's parts were made, with sizes in metres.
+#[derive(Component, Clone, Copy, Debug, PartialEq)]
+// A copy of the element makes its own parts.
+#[component(clone_behavior = Ignore)]
+pub(super) struct Worn {
+    coil: Option<Coil>,
+    telescope: Option<Telescope>,
+    /// Whether there are parts: not for looks that cannot be drawn.
+    has_parts: bool,
+}
+
+impl Worn {
+    /// Whether it differs from other looks in colours at most, and no parts are lost.
+    fn is_shaped_as(&self, other: &Self) -> bool {
+        let same_coil = match (self.coil, other.coil) {
+            (Some(coil), Some(other)) => coil.with_color(other.color) == other,
+            (coil, other) => coil.is_none() && other.is_none(),
+        };
+        let same_telescope = match (self.telescope, other.telescope) {
+            (Some(telescope), Some(other)) => telescope.with_color(other.color) == other,
+            (telescope, other) => telescope.is_none() && other.is_none(),
+        };
+        same_coil && same_telescope && self.has_parts == other.has_parts
+    }
 }
 
 pub(super) const STEEL: Color = Color::srgb(0.78, 0.79, 0.82);
@@ -52,6 +81,28 @@ impl Workshop<'_, '_> {
         let material = self.shapes.paint(paint.0, paint.1, &mut self.materials);
         let looks = (Mesh3d(mesh), MeshMaterial3d(material));
         self.maker.make(element, part, looks);
+    }
+
+    /// Gives other colours to the parts of an element.
+    fn paint(&mut self, element: Entity, looks: &Worn) {
+        let wire = looks
+            .coil
+            .map(|coil| self.shapes.wire(&coil, &mut self.wires));
+        let enamel = looks.telescope.map(|telescope| {
+            let color = telescope.color;
+            self.shapes
+                .paint(color, Finish::Enamel, &mut self.materials)
+        });
+        for child in self.children.get(element).into_iter().flatten() {
+            if let (Some(wire), Ok(mut of)) = (&wire, self.wired.get_mut(*child)) {
+                of.0 = wire.clone();
+            }
+            if let (Some(enamel), Ok((Part::Tube | Part::Collar | Part::EyeA, mut of))) =
+                (&enamel, self.painted.get_mut(*child))
+            {
+                of.0 = enamel.clone();
+            }
+        }
     }
 
     fn telescope(&mut self, element: Entity, telescope: &Telescope, with_seats: bool) {
@@ -77,14 +128,14 @@ impl Workshop<'_, '_> {
 }
 
 /// Drops looks that cannot be drawn, and logs why.
-fn sound<'a, L>(
+fn sound<L>(
     element: Entity,
     name: &str,
-    looks: Option<&'a L>,
+    looks: Option<L>,
     check: impl Fn(&L) -> Result<(), String>,
-) -> Option<&'a L> {
+) -> Option<L> {
     let looks = looks?;
-    match check(looks) {
+    match check(&looks) {
         Ok(()) => Some(looks),
         Err(wrong) => {
             log::warn!("{element}: {name}: {wrong}; it is not drawn until that is mended");
@@ -93,17 +144,24 @@ fn sound<'a, L>(
     }
 }
 
-/// Spawns, replaces and removes the parts of elements.
+/// Spawns, paints, replaces and removes the parts of elements.
 pub(super) fn build(
     changed_coils: Query<Entity, Changed<Coil>>,
     changed_telescopes: Query<Entity, Changed<Telescope>>,
     mut no_coil: RemovedComponents<Coil>,
     mut no_telescope: RemovedComponents<Telescope>,
     mut enabled: RemovedComponents<Disabled>,
-    mut looks: Query<(Line, Option<&Coil>, Option<&Telescope>, &mut Placement)>,
+    mut looks: Query<(
+        Line,
+        Option<&Coil>,
+        Option<&Telescope>,
+        Option<&Worn>,
+        &mut Placement,
+    )>,
     lines: Lines,
     mut waiting: Local<EntityHashSet>,
     mut workshop: Workshop,
+    mut commands: Commands,
 ) {
     // One query after the other: a single query for both takes twice as long.
     for element in &changed_coils {
@@ -117,7 +175,7 @@ pub(super) fn build(
     // Its looks may have changed while it was disabled.
     waiting.extend(enabled.read().filter(|element| looks.contains(*element)));
     waiting.retain(|&element| {
-        let Ok((line, coil, telescope, mut placement)) = looks.get_mut(element) else {
+        let Ok((line, coil, telescope, worn, mut placement)) = looks.get_mut(element) else {
             // Despawned, and its children with it.
             return false;
         };
@@ -131,24 +189,39 @@ pub(super) fn build(
         let first = if bare {
             Some(0.0)
         } else {
-            length.map(|length| placement.first(length))
+            let known = length.map(|length| placement.first(length));
+            known.or(placement.known_first())
         };
         let Some(first) = first else {
             return true;
         };
+        let mut looks = Worn {
+            coil: coil.map(|c| c.at(first)),
+            telescope: telescope.map(|t| t.at(first)),
+            has_parts: workshop.maker.has(element),
+        };
+        // A game may write the looks in every frame, above all their colours.
+        if let Some(worn) = worn.filter(|worn| worn.is_shaped_as(&looks)) {
+            if *worn != looks {
+                workshop.paint(element, &looks);
+                commands.entity(element).try_insert(looks);
+            }
+            return false;
+        }
         workshop.maker.clear(element);
-        let (coil, telescope) = (coil.map(|c| c.at(first)), telescope.map(|t| t.at(first)));
-        let coil = sound(element, "Coil", coil.as_ref(), |c| {
+        let coil = sound(element, "Coil", looks.coil, |c| {
             c.helix(1.0).check().map_err(|e| e.to_string())
         });
-        let telescope = sound(element, "Telescope", telescope.as_ref(), Telescope::check);
-        placement.dress(Layout::new(coil, telescope, first));
-        if let Some(coil) = coil {
+        let telescope = sound(element, "Telescope", looks.telescope, Telescope::check);
+        placement.dress(Layout::new(coil.as_ref(), telescope.as_ref(), first));
+        if let Some(coil) = &coil {
             workshop.coil(element, coil);
         }
-        if let Some(telescope) = telescope {
+        if let Some(telescope) = &telescope {
             workshop.telescope(element, telescope, coil.is_some());
         }
+        looks.has_parts = coil.is_some() || telescope.is_some();
+        commands.entity(element).try_insert(looks);
         false
     });
 }
@@ -160,6 +233,16 @@ pub(super) fn hide_disabled(
 ) {
     for element in &disabled {
         maker.clear(element);
+    }
+}
+
+/// Removes parts that came back with a saved world. They have lost what is not reflected, and their element makes new ones.
+pub(super) fn drop_loaded(
+    loaded: Query<Entity, (Added<Made>, Without<Part>, Without<Winding>)>,
+    mut commands: Commands,
+) {
+    for part in &loaded {
+        commands.entity(part).try_despawn();
     }
 }
 
@@ -219,16 +302,22 @@ pub(super) fn take_skins(
         if let Some(strays) = &mut strays {
             strays.notice_skin(entity);
         }
-        commands.entity(entity).insert(Part::Custom(skin.length));
+        // The element may be despawned in the same frame, and the skin with it.
+        commands
+            .entity(entity)
+            .try_insert(Part::Custom(skin.length));
         commands
             .entity(parent.parent())
-            .insert_if_new((
+            .try_insert_if_new((
                 Placement::default(),
                 Transform::default(),
                 Visibility::default(),
             ))
-            .entry::<Placement>()
-            .and_modify(|mut placement| placement.recall());
+            .queue_silenced(|mut element: EntityWorldMut| {
+                if let Some(mut placement) = element.get_mut::<Placement>() {
+                    placement.recall();
+                }
+            });
     }
 }
 

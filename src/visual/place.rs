@@ -116,10 +116,27 @@ impl Placement {
         *self.first.get_or_insert(length.max(SHORT))
     }
 
+    /// Length when first drawn, m, if it was drawn before.
+    pub(super) fn known_first(&self) -> Option<f32> {
+        self.first
+    }
+
     /// Whether it has been known where the ends are, so that there is a place for the parts.
     #[inline]
     pub(super) fn is_known(&self) -> bool {
         self.axis != Vec3A::ZERO
+    }
+
+    /// Returns which parts to place while the ends are nowhere. Parts of an element stay. Parts of what is no element any more
+    /// get no size.
+    fn lose(&mut self, is_element: bool) -> Due {
+        if is_element || !self.is_known() {
+            return Due::Nowhere;
+        }
+        self.axis = Vec3A::ZERO;
+        // No ends are equal to these, so an element there will be placed.
+        self.ends.from = Vec3A::NAN;
+        Due::All
     }
 
     /// Has all parts placed again, whatever was placed before.
@@ -270,7 +287,7 @@ pub(super) fn place(
     for (element, line, mut placement) in &mut elements {
         let placement = placement.bypass_change_detection();
         let Some(ends) = lines.ends(&line) else {
-            placement.due = Due::Nowhere;
+            placement.due = placement.lose(line.between().is_some());
             continue;
         };
         let turn = element.index_u32().wrapping_add(*frame);

@@ -1,6 +1,6 @@
 //! The material that keeps a stretched coil's wire round.
 
-use super::helix::{Handedness, Helix, HelixEnds};
+use super::helix::{Helix, HelixEnds};
 use bevy::asset::io::embedded::EmbeddedAssetRegistry;
 use bevy::asset::{Asset, Assets};
 use bevy::math::Vec4;
@@ -54,10 +54,7 @@ struct RoundWireUniform {
 
 impl From<&RoundWire> for RoundWireUniform {
     fn from(RoundWire { helix }: &RoundWire) -> Self {
-        let hand = match helix.handedness {
-            Handedness::Right => 1.0,
-            Handedness::Left => -1.0,
-        };
+        let hand = helix.handedness.sign();
         let ends = match helix.ends {
             HelixEnds::Open => 0.0,
             HelixEnds::Closed => 1.0,

@@ -3,6 +3,7 @@
 use super::coil::Coil;
 use super::helix::{Handedness, Helix, HelixEnds, HelixMeshBuilder};
 use super::round_wire::{RoundWire, RoundWireMaterial};
+use super::views::FINE_ENOUGH;
 use bevy::asset::{Assets, Handle};
 use bevy::color::{Color, LinearRgba};
 use bevy::mesh::{Mesh, MeshBuilder, Meshable};
@@ -12,7 +13,7 @@ use bevy::prelude::*;
 use std::sync::Arc;
 
 /// Number of segments per turn and around the wire, from near to far.
-const DETAIL: [(u32, u32); 4] = [(44, 20), (28, 12), (18, 8), (12, 4)];
+const DETAIL: [(u32, u32); FINE_ENOUGH.len() + 1] = [(44, 20), (28, 12), (18, 8), (12, 4)];
 /// Number of shapes and paints that are kept before the first search for unused ones.
 const KEPT: usize = 64;
 

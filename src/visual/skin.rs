@@ -2,7 +2,8 @@ use bevy::prelude::*;
 
 /// On a child of a [`Spring`](crate::Spring), [`Damper`](crate::Damper) or [`SpringDamper`](crate::SpringDamper):
 /// whatever the child draws, with any mesh and any material, is placed between the ends of the element. Its +Y points
-/// from end A to end B, and it is scaled along that axis. Its own children, such as the meshes of a node from a glTF file,
+/// from end A to end B, and it is scaled along that axis. Beside a [`Telescope`](crate::Telescope) with fittings or a coil, it stands
+/// between the spring seats, as a coil does. Its own children, such as the meshes of a node from a glTF file,
 /// go with it.
 ///
 /// The mesh must stand on its origin: its foot at y = 0, its top at y = [`length`](Self::length). Bevy's cylinder has

@@ -1,6 +1,5 @@
 //! Mesh of the strip of a spiral spring: about the Y axis, with its outer end on the X axis.
 
-use super::helix::Handedness;
 use super::torsion_coil::TorsionCoil;
 use bevy::asset::RenderAssetUsages;
 use bevy::mesh::{Indices, Mesh, PrimitiveTopology};
@@ -15,23 +14,27 @@ const LEAST_TURNS: f32 = 0.25;
 /// Number of twist steps in a full turn: meshes are made for whole degrees.
 const STEPS: f32 = 360.0;
 
-/// Twist from rest in whole steps, positive if it winds the spring up.
-pub(super) fn step(twist: f32) -> i32 {
-    (twist * (STEPS / TAU)).round() as i32
+/// Twist from rest in whole steps, positive if it winds the spring up. Further twist than can be drawn is the same step, so that a
+/// wheel which turns on needs no more meshes.
+pub(super) fn step(coil: &TorsionCoil, twist: f32) -> i32 {
+    let turns = drawn(coil, coil.turns + twist / TAU);
+    ((turns - coil.turns) * STEPS).round() as i32
+}
+
+/// The number of turns that is drawn for a number of turns.
+fn drawn(coil: &TorsionCoil, turns: f32) -> f32 {
+    let least = LEAST_TURNS.min(0.5 * coil.turns);
+    turns.clamp(least, 2.0 * coil.turns + 1.0)
 }
 
 /// The angle of the strip from end to end, rad.
 fn angle(coil: &TorsionCoil, step: i32) -> f32 {
-    let least = LEAST_TURNS.min(0.5 * coil.turns);
-    TAU * (coil.turns + step as f32 / STEPS).clamp(least, 2.0 * coil.turns + 1.0)
+    TAU * drawn(coil, coil.turns + step as f32 / STEPS)
 }
 
 /// 1 if the strip goes outwards by the right-hand rule about the axis, else −1.
 pub(super) fn hand(coil: &TorsionCoil) -> f32 {
-    match coil.handedness {
-        Handedness::Right => 1.0,
-        Handedness::Left => -1.0,
-    }
+    coil.handedness.sign()
 }
 
 /// Mesh of the strip at a twist step.
@@ -150,6 +153,7 @@ impl Strip {
 
 #[cfg(test)]
 mod tests {
+    use super::super::helix::Handedness;
     use super::*;
     use bevy::mesh::VertexAttributeValues;
 

@@ -6,8 +6,11 @@ use bevy::prelude::*;
 /// Draws a telescoping damper between the ends of the element on the same entity: a tube fixed to end A, and a rod
 /// fixed to end B that slides into the tube.
 ///
-/// Tube and rod keep their lengths while the ends stay within the stroke. Beyond it, the tube or the rod is drawn
-/// longer or shorter than it is, so that they do not come apart or pass through the other end.
+/// Tube and rod keep their lengths while the ends stay within the stroke, as far as two pieces can: with fittings, and where the
+/// stroke is more than about half of the length, there is not room for both. Then, and beyond the stroke, the tube or the rod is
+/// drawn longer or shorter than it is, so that they do not come apart or pass through the other end.
+///
+/// While an end does not exist or is disabled, the telescope stays where it was: despawn the element with its end.
 ///
 /// If a size is not from 1e-12 to 1e12, or the rod is not thinner than the tube, a warning is logged and the telescope
 /// is not drawn until that is corrected. The element acts all the same.
@@ -28,7 +31,7 @@ pub struct Telescope {
     /// Distance from end B to the rod's tip in the tube, m; `None` for what the stroke needs.
     pub rod_length: Option<f32>,
     /// Distance from the shortest to the longest length, m, half of it on either side of the length when first drawn.
-    /// `None` for half of that length.
+    /// `None` for half of that length. At most 1.9 times that length is drawn.
     pub stroke: Option<f32>,
     /// Whether an eye is drawn at each end.
     pub eyes: bool,

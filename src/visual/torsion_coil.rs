@@ -13,6 +13,8 @@ use bevy::prelude::*;
 /// If a size is not from 1e-12 to 1e12, if there are more than 100 turns, or if the turns do not fit between the two
 /// radii, a warning is logged and the spiral is not drawn until that is corrected. The element acts all the same.
 ///
+/// While an end does not exist or is disabled, the spiral stays where it was: despawn the element with its end.
+///
 /// ```
 /// # use bevy::prelude::*;
 /// # use bevy_coilover::prelude::*;
@@ -50,8 +52,8 @@ pub struct TorsionCoil {
     /// Colour of the strip.
     pub color: Color,
     /// Whether the sizes are shares of the size of what the spring turns, and not metres. The size of what it turns is
-    /// the distance from the centre to body B, or to the farthest point of body B's collider, when first drawn. It is
-    /// 0.5 m if body B is at the centre and has no collider.
+    /// the distance from the centre to body B, or to the farthest point of the bounding spheres of body B's colliders, when
+    /// first drawn. It is 0.5 m if that is less than 1 mm, as of a body at the centre without colliders.
     pub fitted: bool,
 }
 

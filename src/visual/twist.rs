@@ -1,6 +1,7 @@
 //! Spirals of torsion elements: spawns their parts, turns them with the bodies, and winds them up.
 
 use super::bodies::Bodies;
+use super::lay::nothing;
 use super::made::Maker;
 use super::place::SELDOM;
 use super::shapes::{Finish, Shapes};
@@ -25,9 +26,9 @@ use std::f32::consts::TAU;
 const SIZE: f32 = 0.5;
 /// Fineness of a round shape that is scaled unevenly, as in Rapier's plugin.
 const SUBDIVISIONS: u32 = 10;
-/// Number of meshes that are kept before the first search for unused ones. A spring that swings shows the same few
+/// Number of strips that are kept before the first search for unused ones. A spring that swings shows the same few
 /// again.
-const KEPT: usize = 256;
+const KEPT_STRIPS: usize = 256;
 
 /// Where the spiral of an element is.
 #[derive(Component, Clone, Copy, Debug, Default)]
@@ -40,8 +41,9 @@ pub struct Twist {
     first: Option<f32>,
     /// The pose from which `places` were computed.
     from: Option<Pose>,
-    /// Transforms of the parts in the world, in the order of [`Winding`].
-    places: [GlobalTransform; 3],
+    /// Transforms of the parts in the world, in the order of [`Winding`]. `None` before they are first known, and for what is no
+    /// torsion element any more: then the parts have no size.
+    places: Option<[GlobalTransform; 3]>,
     step: i32,
     /// Whether some part of it was in some view in the last frame, even if only for its shadow.
     shows: bool,
@@ -83,7 +85,8 @@ pub(super) struct Turn {
 }
 
 impl TurnItem<'_, '_> {
-    /// Returns both ends, the axis, and the rest angle if the element has one.
+    /// Returns both ends, the axis, and the rest angle. A damper has none, and is drawn as if it were 0. `None` for a spring
+    /// whose rest angle will be the angle in its first step.
     fn element(&self) -> Option<(Entity, Entity, Vec3, Option<f32>)> {
         if let Some(s) = self.spring {
             Some((s.body_a, s.body_b, s.axis, s.rest_angle))
@@ -91,7 +94,7 @@ impl TurnItem<'_, '_> {
             Some((p.body_a, p.body_b, p.axis, p.rest_angle))
         } else {
             let d = self.damper?;
-            Some((d.body_a, d.body_b, d.axis, None))
+            Some((d.body_a, d.body_b, d.axis, Some(0.0)))
         }
     }
 }
@@ -101,6 +104,7 @@ impl TurnItem<'_, '_> {
 pub(super) struct Turns<'w, 's> {
     bodies: Bodies<'w, 's>,
     globals: Query<'w, 's, &'static GlobalTransform, Without<Winding>>,
+    children: Query<'w, 's, &'static Children>,
     colliders: Query<'w, 's, (&'static Collider, Option<&'static ColliderScale>)>,
 }
 
@@ -121,7 +125,7 @@ impl Turns<'_, '_> {
             center,
             axis,
             angle,
-            rest: rest.unwrap_or(0.0),
+            rest: rest.unwrap_or(angle),
         };
         let is_finite = rotation.is_finite() && center.is_finite() && pose.angle.is_finite();
         (is_finite && pose.rest.is_finite()).then_some(pose)
@@ -129,10 +133,19 @@ impl Turns<'_, '_> {
 
     /// Size of what the element turns, m.
     fn size(&self, turn: &TurnItem, pose: &Pose) -> Option<f32> {
-        let (_, body, ..) = turn.element()?;
+        let (_, end, ..) = turn.element()?;
+        let body = self.bodies.of(end);
         let at = self.globals.get(body).ok()?;
         let mut size = at.translation().distance(pose.center);
-        if let Ok((collider, scale)) = self.colliders.get(body) {
+        let mut of_body = vec![body];
+        while let Some(entity) = of_body.pop() {
+            let below = self.children.get(entity).into_iter().flatten();
+            of_body.extend(below.filter(|child| self.bodies.of(**child) == body));
+            let (Ok((collider, scale)), Ok(at)) =
+                (self.colliders.get(entity), self.globals.get(entity))
+            else {
+                continue;
+            };
             let scale = match scale {
                 Some(ColliderScale::Absolute(scale)) => *scale,
                 Some(ColliderScale::Relative(scale)) => *scale * at.scale(),
@@ -161,7 +174,7 @@ impl Default for Spirals {
     fn default() -> Self {
         Self {
             meshes: HashMap::default(),
-            room: KEPT,
+            room: KEPT_STRIPS,
         }
     }
 }
@@ -178,7 +191,7 @@ impl Spirals {
         let key = (sizes.map(f32::to_bits), spiral::hand(coil) > 0.0, step);
         if !self.meshes.contains_key(&key) && self.meshes.len() >= self.room {
             self.meshes.retain(|_, mesh| super::shapes::is_used(mesh));
-            self.room = KEPT.max(2 * self.meshes.len());
+            self.room = KEPT_STRIPS.max(2 * self.meshes.len());
         }
         let make = || meshes.add(spiral::mesh(coil, step));
         self.meshes.entry(key).or_insert_with(make).clone()
@@ -255,7 +268,7 @@ impl Twist {
         self.from = Some(pose);
         let hand = spiral::hand(coil);
         let twist = pose.angle - pose.rest;
-        self.step = spiral::step(hand * twist);
+        self.step = spiral::step(coil, hand * twist);
         // The inner end stays with body A, and the outer end goes around with body B exactly.
         let side = pose.axis.any_orthonormal_vector();
         let outer = Quat::from_axis_angle(pose.axis, hand * TAU * coil.turns + twist) * side;
@@ -272,11 +285,11 @@ impl Twist {
             })
         };
         let pin = (1.5 * coil.thickness).min(0.5 * coil.width);
-        self.places = [
+        self.places = Some([
             place(center, 1.0, 1.0),
             place(center, coil.arbor_radius, 1.5 * coil.width),
             place(center + coil.radius * outer, pin, 1.3 * coil.width),
-        ];
+        ]);
         true
     }
 }
@@ -298,10 +311,15 @@ pub(super) fn turn(
         let Some(coil) = twist.coil else {
             continue;
         };
+        let is_element = turn.element().is_some();
+        let twist = twist.bypass_change_detection();
         let Some(pose) = turns.pose(&turn, coil.center) else {
+            // Parts of an element stay where they were.
+            if !is_element {
+                (twist.from, twist.places) = (None, None);
+            }
             continue;
         };
-        let twist = twist.bypass_change_detection();
         // `lay` sets it again in this frame.
         let shows = std::mem::take(&mut twist.shows);
         if twist.from == Some(pose) {
@@ -333,15 +351,14 @@ pub(super) fn lay(
     mut meshes: ResMut<Assets<Mesh>>,
 ) {
     for (part, parent, mut global, visibility) in &mut parts {
-        if let Ok(mut twist) = elements.get_mut(parent.parent())
-            && twist.from.is_some()
-        {
+        if let Ok(mut twist) = elements.get_mut(parent.parent()) {
             if visibility.is_some_and(|visibility| visibility.get()) {
                 twist.bypass_change_detection().shows = true;
             }
             // `GlobalTransform` is written, because propagation has run and rendering reads it. A part that has not
             // moved must not look changed, or it would be sent to the graphics card again.
-            global.set_if_neq(twist.places[*part as usize]);
+            let place = twist.places.map(|places| places[*part as usize]);
+            global.set_if_neq(place.unwrap_or_else(nothing));
         }
     }
     for (parent, mut mesh, mut wound) in &mut strips {

@@ -6,7 +6,7 @@ use bevy::math::Vec3A;
 use bevy::prelude::*;
 
 /// Least thickness of a wire, in pixels, for each level of detail except the coarsest.
-const FINE_ENOUGH: [f32; 3] = [14.0, 5.0, 1.5];
+pub(super) const FINE_ENOUGH: [f32; 3] = [14.0, 5.0, 1.5];
 /// Factor by which the thickness must pass a bound before the level changes, so that the level does not flicker.
 const HYSTERESIS: f32 = 1.15;
 /// Share of its distance by which a camera can move without a change of size by more than the hysteresis.

@@ -63,6 +63,8 @@ mod visual_data;
 #[cfg(feature = "visual")]
 mod visual_gizmos;
 #[cfg(feature = "visual")]
+mod visual_gone;
+#[cfg(feature = "visual")]
 mod visual_layers;
 #[cfg(feature = "visual")]
 mod visual_looks;
@@ -70,3 +72,5 @@ mod visual_looks;
 mod visual_rest;
 #[cfg(feature = "visual")]
 mod visual_torsion;
+#[cfg(feature = "visual")]
+mod visual_winch;

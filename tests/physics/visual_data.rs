@@ -237,8 +237,13 @@ fn a_coil_pressed_until_wire_passes_through_wire_is_told_once_with_both_lengths(
     assert!(told_at(&mut lab, 1.0).is_empty());
     assert!(told_at(&mut lab, length).is_empty(), "told twice");
     // Changed looks cause a new message.
-    lab.get_mut::<Coil>(element).color = Color::BLACK;
+    lab.get_mut::<Coil>(element).radius = 0.14;
     assert_eq!(told_at(&mut lab, length).len(), 1);
+    lab.get_mut::<Coil>(element).color = Color::BLACK;
+    assert!(
+        told_at(&mut lab, length).is_empty(),
+        "other paint is no news"
+    );
 }
 
 #[test]

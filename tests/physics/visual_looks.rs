@@ -291,3 +291,57 @@ fn a_skin_of_hardly_any_length_is_told_once_and_never_gets_an_endless_scale() {
         assert_eq!(log.take(), Vec::<String>::new());
     }
 }
+
+/// A game colours a spring by its force in every frame. Its parts stay the same entities, and so do their meshes.
+#[test]
+fn other_colours_repaint_the_parts_and_the_same_looks_leave_them_alone() {
+    let mut lab = lab();
+    let (a, b) = (lab.point(Vec3::ZERO), lab.point(Vec3::Y));
+    let element = lab.spawn(coilover(a, b));
+    lab.run(0.1);
+    let children = |lab: &Lab| lab.get::<Children>(element).to_vec();
+    let paints = |lab: &Lab| {
+        let paint = |part: &Entity| {
+            let paint = lab
+                .app
+                .world()
+                .get::<MeshMaterial3d<StandardMaterial>>(*part);
+            paint.map(|paint| paint.0.id())
+        };
+        children(lab).iter().filter_map(paint).collect::<Vec<_>>()
+    };
+    let wires = |lab: &Lab| {
+        let wire = |part: &Entity| {
+            let wire = lab
+                .app
+                .world()
+                .get::<MeshMaterial3d<RoundWireMaterial>>(*part);
+            wire.map(|wire| wire.0.id())
+        };
+        children(lab).iter().filter_map(wire).collect::<Vec<_>>()
+    };
+    let (first, paint, wire) = (children(&lab), paints(&lab), wires(&lab));
+    lab.get_mut::<Coil>(element).color = Color::BLACK;
+    lab.tick();
+    assert_eq!(
+        (children(&lab), paints(&lab)),
+        (first.clone(), paint.clone())
+    );
+    assert!(wires(&lab).len() == 1 && wires(&lab) != wire);
+    lab.get_mut::<Telescope>(element).color = Color::WHITE;
+    lab.tick();
+    assert_eq!(children(&lab), first);
+    // Tube and collar, but neither rod nor seats.
+    let other = paints(&lab)
+        .iter()
+        .zip(&paint)
+        .filter(|(a, b)| a != b)
+        .count();
+    assert_eq!(other, 2);
+    lab.get_mut::<Coil>(element).set_changed();
+    lab.tick();
+    assert_eq!(children(&lab), first);
+    lab.get_mut::<Coil>(element).turns = 5.0;
+    lab.tick();
+    assert_ne!(children(&lab), first);
+}

@@ -9,16 +9,16 @@ use bevy_coilover::prelude::*;
 use std::collections::HashSet;
 
 /// A coil from the origin to one metre above it, which has rested for a while.
-struct Rest {
-    lab: Lab,
-    a: Entity,
-    b: Entity,
-    element: Entity,
-    coil: Entity,
+pub struct Rest {
+    pub lab: Lab,
+    pub a: Entity,
+    pub b: Entity,
+    pub element: Entity,
+    pub coil: Entity,
 }
 
 impl Rest {
-    fn new() -> Self {
+    pub fn new() -> Self {
         let mut lab = lab();
         let (a, b) = (lab.point(Vec3::ZERO), lab.point(Vec3::Y));
         let element = lab.spawn((Spring::new(a, b), Coil::default()));
@@ -34,17 +34,17 @@ impl Rest {
     }
 
     /// Whether the coil is drawn from one point to the other.
-    fn goes(&self, from: Vec3, to: Vec3) -> bool {
+    pub fn goes(&self, from: Vec3, to: Vec3) -> bool {
         let at = self.lab.get::<GlobalTransform>(self.coil);
         at.transform_point(Vec3::ZERO).distance(from) < 1e-5
             && at.transform_point(Vec3::Y).distance(to) < 1e-5
     }
 
-    fn insert(&mut self, entity: Entity, bundle: impl Bundle) {
+    pub fn insert(&mut self, entity: Entity, bundle: impl Bundle) {
         self.lab.app.world_mut().entity_mut(entity).insert(bundle);
     }
 
-    fn remove<B: Bundle>(&mut self, entity: Entity) {
+    pub fn remove<B: Bundle>(&mut self, entity: Entity) {
         self.lab.app.world_mut().entity_mut(entity).remove::<B>();
     }
 }

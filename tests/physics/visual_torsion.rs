@@ -13,18 +13,18 @@ use std::collections::HashSet;
 use std::f32::consts::TAU;
 
 /// Outer radius of the spiral, m. `ARBOR` is the radius of its arbor, m.
-const RADIUS: f32 = 0.2;
+pub const RADIUS: f32 = 0.2;
 const ARBOR: f32 = 0.04;
 
 /// A door on the axis of its frame. Only the test turns it.
-struct Door {
-    lab: Lab,
-    door: Entity,
-    element: Entity,
+pub struct Door {
+    pub lab: Lab,
+    pub door: Entity,
+    pub element: Entity,
 }
 
 impl Door {
-    fn new(coil: TorsionCoil) -> Self {
+    pub fn new(coil: TorsionCoil) -> Self {
         let mut lab = lab();
         let frame = lab.point(Vec3::X);
         let door = lab.point(Vec3::X);
@@ -36,7 +36,7 @@ impl Door {
         Self { lab, door, element }
     }
 
-    fn turn(&mut self, angle: f32) {
+    pub fn turn(&mut self, angle: f32) {
         self.lab.get_mut::<Transform>(self.door).rotation = Quat::from_rotation_z(angle);
         // The physics plugin would write this angle. It includes full turns.
         self.lab.get_mut::<SpringReadout>(self.element).length = angle;
@@ -44,7 +44,7 @@ impl Door {
     }
 
     /// Inner and outer end of the strip, in world coordinates.
-    fn ends(&self) -> [Vec3; 2] {
+    pub fn ends(&self) -> [Vec3; 2] {
         let world = self.lab.app.world();
         let children = world.get::<Children>(self.element).expect("parts");
         let meshes = world.resource::<Assets<Mesh>>();
@@ -258,7 +258,7 @@ fn springs_that_swing_alike_share_their_meshes_and_keep_few() {
 }
 
 /// Checks that a spiral about the origin has the radius for a door of this size, m.
-fn check_size(lab: &Lab, element: Entity, size: f32) {
+pub fn check_size(lab: &Lab, element: Entity, size: f32) {
     let far = |at: &GlobalTransform| at.translation().length();
     // The pin is at the outer end. Sizes are rounded to a power of 1.1, so that meshes are shared.
     let radius = parts(lab, element).iter().map(far).fold(0.0, f32::max);

@@ -70,8 +70,8 @@ impl HelixMeshBuilder {
         let around = self.around.clamp(4, MOST_AROUND).next_multiple_of(4);
         let rings = (turns * self.along.max(3) as f32).ceil();
         let rings = rings.clamp(4.0, MOST_RINGS) as u32;
-        let right = self.helix.handedness == super::Handedness::Right;
-        let hand = if right { 1.0 } else { -1.0 };
+        let hand = self.helix.handedness.sign();
+        let right = hand > 0.0;
         let mut out = Vertices::default();
 
         for ring in 0..=rings {

@@ -51,6 +51,16 @@ pub enum Handedness {
     Left,
 }
 
+impl Handedness {
+    /// 1 if the wire goes along its axis by the right-hand rule, else −1.
+    pub(super) fn sign(self) -> f32 {
+        match self {
+            Self::Right => 1.0,
+            Self::Left => -1.0,
+        }
+    }
+}
+
 /// A coil of round wire about the Y axis. It stands on the origin and is `length` high, with the thickness of the wire.
 ///
 /// The cross-section of the wire is a circle perpendicular to the wire. The ends of the wire are capped.

@@ -2,7 +2,7 @@
 //!
 //! `assets/shaders/tube.wgsl` evaluates the same formula on the graphics card; change both.
 
-use super::{Handedness, Helix, HelixEnds};
+use super::{Helix, HelixEnds};
 use bevy::math::Vec3;
 use std::f32::consts::TAU;
 
@@ -78,10 +78,7 @@ impl Wire {
             radius,
             wire_radius,
             turns,
-            hand: match helix.handedness {
-                Handedness::Right => 1.0,
-                Handedness::Left => -1.0,
-            },
+            hand: helix.handedness.sign(),
             ground: helix.ends == HelixEnds::ClosedGround,
             dead,
             blend,
