@@ -197,8 +197,6 @@ pub mod guide {
 
 /// All types and functions that a game needs.
 pub mod prelude {
-    #[cfg(feature = "gltf")]
-    pub use crate::CoiloverGltfPlugin;
     pub use crate::{
         Anchors, Breakable, CoiloverDiagnosticsPlugin, CoiloverPlugin, CoiloverPlugins,
         CoiloverSettings, CoiloverSnapshot, CoiloverSystems, CustomDampingLaw, CustomSpringLaw,
@@ -206,14 +204,16 @@ pub mod prelude {
         MouseSpring, Polynomial, Preload, RapierSnapshot, SnapshotError, Spring, SpringAction,
         SpringAxis, SpringBroke, SpringDamper, SpringFault, SpringLaw, SpringLoad, SpringMethod,
         SpringReadout, SpringTravel, SpringTuning, TorsionDamper, TorsionSpring,
-        TorsionSpringDamper, WhenBroken, WorldAnchors, recommend,
+        TorsionSpringDamper, WhenBroken, WorldAnchors, recommend, wire_stiffness,
     };
     #[cfg(feature = "visual")]
     pub use crate::{
         Coil, Coilover, CoiloverVisualPlugin, CoiloverVisualSystems, Handedness, Helix, HelixEnds,
-        RoundWire, RoundWireMaterial, ShowSpringGizmos, SpringGizmos, SpringSkin, Telescope,
-        TorsionCoil, WoundCoil, coilover,
+        HelixError, HelixMeshBuilder, RoundWire, RoundWireMaterial, ShowSpringGizmos, SpringGizmos,
+        SpringSkin, Telescope, TorsionCoil, WoundCoil, coilover,
     };
+    #[cfg(feature = "gltf")]
+    pub use crate::{CoiloverGltfPlugin, ExportedGltf, export_gltf};
     #[cfg(feature = "workbench")]
     pub use crate::{CoiloverWorkbench, CoiloverWorkbenchPlugin};
 }

@@ -279,7 +279,11 @@ fn notice_strays(app: &mut App) {
     notice(app, Role::Companion, companions);
     #[cfg(feature = "visual")]
     {
-        let looks = vec![kind::<crate::Coil>(app), kind::<crate::Telescope>(app)];
+        let looks = vec![
+            kind::<crate::Coil>(app),
+            kind::<crate::Telescope>(app),
+            kind::<crate::ShowSpringGizmos>(app),
+        ];
         notice(app, Role::Look, looks);
         let spirals = vec![kind::<crate::TorsionCoil>(app)];
         notice(app, Role::Spiral, spirals);

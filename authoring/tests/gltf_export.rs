@@ -14,7 +14,7 @@ pub fn round_trip(name: &str, build: impl FnOnce(&mut World) -> Entity) -> (Valu
 }
 
 /// [`round_trip`] of a scene of which the export says that it loses something: the ends of its sentences.
-fn round_trip_losing(
+pub fn round_trip_losing(
     name: &str,
     lost: &[&str],
     build: impl FnOnce(&mut World) -> Entity,
@@ -79,9 +79,18 @@ pub fn close(a: &Value, b: &Value, place: &str) {
     }
 }
 
+/// Asserts that this component is beside the only element of this kind.
+fn assert_beside<E: Component, C: Component + PartialEq + std::fmt::Debug>(
+    stage: &mut Stage,
+    wanted: &C,
+) {
+    let mut found = stage.app.world_mut().query_filtered::<&C, With<E>>();
+    assert_eq!(found.single(stage.app.world()).ok(), Some(wanted));
+}
+
 #[test]
 fn every_element_and_companion_goes_out_and_in_again_bit_for_bit() {
-    let (first, second, _) = round_trip("elements_out", |world| {
+    let (first, second, mut stage) = round_trip("elements_out", |world| {
         let root = root(world);
         let end = |world: &mut World, name: &str, at: Vec3| {
             let body = (
@@ -123,7 +132,7 @@ fn every_element_and_companion_goes_out_and_in_again_bit_for_bit() {
                 Damper::new(a, b).with_damping(1e-30),
                 DampingLaw::Table(table()),
                 MaxForce(0.7),
-                Telescope::fitted(),
+                Telescope::fitted().with_color(Color::linear_rgb(0.25, 0.5, 0.7)),
             ));
         });
         spawn(world, &mut |e| {
@@ -147,6 +156,7 @@ fn every_element_and_companion_goes_out_and_in_again_bit_for_bit() {
                 Coil {
                     ends: HelixEnds::Closed,
                     handedness: Handedness::Left,
+                    color: Color::linear_rgb(0.25, 0.5, 0.7),
                     ..Coil::new(0.1, 0.011, 7.7)
                 },
                 ShowSpringGizmos(false),
@@ -186,6 +196,54 @@ fn every_element_and_companion_goes_out_and_in_again_bit_for_bit() {
         assert_eq!(*a, b);
     }
     close(&first["nodes"], &second["nodes"], "nodes");
+    // Both files would lack the same if the export did.
+    let (stage, third) = (&mut stage, 1.0_f32 / 3.0);
+    let table = ForceTable::new([(-1.1, -20.3), (0.0, 0.0), (0.7, 3.3)]);
+    assert_beside::<Spring, _>(stage, &SpringLaw::Cubic);
+    assert_beside::<Spring, _>(stage, &Anchors::new(Vec3::splat(third), Vec3::X));
+    assert_beside::<Spring, _>(stage, &Breakable::at_force(1e30).disabling());
+    assert_beside::<Spring, _>(stage, &SpringAction::Push);
+    assert_beside::<Spring, _>(stage, &Preload(-third));
+    assert_beside::<Damper, _>(stage, &DampingLaw::Table(table.clone()));
+    assert_beside::<Damper, _>(stage, &MaxForce(0.7));
+    let telescope = Telescope::fitted().with_color(Color::linear_rgb(0.25, 0.5, 0.7));
+    assert_beside::<Damper, _>(stage, &telescope);
+    let (pull, push) = (
+        Polynomial::new(0.1, 0.2, 0.3),
+        Polynomial::new(0.4, 0.0, 0.6),
+    );
+    assert_beside::<SpringDamper, _>(stage, &SpringLaw::sided(pull, push));
+    let blow_off = DampingLaw::BlowOff {
+        damping: 0.1,
+        knee: 0.2,
+        beyond: 0.3,
+    };
+    assert_beside::<SpringDamper, _>(stage, &blow_off);
+    let axis = SpringAxis::BodyA(Vec3::new(0.1, 0.7, 0.2));
+    assert_beside::<SpringDamper, _>(stage, &axis);
+    let travel = SpringTravel::new(0.1, f32::INFINITY, third);
+    let travel = travel.with_progression(0.7).with_stop_damping(0.9);
+    assert_beside::<SpringDamper, _>(stage, &travel);
+    let coil = Coil::new(0.1, 0.011, 7.7).with_ends(HelixEnds::Closed);
+    let coil = coil.with_handedness(Handedness::Left);
+    let coil = coil.with_color(Color::linear_rgb(0.25, 0.5, 0.7));
+    assert_beside::<SpringDamper, _>(stage, &coil);
+    assert_beside::<SpringDamper, _>(stage, &ShowSpringGizmos(false));
+    assert_beside::<TorsionSpring, _>(stage, &SpringLaw::Table(table));
+    assert_beside::<TorsionDamper, _>(stage, &DampingLaw::sided(0.1, 0.7));
+    let mut springs = stage.app.world_mut().query::<&Spring>();
+    let spring = springs.single(stage.app.world()).expect("one");
+    // Its rest length was found since.
+    assert_eq!(spring.stiffness, third);
+    let mut pairs = stage.app.world_mut().query::<&SpringDamper>();
+    let pair = pairs.single(stage.app.world()).expect("one");
+    assert_eq!((pair.damping, pair.rest_length), (3.3e7, Some(1.1)));
+    let mut twists = stage.app.world_mut().query::<&TorsionSpring>();
+    let twist = twists.single(stage.app.world()).expect("one");
+    assert_eq!(
+        (twist.axis, twist.rest_angle),
+        (Vec3::splat(third), Some(-7.1))
+    );
 }
 
 #[test]

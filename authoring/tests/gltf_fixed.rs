@@ -115,3 +115,37 @@ fn bodies_below_a_turned_and_unevenly_scaled_node_are_where_the_file_says() {
         );
     }
 }
+
+#[test]
+fn colliders_below_a_body_in_a_scaled_scene_are_where_the_scene_shows_them() {
+    let folder = Folder::new("compound");
+    let motion = json!({ "mass": 1, "inertiaDiagonal": [1, 1, 1], "gravityFactor": 0 });
+    let mut body = physics("Body", [1.0, 2.0, 3.0], json!({ "motion": motion }));
+    body["children"] = json!([2]);
+    body["scale"] = json!([1.5, 1.5, 1.5]);
+    let collider = json!({ "geometry": { "shape": 0 } });
+    let arm = physics("Arm", [0.5, 0.0, 0.25], json!({ "collider": collider }));
+    let frame =
+        json!({ "name": "Frame", "children": [1], "scale": [1, 3, 1], "translation": [0, 1, 0] });
+    folder.write("a.gltf", gltf(json!([frame, body, arm]), boxes()));
+    let mut stage = Stage::new(&folder.0);
+    // A rotation of 3e-4 rad is below what the scalar product of two quaternions can tell from none.
+    let turned = Quat::from_rotation_z(3e-4);
+    for place in [
+        Transform::from_scale(Vec3::splat(2.0)),
+        Transform::from_rotation(turned).with_scale(Vec3::splat(2.0)),
+    ] {
+        let root = stage.load_at("a.gltf", place);
+        run(&mut stage.app, 3.0 * DT);
+        let arm = stage.node(root, "Arm");
+        let wanted = place.transform_point(Vec3::new(1.75, 1.0 + 6.0, 3.375));
+        let shown = stage.place(arm).translation;
+        assert!(shown.distance(wanted) < 1e-4, "{shown}, not {wanted}");
+        let handle = stage.get::<RapierColliderHandle>(arm).0;
+        let mut contexts = stage.app.world_mut().query::<&RapierContextColliders>();
+        let context = contexts.single(stage.app.world()).expect("one");
+        let found = context.colliders[handle].position().translation;
+        assert!(found.distance(wanted) < 1e-4, "{found}, not {wanted}");
+        stage.app.world_mut().despawn(root);
+    }
+}

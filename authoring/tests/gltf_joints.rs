@@ -275,6 +275,56 @@ fn what_holds_nothing_is_no_joint() {
 }
 
 #[test]
+fn of_rigid_limits_that_share_an_axis_the_first_holds() {
+    let range = json!({ "linearAxes": [0], "min": -0.25, "max": 0.5 });
+    let disc = json!({ "linearAxes": [0, 1], "max": 5 });
+    let still = json!({ "linearAxes": [0], "max": 0, "min": 0 });
+    let xy = JointAxesMask::LIN_X | JointAxesMask::LIN_Y;
+    for (name, limits, coupled, locked, wanted) in [
+        (
+            "range_disc",
+            [&range, &disc],
+            JointAxesMask::empty(),
+            JointAxesMask::empty(),
+            [-0.25, 0.5],
+        ),
+        (
+            "disc_range",
+            [&disc, &range],
+            xy,
+            JointAxesMask::empty(),
+            [0.0, 5.0],
+        ),
+        (
+            "disc_still",
+            [&disc, &still],
+            xy,
+            JointAxesMask::empty(),
+            [0.0, 5.0],
+        ),
+        // What stands still has room for no range: this is exact.
+        (
+            "range_still",
+            [&range, &still],
+            JointAxesMask::empty(),
+            JointAxesMask::LIN_X,
+            [-0.25, 0.5],
+        ),
+    ] {
+        let (_folder, mut stage, _root) = hanging(name, json!(limits));
+        let mut joints = stage.app.world_mut().query::<&ImpulseJoint>();
+        let joint = joints.single(stage.app.world()).expect("one joint");
+        let raw = &joint.data.as_ref().raw;
+        assert_eq!(
+            (raw.coupled_axes, raw.locked_axes),
+            (coupled, locked),
+            "{name}"
+        );
+        assert_eq!([raw.limits[0].min, raw.limits[0].max], wanted, "{name}");
+    }
+}
+
+#[test]
 fn of_two_cones_about_different_axes_the_first_holds_and_nothing_panics() {
     let (_folder, mut stage, root) = hanging(
         "cones",

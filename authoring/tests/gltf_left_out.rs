@@ -99,7 +99,7 @@ fn what_the_format_has_not_is_said() {
 }
 
 /// Asserts that the export says each of these of the entity with that name, once.
-fn assert_told(left_out: &[String], wanted: &[(&str, &str)]) {
+pub fn assert_told(left_out: &[String], wanted: &[(&str, &str)]) {
     for (name, what) in wanted {
         let lines = left_out.iter();
         let lines = lines.filter(|line| line.starts_with(name) && line.contains(what));
@@ -242,4 +242,49 @@ fn an_end_whose_fixed_body_is_another_after_a_file_is_said() {
     let exported = export_gltf(world, [root]);
     assert_told(&exported.left_out, &[("Turned", "turned against it")]);
     assert_eq!(exported.left_out.len(), 1, "{:#?}", exported.left_out);
+}
+
+#[test]
+fn what_only_some_colliders_joints_and_elements_lose_is_said() {
+    let mut app = game();
+    let world = app.world_mut();
+    let root = root(world);
+    let (friction, bounce) = (Friction::coefficient(0.1), Restitution::coefficient(0.1));
+    let gate = (Collider::ball(1.0), Sensor, friction, bounce);
+    world.spawn((Name::new("Gate"), gate, ChildOf(root)));
+    let corners = vec![Vec3::ZERO, Vec3::X, Vec3::Y];
+    let flags = TriMeshFlags::MERGE_DUPLICATE_VERTICES;
+    let ground = Collider::trimesh_with_flags(corners, vec![[0, 1, 2]], flags);
+    world.spawn((Name::new("Ground"), ground.expect("a mesh"), ChildOf(root)));
+    let a = world.spawn((Transform::default(), ChildOf(root))).id();
+    let outside = world
+        .spawn((Name::new("Outside"), Transform::default()))
+        .id();
+    let rope = (Spring::new(a, outside), EndNames::new("A", "Outside"));
+    let rope = world.spawn((Name::new("Rope"), rope, ChildOf(root))).id();
+    world.spawn((Name::new("Skin"), SpringSkin::default(), ChildOf(rope)));
+    let [frame, arm] = [0.0, 1.0].map(|x| {
+        let body = (RigidBody::Dynamic, Transform::from_xyz(x, 0.0, 0.0));
+        world.spawn((body, ChildOf(root))).id()
+    });
+    let cone = GenericJointBuilder::new(JointAxesMask::LIN_AXES)
+        .coupled_axes(JointAxesMask::ANG_X | JointAxesMask::ANG_Y)
+        .limits(JointAxis::AngX, [0.25, 0.5])
+        .build();
+    let cone = ImpulseJoint::new(frame, TypedJoint::GenericJoint(cone));
+    world.spawn((Name::new("Cone"), cone, ChildOf(arm)));
+    let exported = export_gltf(world, [root]);
+    assert_told(
+        &exported.left_out,
+        &[
+            ("Gate", "Friction of a Sensor is not written"),
+            ("Gate", "Restitution of a Sensor is not written"),
+            ("Ground", "TriMeshFlags are not written"),
+            ("Rope", "its body_b is not among"),
+            ("Rope", "EndNames is not written"),
+            ("Skin", "SpringSkin is not written"),
+            ("Cone", "the min of a limit of its coupled angles"),
+        ],
+    );
+    assert_eq!(exported.left_out.len(), 7, "{:#?}", exported.left_out);
 }

@@ -52,6 +52,17 @@ fn the_same_bodies_fall_through_the_same_floors() {
         world.spawn((ball("Ghost", 5.0), CollisionGroups::new(one, Group::NONE)));
         root
     });
+    for (name, memberships, filters) in [
+        ("Floor", Group::ALL, Group::ALL),
+        ("Shelf", Group::GROUP_1, Group::GROUP_1),
+        ("Other", Group::GROUP_2, Group::GROUP_2),
+        ("Either", Group::GROUP_1 | Group::GROUP_2, Group::GROUP_1),
+        ("Ghost", Group::GROUP_1, Group::NONE),
+    ] {
+        let entity = named(&mut stage.app, name);
+        let wanted = CollisionGroups::new(memberships, filters);
+        assert_eq!(*stage.get::<CollisionGroups>(entity), wanted, "{name}");
+    }
     run(&mut stage.app, 4.0);
     let mut height = |name: &str| {
         let entity = named(&mut stage.app, name);

@@ -97,6 +97,37 @@ fn a_scene_loaded_twice_is_two_scenes_and_nothing_stays_behind() {
 }
 
 #[test]
+fn the_engine_gets_the_bodies_in_the_order_of_the_file_each_time_it_is_loaded() {
+    const COUNT: usize = 12;
+    let folder = Folder::new("order");
+    let name = |i: usize| format!("Body {i}");
+    let mut nodes = Vec::new();
+    for i in 0..COUNT {
+        let mut body = weight();
+        body["name"] = json!(name(i));
+        body["translation"] = json!([i, 0, 0]);
+        nodes.push(body);
+    }
+    // A tree that a depth-first walk visits in another order than that of the file.
+    nodes.push(json!({ "children": [7, 3, 11] }));
+    nodes.push(json!({ "children": [12, 5, 0] }));
+    folder.write("a.gltf", gltf(nodes.into(), json!({})));
+    let mut stage = Stage::new(&folder.0);
+    for _ in 0..3 {
+        let root = stage.load("a.gltf");
+        run(&mut stage.app, 2.0 * DT);
+        let world = stage.app.world_mut();
+        // The engine inserts bodies in the order of a query.
+        let mut bodies = world.query_filtered::<&Name, With<RigidBody>>();
+        let names = bodies.iter(world).map(|name| name.as_str().to_owned());
+        let found: Vec<String> = names.collect();
+        assert_eq!(found, (0..COUNT).map(name).collect::<Vec<_>>());
+        world.despawn(root);
+        run(&mut stage.app, 2.0 * DT);
+    }
+}
+
+#[test]
 fn hot_reload_puts_the_new_spring_in_the_place_of_the_old() {
     let folder = Folder::new("reload");
     let file =

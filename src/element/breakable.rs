@@ -51,6 +51,18 @@ impl Breakable {
         }
     }
 
+    /// Sets the force at which it breaks, N, or the moment of a torsion element, N m.
+    pub const fn with_force(mut self, force: f32) -> Self {
+        self.force = force;
+        self
+    }
+
+    /// Sets the length at which it breaks, m, or the angle of a torsion element, rad.
+    pub const fn with_length(mut self, length: f32) -> Self {
+        self.length = length;
+        self
+    }
+
     /// Disables the element instead of despawning it.
     pub const fn disabling(mut self) -> Self {
         self.then = WhenBroken::Disable;

@@ -1,5 +1,8 @@
 //! Components that a loaded scene carries into the world in place of Rapier's components. Rapier's components cannot
 //! be in a scene: they do not implement `Reflect`, and they depend on where the scene is placed.
+//!
+//! Each has the index of its node in the file. Entities of a spawned scene are in no particular order, and in another one
+//! when the scene is spawned again.
 
 use super::physics::{Implicit, JointKind, Material, Motion};
 use bevy::prelude::*;
@@ -10,6 +13,8 @@ use std::sync::Arc;
 #[reflect(opaque, Component, Clone, Debug)]
 #[type_path = "bevy_coilover"]
 pub(crate) struct LoadedBody {
+    /// Index of the node in the file.
+    pub(super) node: usize,
     pub(super) motion: Arc<Motion>,
     /// File and node, for log messages.
     pub(super) place: String,
@@ -20,7 +25,10 @@ pub(crate) struct LoadedBody {
 #[derive(Component, Reflect, Clone, Debug)]
 #[reflect(opaque, Component, Clone, Debug)]
 #[type_path = "bevy_coilover"]
-pub(crate) struct LoadedEnd;
+pub(crate) struct LoadedEnd {
+    /// Index of the node in the file.
+    pub(super) node: usize,
+}
 
 /// Triangle mesh of a collider.
 #[derive(Clone, Debug, Default)]
@@ -41,6 +49,8 @@ pub(super) enum Shape {
 #[reflect(opaque, Component, Clone, Debug)]
 #[type_path = "bevy_coilover"]
 pub(crate) struct LoadedCollider {
+    /// Index of the node in the file.
+    pub(super) node: usize,
     pub(super) shape: Shape,
     pub(super) material: Option<Material>,
     /// Memberships and filters of the `CollisionGroups`, as bits. `None` if the file has no filters.
@@ -55,6 +65,8 @@ pub(crate) struct LoadedCollider {
 #[reflect(opaque, Component, Clone, Debug)]
 #[type_path = "bevy_coilover"]
 pub(crate) struct LoadedJoint {
+    /// Index of the node in the file.
+    pub(super) node: usize,
     #[entities]
     pub(super) connected: Entity,
     pub(super) kind: Arc<JointKind>,

@@ -37,7 +37,7 @@ const SMALLEST: f32 = 1e-5;
 /// bodies where elements need them, then joints.
 pub(super) fn expand(world: &mut World) {
     let mut weights = EntityHashMap::<RapierMass>::default();
-    let colliders = take::<LoadedCollider>(world);
+    let colliders = take(world, |loaded: &LoadedCollider| loaded.node);
     for (entity, loaded) in &colliders {
         let body = owner(world, *entity);
         if let Some(weight) = add_collider(world, *entity, loaded, body)
@@ -46,18 +46,18 @@ pub(super) fn expand(world: &mut World) {
             *weights.entry(body).or_default() += weight;
         }
     }
-    let bodies = take::<LoadedBody>(world);
+    let bodies = take(world, |loaded: &LoadedBody| loaded.node);
     let moving: EntityHashSet = bodies.iter().map(|(entity, _)| *entity).collect();
     for (entity, loaded) in bodies {
         let weight = weights.get(&entity).copied().unwrap_or_default();
         add_body(world, entity, &loaded, weight, &moving);
     }
-    for (entity, LoadedEnd) in take::<LoadedEnd>(world) {
+    for (entity, _) in take(world, |loaded: &LoadedEnd| loaded.node) {
         if owner(world, entity).is_none() && place(world, entity).is_some() {
             anchor(world, entity);
         }
     }
-    for (entity, joint) in take::<LoadedJoint>(world) {
+    for (entity, joint) in take(world, |loaded: &LoadedJoint| loaded.node) {
         joints::add(world, entity, &joint);
     }
 }
@@ -98,13 +98,18 @@ fn add_body(
     }
 }
 
-/// Removes all components of a type from their entities and returns them.
-fn take<C: Component>(world: &mut World) -> Vec<(Entity, C)> {
-    let mut query = world.query_filtered::<Entity, With<C>>();
-    let mut entities: Vec<_> = query.iter(world).collect();
-    // Sorted, so that the order is that of the scene, whatever else is in the world.
+/// Removes all components of a type from their entities and returns them, in the order of their nodes in the file.
+/// `node` returns the index of the node.
+fn take<C: Component>(world: &mut World, node: impl Fn(&C) -> usize) -> Vec<(Entity, C)> {
+    let mut query = world.query::<(Entity, &C)>();
+    let found = query.iter(world);
+    let mut entities: Vec<_> = found
+        .map(|(entity, loaded)| (node(loaded), entity))
+        .collect();
+    // Rapier's results depend on the order in which bodies are inserted. So it is the same each time a file is loaded.
+    // Two scenes that are spawned in the same frame have nodes with the same index.
     entities.sort_unstable();
-    let taken = entities.into_iter().filter_map(|entity| {
+    let taken = entities.into_iter().filter_map(|(_, entity)| {
         let loaded = world.entity_mut(entity).take::<C>()?;
         Some((entity, loaded))
     });
@@ -137,8 +142,13 @@ pub(super) fn anchor(world: &mut World, node: Entity) -> Entity {
     body
 }
 
-/// Moves a body to a place in the hierarchy where no ancestor moves or rotates it, because bevy_rapier3d 0.36 writes
-/// wrong transforms into bodies below rotated entities.
+/// Least length of the vector part of a quaternion that counts as a rotation. It is the sine of half the angle, so this is
+/// 2e-5 rad, or 0.02 mm at a distance of 1 m. Rounding errors in single precision are a hundred times smaller.
+const TURNED: f32 = 1e-5;
+
+/// Moves a body to a place in the hierarchy where no ancestor moves, rotates or scales it, because bevy_rapier3d 0.36
+/// writes wrong transforms into bodies below rotated entities, and places the colliders of a body's descendants without
+/// the scale that is above the body.
 ///
 /// In the file, nested bodies move independently. So a body below other bodies of the file moves up to the parent of
 /// the topmost of them. New entities in between undo the transform of that parent.
@@ -151,15 +161,16 @@ fn stand_free(world: &mut World, body: Entity, at: Transform, moving: &EntityHas
     let Some(place) = place(world, parent) else {
         return;
     };
-    let turned = place.rotation.angle_between(Quat::IDENTITY) >= 1e-6;
-    if !turned && top == body {
+    let turned = place.rotation.xyz().length() >= TURNED;
+    let scale = mass::steady(place.scale);
+    if !turned && scale == Vec3::ONE && top == body {
         return;
     }
     let mut level = parent;
     let back = place.rotation.inverse();
     // The scale goes first, on an entity of its own: one `Transform` cannot undo an uneven scale and a rotation.
     for undone in [
-        Transform::from_scale(mass::steady(place.scale).recip()),
+        Transform::from_scale(scale.recip()),
         Transform::from_rotation(back).with_translation(back * -place.translation),
     ] {
         if undone != Transform::IDENTITY {
@@ -295,10 +306,12 @@ mod tests {
         for scale in [Vec3::ZERO, Vec3::new(1.0, 0.0, 1.0)] {
             let physics = NodePhysics::read(&json!({ "motion": {} }), place, &Told::default());
             let body = LoadedBody {
+                node: 0,
                 motion: Arc::new(physics.motion.expect("a motion")),
                 place: place.to_owned(),
             };
             let collider = LoadedCollider {
+                node: 0,
                 shape: Shape::Implicit(Implicit::Sphere { radius: 0.5 }),
                 material: None,
                 groups: None,

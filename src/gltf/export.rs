@@ -1,14 +1,16 @@
 //! Writes bodies, colliders, joints and elements of a world as a glTF file.
 
-use super::ends::ends;
+use super::ends::{ends, written_ends};
 use super::export_element::element;
 use super::export_filters::Filters;
 use super::export_physics::{Geometry, Parts, material, motion, own_scale};
 use super::left_out::LeftOut;
 use super::number::{Fields, numbers, vector};
 use super::place::{above, place};
+use crate::MouseSpring;
 use base64::Engine as _;
-use bevy::ecs::entity::{EntityHashMap, EntityHashSet};
+use bevy::ecs::entity::{EntityHashMap, EntityHashSet, EntityIndexSet};
+use bevy::ecs::entity_disabling::Disabled;
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
 use serde_json::{Value, json};
@@ -27,9 +29,9 @@ pub struct ExportedGltf {
 /// become `KHR_physics_rigid_bodies`, and elements become `BEVY_coilover`. Nodes are written for these and for the
 /// entities that they need. Meshes for rendering are not written.
 ///
-/// All numbers read back as the same `f32`. Each root gets its transform in the world; a root below another root
-/// stays there. Physics need not have run a step. `docs/gltf.md` lists what the format cannot hold, and
-/// [`ExportedGltf::left_out`] lists what was lost of this world.
+/// Numbers of elements, shapes and materials read back as the same `f32`, and those of places, velocities and joints up to
+/// rounding. Each root gets its transform in the world; a root below another root stays there. Physics need not have run a
+/// step. `docs/gltf.md` lists what the format cannot hold, and [`ExportedGltf::left_out`] lists what was lost of this world.
 ///
 /// ```
 /// # use bevy::prelude::*;
@@ -46,7 +48,8 @@ pub fn export_gltf(world: &World, roots: impl IntoIterator<Item = Entity>) -> Ex
     let mut asked: Vec<_> = roots.into_iter().collect();
     let mut seen = EntityHashSet::default();
     asked.retain(|root| world.get_entity(*root).is_ok() && seen.insert(*root));
-    let kept = kept(world, &asked);
+    let below = below(world, &asked);
+    let kept = kept(world, &asked, &below);
     // Each node is in the file once: a root below another root is written there.
     let stands_alone = |root: &Entity| !above(world, *root).any(|above| seen.contains(&above));
     let roots: Vec<_> = asked.into_iter().filter(stands_alone).collect();
@@ -61,24 +64,48 @@ pub fn export_gltf(world: &World, roots: impl IntoIterator<Item = Entity>) -> Ex
     for root in &roots {
         writer.number(*root, &kept);
     }
+    tell_beside(world, &below, &mut writer.left_out);
+    for entity in below.iter().filter(|entity| !kept.contains(*entity)) {
+        writer.left_out.tell_unwritten(world.entity(*entity));
+    }
     writer.write(&roots)
 }
 
-/// Returns the entities to write: the roots, bodies, colliders and elements below them, the ends of those elements,
-/// and all ancestors of these up to the roots.
-fn kept(world: &World, roots: &[Entity]) -> EntityHashSet {
-    let mut below = Vec::new();
-    let mut seen = EntityHashSet::default();
+/// Returns the roots and all their descendants.
+fn below(world: &World, roots: &[Entity]) -> EntityIndexSet {
+    let mut below = EntityIndexSet::new();
     let mut open = roots.to_vec();
     while let Some(entity) = open.pop() {
-        if seen.insert(entity) {
-            below.push(entity);
+        if below.insert(entity) {
             open.extend(world.get::<Children>(entity).into_iter().flatten());
         }
     }
+    below
+}
+
+/// Tells of what acts on entities below the roots and is itself not below them.
+fn tell_beside(world: &World, below: &EntityIndexSet, left_out: &mut LeftOut) {
+    let acts_on_them = |here: &EntityRef| {
+        let pulled = here.get::<MouseSpring>().map(|mouse| mouse.body);
+        let ends = written_ends(*here, world).into_iter().flatten();
+        ends.chain(pulled).any(|end| below.contains(&end))
+    };
+    // This finds disabled entities too, as a query would not.
+    let others = world
+        .iter_entities()
+        .filter(|here| !below.contains(&here.id()));
+    for here in others.filter(acts_on_them) {
+        let what = "acts on what is exported, but is below none of the roots; not written";
+        left_out.tell(here, what);
+    }
+}
+
+/// Returns the entities to write: the roots, bodies, colliders and elements `below` them, the ends of those elements,
+/// and all ancestors of these up to the roots.
+fn kept(world: &World, roots: &[Entity], below: &EntityIndexSet) -> EntityHashSet {
     let mut kept = EntityHashSet::default();
     let mut keep = |mut entity: Entity| {
-        while seen.contains(&entity) && kept.insert(entity) {
+        while below.contains(&entity) && kept.insert(entity) {
             match world.get::<ChildOf>(entity) {
                 Some(parent) => entity = parent.parent(),
                 None => break,
@@ -86,11 +113,11 @@ fn kept(world: &World, roots: &[Entity]) -> EntityHashSet {
         }
     };
     roots.iter().copied().for_each(&mut keep);
-    for entity in below {
-        let here = world.entity(entity);
-        let ends = ends(here);
+    for entity in below.iter() {
+        let here = world.entity(*entity);
+        let ends = written_ends(here, world);
         if here.contains::<RigidBody>() || here.contains::<Collider>() || ends.is_some() {
-            keep(entity);
+            keep(*entity);
         }
         ends.into_iter().flatten().for_each(&mut keep);
     }
@@ -241,6 +268,10 @@ impl Writer<'_> {
         if let Some(element) = element(here, self.world, index, &mut self.left_out) {
             extensions.add(super::element::NAME, element);
         }
+        if here.contains::<Disabled>() && ends(here).is_none() {
+            let what = "Disabled is written of elements only";
+            self.left_out.tell(here, what);
+        }
         self.tell_part_of_another(here);
         self.left_out.tell_unwritten(here);
         if !extensions.is_empty() {
@@ -295,12 +326,24 @@ impl Writer<'_> {
                 return None;
             }
         };
+        if let ColliderView::TriMesh(mesh) = here.get::<Collider>()?.as_unscaled_typed_shape()
+            && !mesh.raw.flags().is_empty()
+        {
+            self.left_out.tell(here, "TriMeshFlags are not written");
+        }
         let symmetric = matches!(geometry, Geometry::Shape(_));
         let geometry = match geometry {
             Geometry::Shape(shape) => json!({ "shape": shape }),
             Geometry::Mesh { mesh, hull } => {
-                // The mesh goes on a separate node outside the scene, so that it is not drawn.
-                let node = self.add_node(json!({ "mesh": mesh }));
+                let node = match self.shared.mesh_nodes.get(mesh) {
+                    Some(node) => *node,
+                    // The mesh goes on a separate node outside the scene, so that it is not drawn.
+                    None => {
+                        let node = self.add_node(json!({ "mesh": mesh }));
+                        self.shared.mesh_nodes.push(node);
+                        node
+                    }
+                };
                 json!({ "node": node, "convexHull": hull })
             }
         };

@@ -1,9 +1,9 @@
 //! Writes an element as `BEVY_coilover`; [`element`](super::element) reads it back.
 
-use super::ends::{ends, framed_ends};
+use super::ends::{count, framed_ends, is_torsion, written_ends};
 use super::expand::{owner, still_body};
 use super::left_out::LeftOut;
-use super::number::{Fields, number, numbers, vector};
+use super::number::{Fields, not_finite, number, numbers, vector};
 use super::place::{matrix, place};
 use crate::element::*;
 use bevy::ecs::entity_disabling::Disabled;
@@ -11,15 +11,25 @@ use bevy::prelude::*;
 use bevy_rapier3d::prelude::RigidBody;
 use serde_json::{Value, json};
 
-/// Returns the extension object of an element; `None` if the entity is not an element. `node` returns the index of an
-/// end's node.
+/// Returns the extension object of an element; `None` if the entity is not an element, or is one with a fault that the file
+/// cannot hold. Such an element did not act, and without the fault it would. `node` returns the index of an end's node.
 pub(super) fn element(
     entity: EntityRef,
     world: &World,
     node: impl Fn(Entity) -> Option<usize>,
     left_out: &mut LeftOut,
 ) -> Option<Value> {
-    let [a, b] = ends(entity)?;
+    let [a, b] = written_ends(entity, world)?;
+    if count(entity) > 1 {
+        left_out.tell(
+            entity,
+            "several elements on one entity do not act; none is written",
+        );
+        return None;
+    }
+    if entity.contains::<EndNames>() && (node(a).is_none() || node(b).is_none()) {
+        left_out.tell(entity, "EndNames is not written");
+    }
     let mut end = |entity_of: Entity, name: &str| {
         let index = node(entity_of);
         if index.is_none() {
@@ -34,36 +44,36 @@ pub(super) fn element(
     let mut all = Fields::default();
     if let Some(s) = entity.get::<Spring>() {
         let fields = ends
-            .with("stiffness", number(s.stiffness))
-            .with("restLength", optional(s.rest_length));
+            .number("stiffness", s.stiffness)
+            .number("restLength", s.rest_length);
         all.add("spring", fields.value());
     } else if let Some(d) = entity.get::<Damper>() {
-        let fields = ends.with("damping", number(d.damping));
+        let fields = ends.number("damping", d.damping);
         all.add("damper", fields.value());
     } else if let Some(p) = entity.get::<SpringDamper>() {
         let fields = ends
-            .with("stiffness", number(p.stiffness))
-            .with("damping", number(p.damping))
-            .with("restLength", optional(p.rest_length));
+            .number("stiffness", p.stiffness)
+            .number("damping", p.damping)
+            .number("restLength", p.rest_length);
         all.add("springDamper", fields.value());
     } else if let Some(s) = entity.get::<TorsionSpring>() {
         let fields = ends
             .with("axis", vector(s.axis))
-            .with("stiffness", number(s.stiffness))
-            .with("restAngle", optional(s.rest_angle));
+            .number("stiffness", s.stiffness)
+            .number("restAngle", s.rest_angle);
         all.add("torsionSpring", fields.value());
     } else if let Some(d) = entity.get::<TorsionDamper>() {
         let fields = ends
             .with("axis", vector(d.axis))
-            .with("damping", number(d.damping));
+            .number("damping", d.damping);
         all.add("torsionDamper", fields.value());
     } else {
         let p = entity.get::<TorsionSpringDamper>()?;
         let fields = ends
             .with("axis", vector(p.axis))
-            .with("stiffness", number(p.stiffness))
-            .with("damping", number(p.damping))
-            .with("restAngle", optional(p.rest_angle));
+            .number("stiffness", p.stiffness)
+            .number("damping", p.damping)
+            .number("restAngle", p.rest_angle);
         all.add("torsionSpringDamper", fields.value());
     }
     if let Some(anchors) = anchors(entity, [a, b], world, left_out) {
@@ -71,6 +81,8 @@ pub(super) fn element(
         all.add("anchors", anchors);
     }
     companions(entity, &mut all);
+    #[cfg(feature = "visual")]
+    looks(entity, &mut all, left_out);
     if entity.contains::<Disabled>() {
         all.add("disabled", true.into());
     }
@@ -78,7 +90,13 @@ pub(super) fn element(
         left_out.tell(entity, "its law is a function, which no file can hold");
     }
     tell_frames(entity, world, left_out);
-    Some(all.value())
+    let all = all.value();
+    if let Some(field) = not_finite(&all) {
+        let what = format_args!("its {field} is NaN or infinite, so it does not act; not written");
+        left_out.tell(entity, what);
+        return None;
+    }
+    Some(all)
 }
 
 /// Tells of an end on a fixed body whose frame is another one after a file. A file has no fixed bodies: an element that
@@ -123,8 +141,9 @@ fn anchors(
     found.map(|(a, b)| Anchors::new(a, b)).or(given)
 }
 
-fn optional(x: Option<f32>) -> Value {
-    x.map_or(Value::Null, number)
+/// Returns a limit, or `None` where it is the value that stands for no limit.
+fn limit(x: f32, none: f32) -> Option<f32> {
+    (x != none).then_some(x)
 }
 
 fn companions(entity: EntityRef, all: &mut Fields) {
@@ -143,12 +162,15 @@ fn companions(entity: EntityRef, all: &mut Fields) {
         all.add("springAction", name.into());
     }
     if let Some(travel) = entity.get::<SpringTravel>() {
+        // Where lengths have no sign, this is a fault, and it would be read as 0.
+        let signed = is_torsion(entity) || entity.contains::<SpringAxis>();
+        let min = limit(travel.min_length, f32::NEG_INFINITY);
         let fields = Fields::default()
-            .with("minLength", number(travel.min_length))
-            .with("maxLength", number(travel.max_length))
-            .with("stopStiffness", number(travel.stop_stiffness))
-            .with("progression", number(travel.progression))
-            .with("stopDamping", number(travel.stop_damping));
+            .number("minLength", min.or((!signed).then_some(travel.min_length)))
+            .number("maxLength", limit(travel.max_length, f32::INFINITY))
+            .number("stopStiffness", travel.stop_stiffness)
+            .number("progression", travel.progression)
+            .number("stopDamping", travel.stop_damping);
         all.add("springTravel", fields.value());
     }
     match entity.get::<SpringAxis>() {
@@ -157,10 +179,10 @@ fn companions(entity: EntityRef, all: &mut Fields) {
         None => {}
     }
     if let Some(Preload(force)) = entity.get() {
-        all.add("preload", number(*force));
+        all.add_number("preload", *force);
     }
     if let Some(MaxForce(force)) = entity.get() {
-        all.add("maxForce", number(*force));
+        all.add_number("maxForce", limit(*force, f32::INFINITY));
     }
     if let Some(breakable) = entity.get::<Breakable>() {
         let then = match breakable.then {
@@ -168,8 +190,8 @@ fn companions(entity: EntityRef, all: &mut Fields) {
             WhenBroken::Disable => "Disable",
         };
         let fields = Fields::default()
-            .with("force", number(breakable.force))
-            .with("length", number(breakable.length))
+            .number("force", limit(breakable.force, f32::INFINITY))
+            .number("length", limit(breakable.length, f32::INFINITY))
             .with("then", then.into());
         all.add("breakable", fields.value());
     }
@@ -195,12 +217,10 @@ fn companions(entity: EntityRef, all: &mut Fields) {
         };
         let fields = Fields::default()
             .with("load", load.into())
-            .with("share", number(pose.share))
-            .with("mass", optional(pose.mass));
+            .number("share", pose.share)
+            .number("mass", pose.mass);
         all.add("holdPose", fields.value());
     }
-    #[cfg(feature = "visual")]
-    looks(entity, all);
 }
 
 fn table(table: &ForceTable) -> Value {
@@ -246,10 +266,18 @@ fn damping_law(law: &DampingLaw) -> Value {
     }
 }
 
+/// Adds what is drawn of an element. A part that cannot be drawn, because a number is not finite, is left out alone.
 #[cfg(feature = "visual")]
-fn looks(entity: EntityRef, all: &mut Fields) {
+fn looks(entity: EntityRef, all: &mut Fields, left_out: &mut LeftOut) {
     use crate::visual::{Coil, Handedness, HelixEnds, ShowSpringGizmos, Telescope};
     let color = |color: Color| numbers(color.to_linear().to_f32_array());
+    let mut add = |key: &str, look: Value| match not_finite(&look) {
+        Some(field) => {
+            let what = format_args!("the {field} of its {key} is NaN or infinite; not written");
+            left_out.tell(entity, what);
+        }
+        None => all.add(key, look),
+    };
     if let Some(coil) = entity.get::<Coil>() {
         let ends = match coil.ends {
             HelixEnds::Open => "Open",
@@ -261,27 +289,27 @@ fn looks(entity: EntityRef, all: &mut Fields) {
             Handedness::Left => "Left",
         };
         let fields = Fields::default()
-            .with("radius", number(coil.radius))
-            .with("wireRadius", number(coil.wire_radius))
-            .with("turns", number(coil.turns))
+            .number("radius", coil.radius)
+            .number("wireRadius", coil.wire_radius)
+            .number("turns", coil.turns)
             .with("ends", ends.into())
             .with("handedness", hand.into())
             .with("color", color(coil.color))
             .with("fitted", coil.fitted.into());
-        all.add("coil", fields.value());
+        add("coil", fields.value());
     }
     if let Some(look) = entity.get::<Telescope>() {
         let fields = Fields::default()
-            .with("tubeRadius", number(look.tube_radius))
-            .with("rodRadius", number(look.rod_radius))
-            .with("tubeLength", optional(look.tube_length))
-            .with("rodLength", optional(look.rod_length))
-            .with("stroke", optional(look.stroke))
+            .number("tubeRadius", look.tube_radius)
+            .number("rodRadius", look.rod_radius)
+            .number("tubeLength", look.tube_length)
+            .number("rodLength", look.rod_length)
+            .number("stroke", look.stroke)
             .with("eyes", look.eyes.into())
             .with("bumpRubber", look.bump_rubber.into())
             .with("color", color(look.color))
             .with("fitted", look.fitted.into());
-        all.add("telescope", fields.value());
+        add("telescope", fields.value());
     }
     if let Some(ShowSpringGizmos(shown)) = entity.get() {
         all.add("showSpringGizmos", (*shown).into());

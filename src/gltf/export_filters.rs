@@ -4,7 +4,10 @@
 //! In Rapier, two colliders touch if each has a membership that the other's filters contain. In the file, a collider
 //! is let through only if the other collider names all of its systems, and a collider without systems cannot be
 //! named. So colliders without groups get a filter too.
+//!
+//! The name of a system says the bits of its groups, so that they come back as they were.
 
+use super::filters::{name, touch};
 use bevy_rapier3d::prelude::CollisionGroups;
 use serde_json::{Value, json};
 
@@ -35,24 +38,17 @@ impl Filters {
 
     /// Returns the JSON objects of the filters.
     pub(super) fn values(&self) -> Vec<Value> {
-        let name = |index: usize| format!("group_{index}");
-        let filter = |(index, own): (usize, &CollisionGroups)| {
-            let others = self.0.iter().enumerate();
-            let touched = others.filter(|(_, other)| touch(own, other));
-            let mut names: Vec<String> = touched.map(|(index, _)| name(index)).collect();
+        let filter = |own: &CollisionGroups| {
+            let touched = self.0.iter().filter(|other| touch(*own, **other));
+            let mut names: Vec<String> = touched.map(|other| name(*other)).collect();
             if names.is_empty() {
                 // The draft of the extension requires at least one name.
                 names.push("nothing".into());
             }
-            json!({ "collisionSystems": [name(index)], "collideWithSystems": names })
+            json!({ "collisionSystems": [name(*own)], "collideWithSystems": names })
         };
-        self.0.iter().enumerate().map(filter).collect()
+        self.0.iter().map(filter).collect()
     }
-}
-
-/// Whether colliders with these groups touch in Rapier.
-fn touch(a: &CollisionGroups, b: &CollisionGroups) -> bool {
-    a.memberships.intersects(b.filters) && b.memberships.intersects(a.filters)
 }
 
 #[cfg(test)]
@@ -63,13 +59,13 @@ mod tests {
     use crate::gltf::physics::Shared;
     use bevy_rapier3d::prelude::Group;
 
-    /// Writes the filters and reads them back. Returns memberships and filters of each as bits.
-    fn read(filters: &Filters) -> Vec<(u32, u32)> {
+    /// Writes the filters and reads them back.
+    fn read(filters: &Filters) -> Shared {
         let file = json!({ "collisionFilters": filters.values() });
         let told = Told::default();
         let shared = Shared::read(Some(&file), None, &told);
         assert_eq!(told.lines(), Vec::<String>::new());
-        filters::groups(&shared)
+        shared
     }
 
     #[test]
@@ -87,14 +83,31 @@ mod tests {
             CollisionGroups::new(Group::NONE, Group::ALL),
         ];
         let filters = Filters::of(colliders);
-        let read = read(&filters);
+        // As another program would read them, which does not know what the names say.
+        let read = filters::groups(&read(&filters));
         let of = |groups| read[filters.index(groups).expect("it has a filter")];
         for a in colliders {
             for b in colliders {
                 let (again_a, again_b) = (of(a), of(b));
                 let again = again_a.0 & again_b.1 != 0 && again_b.0 & again_a.1 != 0;
-                assert_eq!(again, touch(&a, &b), "{a:?} and {b:?}");
+                assert_eq!(again, touch(a, b), "{a:?} and {b:?}");
             }
+        }
+    }
+
+    #[test]
+    fn more_groups_than_there_are_bits_come_back_bit_for_bit() {
+        let colliders: Vec<CollisionGroups> = (0..100)
+            .map(|i: u32| {
+                let bits = |seed: u32| Group::from_bits_retain(seed.wrapping_mul(0x9E37_79B9));
+                CollisionGroups::new(bits(i), bits(i + 1000))
+            })
+            .collect();
+        let filters = Filters::of(colliders.iter().copied());
+        let read = filters::named_groups(&read(&filters)).expect("they are named");
+        for groups in colliders {
+            let found = read[filters.index(groups).expect("it has a filter")];
+            assert_eq!(found, (groups.memberships.bits(), groups.filters.bits()));
         }
     }
 

@@ -121,6 +121,22 @@ fn comes_back_as_element(motor: &JointMotor) -> bool {
     }
 }
 
+/// Returns the motor of a joint that is a spring and a damper along the distance of its anchors and nothing else, as Rapier's
+/// `SpringJoint` is.
+fn distance_spring(joint: &RawJoint) -> Option<&JointMotor> {
+    let linear = JointAxesMask::LIN_AXES;
+    let is_of_distance = joint.coupled_axes.contains(linear)
+        && !joint.locked_axes.intersects(linear)
+        && joint.motor_axes & linear == JointAxesMask::LIN_X;
+    let motor = &joint.motors[0];
+    let numbers = [motor.target_pos, motor.stiffness, motor.damping];
+    let is_spring = motor.model == MotorModel::ForceBased
+        && motor.target_vel == 0.0
+        && motor.max_force >= f32::MAX
+        && numbers.iter().all(|x| x.is_finite());
+    (is_of_distance && is_spring).then_some(motor)
+}
+
 /// Returns the limits and drives of a joint as JSON.
 fn kind(joint: &RawJoint, entity: EntityRef, left_out: &mut LeftOut) -> Value {
     let bits = |mask: u8, first: usize| -> Vec<usize> {
@@ -131,6 +147,15 @@ fn kind(joint: &RawJoint, entity: EntityRef, left_out: &mut LeftOut) -> Value {
     let limited = joint.limit_axes.bits() & !locked;
     let mut limits = Vec::new();
     let mut drives = Vec::new();
+    let mut motors = joint.motor_axes.bits() & !locked;
+    if let Some(spring) = distance_spring(joint) {
+        let length = number(spring.target_pos);
+        limits.push(json!({
+            "linearAxes": [0, 1, 2], "min": length, "max": length,
+            "stiffness": number(spring.stiffness), "damping": number(spring.damping),
+        }));
+        motors &= !JointAxesMask::LIN_AXES.bits();
+    }
     for (first, key, kind) in [(0, "linearAxes", "linear"), (3, "angularAxes", "angular")] {
         let all = bits(locked, first);
         if !all.is_empty() {
@@ -156,11 +181,16 @@ fn kind(joint: &RawJoint, entity: EntityRef, left_out: &mut LeftOut) -> Value {
             && limited & (1 << (first + i)) != 0
         {
             limits.push(ends(*i, group.clone()));
+            // Rapier has no least distance of coupled axes in any case.
+            if first == 3 && joint.limits[first + i].min > 0.0 {
+                let what = "the min of a limit of its coupled angles comes back as 0";
+                left_out.tell(entity, what);
+            }
         }
         for i in bits(limited & !coupled, first) {
             limits.push(ends(i, vec![i]));
         }
-        for i in bits(joint.motor_axes.bits() & !locked, first) {
+        for i in bits(motors, first) {
             let motor = &joint.motors[first + i];
             let mode = match motor.model {
                 MotorModel::AccelerationBased => "acceleration",

@@ -5,7 +5,9 @@ use super::export_mass::mass;
 use super::left_out::LeftOut;
 use super::mass::steady;
 use super::number::{Fields, number, numbers, vector};
+use super::physics::UNLOCKED;
 use super::place::place;
+use bevy::platform::collections::HashMap;
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
 use serde_json::{Value, json};
@@ -18,6 +20,10 @@ pub(super) struct Parts {
     pub(super) filters: Filters,
     pub(super) joints: Vec<Value>,
     pub(super) meshes: Vec<Value>,
+    /// Index of the mesh of a shape, by the address of the shape. Colliders that were cloned share their shape.
+    shared_meshes: HashMap<usize, usize>,
+    /// Index of the node of each mesh.
+    pub(super) mesh_nodes: Vec<usize>,
     pub(super) accessors: Vec<Value>,
     pub(super) views: Vec<Value>,
     pub(super) buffer: Vec<u8>,
@@ -80,12 +86,19 @@ impl Parts {
                 json!({ "type": "plane", "plane": {} })
             }
             ColliderView::TriMesh(mesh) => {
-                let mesh = self.mesh(mesh.raw.vertices(), mesh.raw.indices());
+                let shape = std::ptr::from_ref(mesh.raw).addr();
+                let shared = self.shared_meshes.get(&shape).copied();
+                let mesh = shared
+                    .unwrap_or_else(|| self.mesh(shape, mesh.raw.vertices(), mesh.raw.indices()));
                 return Ok(Geometry::Mesh { mesh, hull: false });
             }
             ColliderView::ConvexPolyhedron(hull) => {
-                let (points, triangles) = hull.raw.to_trimesh();
-                let mesh = self.mesh(&points, &triangles);
+                let shape = std::ptr::from_ref(hull.raw).addr();
+                let shared = self.shared_meshes.get(&shape).copied();
+                let mesh = shared.unwrap_or_else(|| {
+                    let (points, triangles) = hull.raw.to_trimesh();
+                    self.mesh(shape, &points, &triangles)
+                });
                 return Ok(Geometry::Mesh { mesh, hull: true });
             }
             _ => return Err("has a shape that glTF has not"),
@@ -93,7 +106,8 @@ impl Parts {
         Ok(Geometry::Shape(index(&mut self.shapes, shape)))
     }
 
-    fn mesh(&mut self, vertices: &[Vec3], triangles: &[[u32; 3]]) -> usize {
+    /// Adds the mesh of the shape at an address.
+    fn mesh(&mut self, shape: usize, vertices: &[Vec3], triangles: &[[u32; 3]]) -> usize {
         let numbers_of = vertices.iter().flat_map(Vec3::to_array);
         let bytes = numbers_of.flat_map(f32::to_le_bytes).collect();
         let view = self.view(bytes, 34962);
@@ -112,7 +126,9 @@ impl Parts {
         let last = self.accessors.len() - 1;
         self.meshes.push(json!({ "primitives": [
             { "attributes": { "POSITION": last - 1 }, "indices": last }] }));
-        self.meshes.len() - 1
+        let mesh = self.meshes.len() - 1;
+        self.shared_meshes.insert(shape, mesh);
+        mesh
     }
 
     fn view(&mut self, bytes: Vec<u8>, target: u32) -> usize {
@@ -148,8 +164,14 @@ pub(super) fn motion(body: EntityRef, world: &World, left_out: &mut LeftOut) -> 
         );
     }
     let properties = mass(world, body);
-    let endless = locked.contains(LockedAxes::TRANSLATION_LOCKED);
-    motion.add("mass", number(if endless { 0.0 } else { properties.mass }));
+    // In the file, what is locked is infinite, which is written as zero. The numbers themselves are for this crate.
+    let mut unlocked = Fields::default();
+    if locked.contains(LockedAxes::TRANSLATION_LOCKED) {
+        motion.add("mass", number(0.0));
+        unlocked.add("mass", number(properties.mass));
+    } else {
+        motion.add("mass", number(properties.mass));
+    }
     if properties.local_center_of_mass != Vec3::ZERO {
         motion.add(
             "centerOfMass",
@@ -158,12 +180,16 @@ pub(super) fn motion(body: EntityRef, world: &World, left_out: &mut LeftOut) -> 
     }
     if locked.contains(LockedAxes::ROTATION_LOCKED) {
         motion.add("inertiaDiagonal", vector(Vec3::ZERO));
+        unlocked.add("inertiaDiagonal", vector(properties.principal_inertia));
     } else {
         motion.add("inertiaDiagonal", vector(properties.principal_inertia));
-        let frame = properties.principal_inertia_local_frame;
-        if frame != Quat::IDENTITY {
-            motion.add("inertiaOrientation", numbers(frame.to_array()));
-        }
+    }
+    let frame = properties.principal_inertia_local_frame;
+    if frame != Quat::IDENTITY {
+        motion.add("inertiaOrientation", numbers(frame.to_array()));
+    }
+    if !unlocked.is_empty() {
+        motion.add("extras", json!({ UNLOCKED: unlocked.value() }));
     }
     if let Some(velocity) = body.get::<Velocity>() {
         let turned = place.rotation.inverse();

@@ -1,7 +1,8 @@
 //! Converts collision filters to bits. Each filter of the file gets one bit, so that every rule on sets of names
-//! holds exactly.
+//! holds exactly. Filters that [`export_filters`](super::export_filters) wrote get the bits that they were written from.
 
 use super::physics::{Filter, Shared};
+use bevy_rapier3d::prelude::{CollisionGroups, Group};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Bit of the colliders without a filter: the last one.
@@ -13,9 +14,10 @@ const SHARED: u32 = UNFILTERED - 1;
 /// Greatest number of filters for which every filter has a bit of its own.
 pub(super) const MOST: usize = UNFILTERED as usize;
 
-/// Greatest number of different filters that are compared with each other although they share a bit. If there are more,
-/// each of them may touch all of them. The time grows with the square of the number: this many take milliseconds. Pinned
-/// by `tests::many_filters_take_no_time_by_the_square_of_their_number`.
+/// Greatest number of filters that are compared with each other to see whether their names say their bits, and of different
+/// filters that share a bit. If there are more, the names do not count, and each that shares a bit may touch all of these.
+/// The time grows with the square of the number: this many take milliseconds. Pinned by
+/// `tests::many_filters_take_no_time_by_the_square_of_their_number`.
 const MOST_COMPARED: usize = 256;
 
 /// Returns memberships and filters for each filter of the file, and at the end those for colliders without a filter.
@@ -53,6 +55,61 @@ pub(super) fn groups(shared: &Shared) -> Vec<(u32, u32)> {
     groups.extend(crowd.iter().map(|a| (1_u32 << SHARED, masks[a])));
     groups.extend(alone[exact.len()..].iter().map(own));
     groups
+}
+
+/// What the name of a collision system begins with that stands for the `CollisionGroups` of Rapier.
+const OF_RAPIER: &str = "rapier";
+
+/// Returns the name of the collision system of these groups: memberships and filters in hexadecimal digits.
+pub(super) fn name(groups: CollisionGroups) -> String {
+    let (memberships, filters) = (groups.memberships.bits(), groups.filters.bits());
+    format!("{OF_RAPIER} {memberships:08x} {filters:08x}")
+}
+
+/// Returns the groups that [`name`] made the only system of a filter from.
+fn named(filter: &Filter) -> Option<CollisionGroups> {
+    let [system] = &filter.systems[..] else {
+        return None;
+    };
+    let bits = system.strip_prefix(OF_RAPIER)?.strip_prefix(' ')?;
+    let (memberships, filters) = bits.split_once(' ')?;
+    let group = |digits| {
+        Some(Group::from_bits_retain(
+            u32::from_str_radix(digits, 16).ok()?,
+        ))
+    };
+    Some(CollisionGroups::new(group(memberships)?, group(filters)?))
+}
+
+/// Whether colliders with these groups touch in Rapier.
+pub(super) fn touch(a: CollisionGroups, b: CollisionGroups) -> bool {
+    a.memberships.intersects(b.filters) && b.memberships.intersects(a.filters)
+}
+
+/// Returns memberships and filters for each filter of the file, as [`groups`] does, if the names of the systems say them.
+/// `None` if some name does not, or if the file was changed so that others touch than the names say. Colliders without a
+/// filter get all bits, which is wrong; there must be none.
+pub(super) fn named_groups(shared: &Shared) -> Option<Vec<(u32, u32)>> {
+    let count = shared.filters.len();
+    if count == 0 || count > MOST_COMPARED {
+        return None;
+    }
+    let filters = shared.filters.iter().map(Option::as_ref);
+    let both = filters.map(|filter| Some((Rule::of(filter?), named(filter?)?)));
+    let both: Vec<(Rule, CollisionGroups)> = both.collect::<Option<_>>()?;
+    let agree = |(a, of_a): &(Rule, CollisionGroups), (b, of_b): &(Rule, CollisionGroups)| {
+        collide(a, b) == touch(*of_a, *of_b)
+    };
+    if both.iter().any(|a| both.iter().any(|b| !agree(a, b))) {
+        return None;
+    }
+    let groups = both.iter().map(|(_, groups)| *groups);
+    let groups = groups.chain([CollisionGroups::default()]);
+    Some(
+        groups
+            .map(|g| (g.memberships.bits(), g.filters.bits()))
+            .collect(),
+    )
 }
 
 /// What a filter says. Names are sorted, and none is there twice, so that they are found quickly.
@@ -161,6 +218,35 @@ mod tests {
             ..Default::default()
         };
         assert_eq!(groups(&shared).len(), 41);
+    }
+
+    #[test]
+    fn names_count_only_where_the_rules_of_the_file_agree_with_them() {
+        let [one, other] = ["rapier 00000004 00000004", "rapier 00000008 00000008"];
+        let file = |filters: [Option<Filter>; 2]| Shared {
+            filters: filters.into(),
+            ..Default::default()
+        };
+        let right = file([
+            filter(&[one], Some(&[one]), None),
+            filter(&[other], Some(&[other]), None),
+        ]);
+        let all = (u32::MAX, u32::MAX);
+        assert_eq!(named_groups(&right), Some(vec![(4, 4), (8, 8), all]));
+        // Someone made both touch, or gave one a name of his own.
+        let both = [one, other];
+        let changed = file([
+            filter(&[one], Some(&both), None),
+            filter(&[other], Some(&both), None),
+        ]);
+        let foreign = file([
+            filter(&[one], Some(&[one]), None),
+            filter(&["wall"], Some(&["wall"]), None),
+        ]);
+        let broken = file([filter(&[one], Some(&[one]), None), None]);
+        for shared in [changed, foreign, broken, Shared::default()] {
+            assert_eq!(named_groups(&shared), None, "{shared:?}");
+        }
     }
 
     /// The same by comparison of each filter with each other one.

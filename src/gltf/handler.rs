@@ -1,13 +1,14 @@
 //! Extension handler of Bevy's glTF loader: reads this crate's extensions and puts their components on the loaded
 //! scene.
 
-use super::carry::{LoadedBody, LoadedCollider, LoadedJoint, Shape};
+use super::carry::{LoadedBody, LoadedCollider, LoadedEnd, LoadedJoint, Shape};
 use super::geometry::Geometry;
 use super::json::Told;
 use super::nodes::{File, Node};
 use super::physics::{self, Shared, Source};
 use super::{element, ends};
 use bevy::asset::LoadContext;
+use bevy::ecs::entity::EntityHashSet;
 use bevy::gltf::extensions::{ErasedGltfExtensionHandler, GltfExtensionHandler};
 use bevy::gltf::{GltfLoaderSettings, gltf as bevy_gltf};
 use bevy::mesh::MeshVertexAttribute;
@@ -124,6 +125,7 @@ impl Handler {
     ) {
         let file = self.file.clone();
         let Some(shared) = &file.shared else { return };
+        let mut framed = EntityHashSet::default();
         for (index, node) in file.nodes.iter().enumerate() {
             let Some(&entity) = entities.get(&index) else {
                 continue;
@@ -131,20 +133,27 @@ impl Handler {
             let mut entity = world.entity_mut(entity);
             if let Some(motion) = &node.physics.motion {
                 entity.insert(LoadedBody {
+                    node: index,
                     motion: Arc::new(motion.clone()),
                     place: format!("{}: {}", file.path, node.place),
                 });
             }
-            if let Some(collider) = self.collider(&file, shared, node, told) {
+            if let Some(collider) = self.collider(&file, shared, index, told) {
                 entity.insert(collider);
             }
-            if let Some(joint) = joint(&file, shared, node, entities, told) {
+            if let Some(joint) = joint(&file, shared, index, entities, told) {
                 entity.insert(joint);
             }
             if let Some(value) = &node.element {
                 let find = |index: usize| entities.get(&index).copied();
                 element::insert(value, &node.place, told, find, &mut entity);
-                ends::mark(&mut entity);
+                framed.extend(ends::framed_ends(entity.as_readonly()));
+            }
+        }
+        // An end that this scene has not is none of its nodes.
+        for node in 0..file.nodes.len() {
+            if let Some(end) = entities.get(&node).filter(|end| framed.contains(*end)) {
+                world.entity_mut(*end).insert(LoadedEnd { node });
             }
         }
     }
@@ -154,9 +163,10 @@ impl Handler {
         &mut self,
         file: &File,
         shared: &Shared,
-        node: &Node,
+        index: usize,
         told: &Told,
     ) -> Option<LoadedCollider> {
+        let node = &file.nodes[index];
         let collider = node.physics.collider.as_ref()?;
         let shape = self.shape(collider.source, file, shared, node, told)?;
         let material = collider.material.and_then(|index| {
@@ -178,6 +188,7 @@ impl Handler {
         });
         let unfiltered = (groups.len() > 1).then(|| groups[groups.len() - 1]);
         Some(LoadedCollider {
+            node: index,
             shape,
             material,
             groups: group.or(unfiltered),
@@ -220,16 +231,18 @@ impl Handler {
 fn joint(
     file: &File,
     shared: &Shared,
-    node: &Node,
+    index: usize,
     entities: &HashMap<usize, Entity>,
     told: &Told,
 ) -> Option<LoadedJoint> {
+    let node = &file.nodes[index];
     let joint = node.physics.joint.as_ref()?;
     let connected = entities.get(&joint.connected);
     let kind = shared.joints.get(joint.kind).cloned().flatten();
     match (connected, kind) {
         (Some(&connected), Some(kind)) => {
             return Some(LoadedJoint {
+                node: index,
                 connected,
                 kind: Arc::new(kind),
                 collide: joint.collide,

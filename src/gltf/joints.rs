@@ -93,6 +93,9 @@ pub(super) fn add(world: &mut World, node: Entity, joint: &LoadedJoint) {
     }
 }
 
+/// What is reported of a limit for which Rapier has no room beside an earlier one.
+const SECOND: &str = "a second rigid limit on an axis, or on two or three axes, is left out";
+
 /// Applies a rigid limit to a joint. Returns whether any of it takes effect, and a message if part of it does not.
 fn hold(joint: &mut GenericJoint, limit: &Limit) -> (bool, Option<&'static str>) {
     let axes: Vec<_> = (0..3).filter(|i| limit.axes[*i]).collect();
@@ -103,10 +106,19 @@ fn hold(joint: &mut GenericJoint, limit: &Limit) -> (bool, Option<&'static str>)
     if limit.min.is_none() && limit.max.is_none() {
         return (false, None);
     }
+    let (locked, coupled) = (joint.raw.locked_axes, joint.raw.coupled_axes);
+    let limited = joint.raw.limit_axes | coupled;
     if let [only] = axes[..] {
         if (limit.min, limit.max) == (Some(0.0), Some(0.0)) {
+            if coupled.intersects(mask) {
+                return (false, Some(SECOND));
+            }
             joint.lock_axes(mask);
             return (true, None);
+        }
+        // On a locked axis it would have no effect.
+        if limited.intersects(mask) {
+            return (false, Some(SECOND));
         }
         let ends = [
             limit.min.unwrap_or(-f32::MAX),
@@ -122,6 +134,9 @@ fn hold(joint: &mut GenericJoint, limit: &Limit) -> (bool, Option<&'static str>)
         return (false, Some(lacks));
     };
     if max <= 0.0 {
+        if coupled.intersects(mask) {
+            return (false, Some(SECOND));
+        }
         joint.lock_axes(mask);
         return (true, None);
     }
@@ -134,12 +149,10 @@ fn hold(joint: &mut GenericJoint, limit: &Limit) -> (bool, Option<&'static str>)
     } else {
         JointAxesMask::ANG_AXES
     };
-    let coupled = joint.raw.coupled_axes;
-    if coupled.intersects(kind) && coupled & kind != mask {
-        // Rapier would couple the axes of both limits together, and panics if these are all three angles.
-        let lacks =
-            "a second rigid limit on two or three axes, not those of the first, is left out";
-        return (false, Some(lacks));
+    // Rapier would couple the axes of both limits together, and panics if these are all three angles. It has one limit for
+    // each axis, that of coupled axes in the place of the first, and ignores it where that axis is locked.
+    if coupled.intersects(kind) || (limited | locked).intersects(mask) {
+        return (false, Some(SECOND));
     }
     joint.set_coupled_axes(coupled | mask);
     joint.set_limits(axis(limit.linear, axes[0]), [0.0, max]);

@@ -1,8 +1,6 @@
 //! Collects what an exported file cannot hold, with the entity and the component.
 
-use super::ends::ends;
-use crate::SpringLoad;
-use bevy::ecs::entity_disabling::Disabled;
+use crate::{MouseSpring, SpringLoad};
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
 use std::fmt::Display;
@@ -44,16 +42,14 @@ impl LeftOut {
             ContactSkin,
             ActiveHooks,
             ContactForceEventThreshold,
-            KinematicCharacterController
+            KinematicCharacterController,
+            MouseSpring
         );
         self.tell_values(entity);
         #[cfg(feature = "visual")]
         {
-            use crate::visual::TorsionCoil;
-            tell!(TorsionCoil);
-        }
-        if entity.contains::<Disabled>() && ends(entity).is_none() {
-            self.tell(entity, "Disabled is written of elements only");
+            use crate::visual::{SpringSkin, TorsionCoil};
+            tell!(SpringSkin, TorsionCoil);
         }
         if entity.get() == Some(&RigidBody::KinematicPositionBased) {
             self.tell(
@@ -65,8 +61,16 @@ impl LeftOut {
 
     /// Adds a sentence for each component that is lost with some values only.
     fn tell_values(&mut self, entity: EntityRef) {
-        // A trigger comes back with these two.
         let of_trigger = entity.contains::<Sensor>();
+        for (is_there, name) in [
+            (entity.contains::<Friction>(), "Friction"),
+            (entity.contains::<Restitution>(), "Restitution"),
+        ] {
+            if of_trigger && is_there {
+                self.tell(entity, format_args!("{name} of a Sensor is not written"));
+            }
+        }
+        // A trigger comes back with these two.
         let events = entity.get::<ActiveEvents>();
         if events.is_some_and(|e| !of_trigger || *e != ActiveEvents::COLLISION_EVENTS) {
             self.tell(entity, "ActiveEvents is not written");

@@ -41,7 +41,8 @@ pub(super) fn mass(
     let mass = match motion.mass {
         Some(0.0) => {
             locked = LockedAxes::TRANSLATION_LOCKED;
-            1.0
+            let unlocked = motion.unlocked_mass.filter(|mass| *mass > 0.0);
+            unlocked.unwrap_or(1.0)
         }
         Some(mass) => mass,
         None if sound => of_shapes,
@@ -64,6 +65,7 @@ pub(super) fn mass(
         (inertia, frame) = (given, motion.inertia_frame);
         if given == Vec3::ZERO {
             locked |= LockedAxes::ROTATION_LOCKED;
+            inertia = motion.unlocked_inertia.unwrap_or(given);
         }
     }
     let properties = MassProperties {

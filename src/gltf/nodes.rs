@@ -17,7 +17,7 @@ pub(super) struct File {
     pub(super) path: String,
     pub(super) nodes: Vec<Node>,
     pub(super) shared: Option<Shared>,
-    /// Bits of the collision filters, as [`filters::groups`] returns them.
+    /// Bits of the collision filters, as [`filters::named_groups`] or [`filters::groups`] returns them.
     pub(super) groups: Vec<(u32, u32)>,
     /// Indices of the meshes that colliders need.
     pub(super) wanted: HashSet<usize>,
@@ -71,14 +71,25 @@ impl File {
             document.extension_value(physics::SHAPES),
             &told,
         );
-        if shared.filters.len() > filters::MOST {
+        // In files of this crate, where one collider has a filter all have. No bits are left for another one.
+        let named = filters::named_groups(&shared);
+        let has_filter = |collider: &physics::Collider| {
+            collider
+                .filter
+                .is_some_and(|filter| filter < shared.filters.len())
+        };
+        let mut colliders = nodes
+            .iter()
+            .filter_map(|node| node.physics.collider.as_ref());
+        let named = named.filter(|_| colliders.all(has_filter));
+        if named.is_none() && shared.filters.len() > filters::MOST {
             let most = filters::MOST;
             told.tell(
                 physics::NAME,
                 format_args!("collisionFilters beyond the first {most} are taken as one"),
             );
         }
-        let groups = filters::groups(&shared);
+        let groups = named.unwrap_or_else(|| filters::groups(&shared));
         let mut file = Self {
             path,
             nodes,

@@ -13,15 +13,22 @@ pub(super) const NAME: &str = "KHR_physics_rigid_bodies";
 /// Name of the glTF extension that holds the shapes.
 pub(super) const SHAPES: &str = "KHR_implicit_shapes";
 
+/// Key in the `extras` of a `motion` for the mass and the inertia of a body whose axes are locked.
+pub(super) const UNLOCKED: &str = "BEVY_coilover_unlocked";
+
 /// The `motion` of a node: how its body moves.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Motion {
     pub(super) kinematic: bool,
     /// Mass, kg. Zero means infinite.
     pub(super) mass: Option<f32>,
+    /// Mass to which a body returns that is unlocked, kg. The draft has no such number; the export writes it.
+    pub(super) unlocked_mass: Option<f32>,
     pub(super) centre_of_mass: Option<Vec3>,
     /// Principal moments of inertia, kg m². Zero means infinite.
     pub(super) inertia: Option<Vec3>,
+    /// Principal moments of inertia to which a body returns that is unlocked, kg m².
+    pub(super) unlocked_inertia: Option<Vec3>,
     pub(super) inertia_frame: Quat,
     pub(super) linear_velocity: Vec3,
     pub(super) angular_velocity: Vec3,
@@ -272,14 +279,14 @@ impl NodePhysics {
     }
 }
 
-fn motion(object: &Object) -> Motion {
-    let not_negative = |key: &str| {
-        let value = object.finite(key)?;
-        if value < 0.0 {
-            object.tell(key, "is negative; left out");
+/// Returns the mass of an object, and its moments of inertia.
+fn mass_and_inertia(object: &Object) -> (Option<f32>, Option<Vec3>) {
+    let mass = object.finite("mass").filter(|mass| {
+        if *mass < 0.0 {
+            object.tell("mass", "is negative; left out");
         }
-        (value >= 0.0).then_some(value)
-    };
+        *mass >= 0.0
+    });
     let inertia = object.finite_vector("inertiaDiagonal").filter(|inertia| {
         let right = inertia.cmpge(Vec3::ZERO).all();
         if !right {
@@ -287,6 +294,19 @@ fn motion(object: &Object) -> Motion {
         }
         right
     });
+    (mass, inertia)
+}
+
+fn motion(object: &Object) -> Motion {
+    let (mass, inertia) = mass_and_inertia(object);
+    // Whatever else other programs write there is none of this crate's business.
+    let extras = object.raw("extras").and_then(|extras| extras.get(UNLOCKED));
+    let unlocked = extras.and_then(|value| {
+        let place = format!("{}.{UNLOCKED}", object.place_of("extras"));
+        Object::new(value, place, object.told())
+    });
+    let unlocked = unlocked.as_ref().map(mass_and_inertia);
+    let (unlocked_mass, unlocked_inertia) = unlocked.unwrap_or_default();
     let frame = object.numbers::<4>("inertiaOrientation").and_then(|xyzw| {
         let frame = Quat::from_array(xyzw);
         let right = frame.is_finite() && frame.length() > 1e-6 && frame.length() < 1e6;
@@ -297,9 +317,11 @@ fn motion(object: &Object) -> Motion {
     });
     Motion {
         kinematic: object.flag("isKinematic").unwrap_or(false),
-        mass: not_negative("mass"),
+        mass,
+        unlocked_mass,
         centre_of_mass: object.finite_vector("centerOfMass"),
         inertia,
+        unlocked_inertia,
         inertia_frame: frame.unwrap_or(Quat::IDENTITY),
         linear_velocity: object.finite_vector("linearVelocity").unwrap_or_default(),
         angular_velocity: object.finite_vector("angularVelocity").unwrap_or_default(),

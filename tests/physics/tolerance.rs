@@ -67,9 +67,6 @@ fn run(scene: Scene, plugin: CoiloverPlugin) -> (f64, u32, f64) {
         let readout = springs.iter(world).next().expect("an element");
         kicks += readout.microsteps;
         estimate += f64::from(readout.error);
-        if readout.capped {
-            eprintln!("CAPPED {:?}", readout);
-        }
     }
     (worst, kicks, estimate)
 }
@@ -86,6 +83,7 @@ fn the_error_of_the_first_second_is_near_the_tolerance() {
             let (error, kicks, _) = run(scene, plugin.with_extrapolation());
             fixed.push((error, kicks));
         }
+        let mut priced = 0;
         for tolerance in [1e-2, 1e-3, 1e-4] {
             let plugin = CoiloverPlugin::default().with_tolerance(tolerance);
             let (error, kicks, estimate) = run(scene, plugin);
@@ -102,9 +100,12 @@ fn the_error_of_the_first_second_is_near_the_tolerance() {
                 error <= 3.0 * f64::from(tolerance),
                 "{name}, {tolerance}: {error}"
             );
-            let price = price.unwrap_or(0.0);
+            // With a tolerance it is more exact than any of the fixed counts.
+            let Some(price) = price else { continue };
+            priced += 1;
             assert!(price < 2.0, "{name}, {tolerance}: {price}");
         }
+        assert!(priced > 0, "{name}");
     }
 }
 

@@ -59,6 +59,22 @@ fn at_its_length_it_is_disabled_and_can_be_mended() {
 }
 
 #[test]
+fn of_a_limit_on_both_the_one_that_is_reached_counts() {
+    let reached = [
+        Breakable::at_force(1e6).with_length(1.15),
+        Breakable::at_length(9.0).with_force(15.0),
+    ];
+    for breakable in reached {
+        let (mut lab, _, element) = rope(breakable);
+        lab.run(2.0);
+        assert!(lab.app.world().get_entity(element).is_err());
+    }
+    let (mut lab, _, element) = rope(Breakable::at_force(1e6).with_length(9.0));
+    lab.run(2.0);
+    assert!(lab.app.world().get_entity(element).is_ok());
+}
+
+#[test]
 fn a_stronger_one_holds() {
     let (mut lab, _, element) = rope(Breakable::at_force(21.0));
     lab.run(5.0);
