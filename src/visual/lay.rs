@@ -1,7 +1,7 @@
 //! Places the parts of elements, where [`place`](super::place) has found the elements.
 
 use super::heading::rotation;
-use super::layout::Part;
+use super::layout::{Part, nothing};
 use super::parts::Levels;
 use super::place::{Due, Placement};
 use super::skin::SpringSkin;
@@ -110,11 +110,6 @@ fn is_same(one: &Handle<Mesh>, other: &Handle<Mesh>) -> bool {
         (Handle::Strong(one), Handle::Strong(other)) if Arc::ptr_eq(one, other) => true,
         _ => one == other,
     }
-}
-
-/// Transform of a part that is not drawn.
-pub(super) fn nothing() -> GlobalTransform {
-    GlobalTransform::from_scale(Vec3::ZERO)
 }
 
 /// Transform of a part in the world. A part that never had a place has no size.

@@ -26,6 +26,11 @@ pub(super) const SHORT: f32 = 1e-5;
 /// Least share of the tube that holds the rod, however far the ends are pulled apart.
 const LEAST_OVERLAP: f32 = 0.05;
 
+/// Transform of a part that is not drawn.
+pub(super) fn nothing() -> GlobalTransform {
+    GlobalTransform::from_scale(Vec3::ZERO)
+}
+
 /// Sizes of an element's parts, m; zero for a part that it does not have.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Layout {

@@ -1,7 +1,7 @@
 //! Spirals of torsion elements: spawns their parts, turns them with the bodies, and winds them up.
 
 use super::bodies::Bodies;
-use super::lay::nothing;
+use super::layout::nothing;
 use super::made::Maker;
 use super::place::SELDOM;
 use super::shapes::{Finish, Shapes};
