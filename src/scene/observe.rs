@@ -252,15 +252,18 @@ impl ElementRow {
             Held::Path { .. } => DQuat::IDENTITY,
         });
         let length = inside.wound(facings, length, time, |twist| self.elastic(twist).energy);
+        let guide = self.rare.guide;
+        let places = points.map(|(place, _)| place);
         let moved = [0, 1].map(|end| {
-            let by = inside.moved(end, points[end].0, facings[end]);
+            let by = inside.moved(guide, end, places, facings);
             by.filter(|_| self.movable(end).is_none())
         });
+        let way = inside.way(guide, places, facings);
         self.inside = Some(inside);
         if self.rare.guide.is_twist() {
             self.rare.angle = length;
         }
-        self.arrive_inside(length, moved, time)
+        self.arrive_inside(length, moved, way, time)
     }
 }
 

@@ -8,6 +8,7 @@ pub(crate) use twist::Turn;
 
 use crate::backend::BodyId;
 use crate::dynamics::body::shortest;
+use crate::dynamics::guide::Guide;
 use crate::dynamics::line::Line;
 use crate::dynamics::pieces::Pieces;
 use bevy::math::{DQuat, DVec3};
@@ -125,14 +126,43 @@ impl Inside {
         length
     }
 
-    /// Displacement of an end over the step, m, or for a torsion element the rotation of its body, rad. Returns none if that is
-    /// zero. `place` and `facing` are the position of the end and the rotation of its body now.
-    pub(crate) fn moved(&self, end: usize, place: DVec3, facing: DQuat) -> Option<DVec3> {
-        let by = match &self.turn {
-            Some(_) => shortest(facing * self.facings[end].inverse()).to_scaled_axis(),
-            None => place - self.places[end],
-        };
+    /// Rotation of an end's body over the step.
+    fn turned(&self, end: usize, facings: [DQuat; 2]) -> DQuat {
+        facings[end] * self.facings[end].inverse()
+    }
+
+    /// Displacement over the step of the point at which an element acts on the body at an end, m, or for a torsion element the
+    /// rotation of the body, rad. Returns none if that is zero. `places` and `facings` are the positions of the ends and the
+    /// rotations of their bodies now.
+    pub(crate) fn moved(
+        &self,
+        guide: Guide,
+        end: usize,
+        places: [DVec3; 2],
+        facings: [DQuat; 2],
+    ) -> Option<DVec3> {
+        let turned = self.turned(end, facings);
+        if self.turn.is_some() {
+            let by = shortest(turned).to_scaled_axis();
+            return (by != DVec3::ZERO).then_some(by);
+        }
+        let mut by = places[end] - self.places[end];
+        if end == 0 && matches!(guide, Guide::OfA(_)) {
+            // It acts on A at the point of end B: at the one that is there in the middle of the step.
+            let arm = 0.5 * (self.places[1] - self.places[0] + places[1] - places[0]);
+            by += 0.5 * (turned * arm - turned.inverse() * arm);
+        }
         (by != DVec3::ZERO).then_some(by)
+    }
+
+    /// Mean direction over the step. An end that moves across the element, or turns its axis, does no work by that.
+    pub(crate) fn way(&self, guide: Guide, places: [DVec3; 2], facings: [DQuat; 2]) -> DVec3 {
+        let now = match guide {
+            Guide::Centres => (places[1] - places[0]).try_normalize(),
+            Guide::OfA(_) => Some(self.turned(0, facings) * self.direction),
+            Guide::World(_) | Guide::Twist(_) => None,
+        };
+        now.map_or(self.direction, |now| 0.5 * (self.direction + now))
     }
 }
 

@@ -22,6 +22,7 @@ mod fitted_cars;
 mod heap;
 mod hierarchy;
 mod hinge;
+mod led;
 mod links;
 mod mixed;
 mod motorcycle;

@@ -9,17 +9,19 @@ const KEPT: f64 = 0.8;
 
 impl ElementRow {
     /// Updates the element after a step of `time` seconds that ended with `length`. `moved` is the displacement (m) or rotation
-    /// (rad) of each end that elements cannot move. Returns the length and its mean rate over the step.
+    /// (rad) of each end that elements cannot move, `way` the mean direction of the element over the step. Returns the length and
+    /// its mean rate over the step.
     pub(crate) fn arrive_inside(
         &mut self,
         length: f64,
         moved: [Option<DVec3>; 2],
+        way: DVec3,
         time: f64,
     ) -> (f64, f64) {
         let Some(inside) = &self.inside else {
             return (length, 0.0);
         };
-        let (from, pieces, direction) = (inside.from, inside.pieces, inside.direction);
+        let (from, pieces) = (inside.from, inside.pieces);
         let rate = (length - from) / time;
         let middle = 0.5 * (from + length);
         let drag = self.drag(middle, rate);
@@ -33,7 +35,7 @@ impl ElementRow {
         let tension = pieces.tension(middle, 0.0) + drag;
         let mut work = 0.0;
         for (by, sign) in moved.into_iter().zip([-1.0, 1.0]) {
-            work += sign * tension * by.map_or(0.0, |by| by.dot(direction));
+            work += sign * tension * by.map_or(0.0, |by| by.dot(way));
         }
         if heat.is_finite() && work.is_finite() {
             self.ledger.dissipated += heat.max(0.0);
@@ -66,7 +68,7 @@ mod tests {
         };
         row.inside = Some(Box::new(inside));
         for _ in 0..steps {
-            row.arrive_inside(0.0, [None; 2], 1.0 / 60.0);
+            row.arrive_inside(0.0, [None; 2], DVec3::X, 1.0 / 60.0);
         }
         row.inside.map_or(0.0, |inside| inside.debt)
     }
