@@ -28,6 +28,8 @@ fn snapshots(c: &mut Criterion) {
         let kept = CoiloverSnapshot::take(app.world());
         let each = kept.bytes() / springs.max(1) as usize;
         println!("snapshot/{scene:?}: {springs} springs, {each} bytes for each");
+        // One that does not fit would be restored very fast.
+        assert_eq!(kept.restore(app.world_mut()), Ok(()));
         group.bench_function(BenchmarkId::new("take", springs), |b| {
             b.iter(|| black_box(CoiloverSnapshot::take(app.world())));
         });
@@ -38,6 +40,7 @@ fn snapshots(c: &mut Criterion) {
             b.iter(|| black_box(kept.clone()));
         });
         let kept = RapierSnapshot::take(app.world());
+        assert_eq!(kept.restore(app.world_mut()), Ok(()));
         group.bench_function(BenchmarkId::new("take of Rapier", springs), |b| {
             b.iter(|| black_box(RapierSnapshot::take(app.world())));
         });

@@ -150,8 +150,11 @@ fn snap(
 fn check(world: &mut World) -> Vec<Finding> {
     let held = world.query::<&SpringDamper>().iter(world).count();
     let mut out = vec![Finding::small("springs that held", held as f32, 0.5, "")];
+    let breaks = &world.resource::<Breaks>().0;
+    let (broken, all) = (breaks.len() as f32, LIMITS.len() as f32);
+    out.push(Finding::close("springs that broke", broken, all, "", 1e-3));
     let mut last = 0.0;
-    for (i, discs, force) in &world.resource::<Breaks>().0 {
+    for (i, discs, force) in breaks {
         let limit = LIMITS[*i];
         // The smallest number of discs that weighs more than the limit.
         let wanted = (limit / (DISC * GRAVITY)).ceil();

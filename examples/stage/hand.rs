@@ -114,6 +114,7 @@ fn pull(
         again.leave_time(time.elapsed_secs());
         let new = MouseSpring::new(grip.body, grip.anchor, grip.pointer);
         match spring.and_then(|spring| springs.get_mut(spring).ok()) {
+            Some(mut held) if held.body == grip.body => held.target = grip.pointer,
             Some(mut held) => *held = new,
             None => *spring = Some(commands.spawn(new).id()),
         }

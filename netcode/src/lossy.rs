@@ -86,6 +86,11 @@ impl Random {
     }
 }
 
+/// Greatest number of ticks by which a message may be dated ahead of this peer's clock: a second. Peers drift by a few ticks.
+const AHEAD: u32 = 60;
+/// Greatest number of messages that are held back. Two peers hold a few dozen.
+const MOST_HELD: usize = 4096;
+
 /// A received message that is not delivered yet.
 struct Held {
     due: u32,
@@ -131,12 +136,15 @@ impl LossySocket {
             let Some((sent, bytes)) = buffer[..length].split_first_chunk() else {
                 continue;
             };
+            // Anybody may send such bytes, as many as he likes, and with a tick that never comes.
+            let sent = u32::from_le_bytes(*sent);
+            if sent > self.clock.now().saturating_add(AHEAD) || self.held.len() >= MOST_HELD {
+                continue;
+            }
             let span = u64::from(self.weather.jitter) + 1;
             let more = (self.random.next_u64() % span) as u32;
             self.held.push(Held {
-                // Anybody may send such bytes.
-                due: u32::from_le_bytes(*sent)
-                    .saturating_add(self.weather.delay.saturating_add(more)),
+                due: sent.saturating_add(self.weather.delay.saturating_add(more)),
                 from,
                 bytes: bytes.to_vec(),
             });

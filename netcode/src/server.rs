@@ -150,6 +150,7 @@ impl Hosted {
             max_clients: 8,
             protocol_id: PROTOCOL,
             public_addresses: vec![address],
+            // Anybody may join, which is for tests on one machine. A game has keys: `ServerAuthentication::Secure`.
             authentication: ServerAuthentication::Unsecure,
         };
         let transport = NetcodeServerTransport::new(config, socket)?;

@@ -1,5 +1,6 @@
 //! Checks that the examples still look as they should after ten minutes in their windows. Nothing is drawn: each
-//! example watches the positions of its bodies. Runs half a minute of each by default, the whole time with `MINUTES=all`.
+//! example watches the positions of its bodies. Runs each for half a minute or
+//! until its check after the first restart by default, the whole time with `MINUTES=all`.
 
 #![allow(missing_docs, reason = "a test")]
 

@@ -23,10 +23,14 @@ pub struct Canvas {
     _alone: MutexGuard<'static, ()>,
 }
 
-/// Whether there is a graphics adapter. Prints a message if there is none.
+/// Whether there is a graphics adapter. Prints a message if there is none, and panics if `COILOVER_MUST_DRAW` is set.
 pub fn can_draw() -> bool {
     let can = offscreen::adapter().is_some();
     if !can {
+        assert!(
+            std::env::var_os("COILOVER_MUST_DRAW").is_none(),
+            "no graphics adapter"
+        );
         eprintln!(
             "SKIPPED: no graphics adapter on this machine (install mesa-vulkan-drivers for a software one)"
         );
