@@ -86,28 +86,36 @@ impl Parts {
                 json!({ "type": "plane", "plane": {} })
             }
             ColliderView::TriMesh(mesh) => {
-                let shape = std::ptr::from_ref(mesh.raw).addr();
-                let shared = self.shared_meshes.get(&shape).copied();
-                let mesh = shared
-                    .unwrap_or_else(|| self.mesh(shape, mesh.raw.vertices(), mesh.raw.indices()));
-                return Ok(Geometry::Mesh { mesh, hull: false });
+                let (raw, hull) = (mesh.raw, false);
+                let mesh = self.shared_mesh(raw, |parts| parts.mesh(raw.vertices(), raw.indices()));
+                return Ok(Geometry::Mesh { mesh, hull });
             }
             ColliderView::ConvexPolyhedron(hull) => {
-                let shape = std::ptr::from_ref(hull.raw).addr();
-                let shared = self.shared_meshes.get(&shape).copied();
-                let mesh = shared.unwrap_or_else(|| {
-                    let (points, triangles) = hull.raw.to_trimesh();
-                    self.mesh(shape, &points, &triangles)
+                let (raw, hull) = (hull.raw, true);
+                let mesh = self.shared_mesh(raw, |parts| {
+                    let (points, triangles) = raw.to_trimesh();
+                    parts.mesh(&points, &triangles)
                 });
-                return Ok(Geometry::Mesh { mesh, hull: true });
+                return Ok(Geometry::Mesh { mesh, hull });
             }
             _ => return Err("has a shape that glTF has not"),
         };
         Ok(Geometry::Shape(index(&mut self.shapes, shape)))
     }
 
-    /// Adds the mesh of the shape at an address.
-    fn mesh(&mut self, shape: usize, vertices: &[Vec3], triangles: &[[u32; 3]]) -> usize {
+    /// Returns the mesh of a shape, which `make` adds where it is not there yet.
+    fn shared_mesh<S>(&mut self, shape: &S, make: impl FnOnce(&mut Self) -> usize) -> usize {
+        let address = std::ptr::from_ref(shape).addr();
+        if let Some(mesh) = self.shared_meshes.get(&address) {
+            return *mesh;
+        }
+        let mesh = make(self);
+        self.shared_meshes.insert(address, mesh);
+        mesh
+    }
+
+    /// Adds a mesh.
+    fn mesh(&mut self, vertices: &[Vec3], triangles: &[[u32; 3]]) -> usize {
         let numbers_of = vertices.iter().flat_map(Vec3::to_array);
         let bytes = numbers_of.flat_map(f32::to_le_bytes).collect();
         let view = self.view(bytes, 34962);
@@ -126,9 +134,7 @@ impl Parts {
         let last = self.accessors.len() - 1;
         self.meshes.push(json!({ "primitives": [
             { "attributes": { "POSITION": last - 1 }, "indices": last }] }));
-        let mesh = self.meshes.len() - 1;
-        self.shared_meshes.insert(shape, mesh);
-        mesh
+        self.meshes.len() - 1
     }
 
     fn view(&mut self, bytes: Vec<u8>, target: u32) -> usize {

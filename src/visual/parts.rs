@@ -53,15 +53,12 @@ pub(super) struct Worn {
 impl Worn {
     /// Whether it differs from other looks in colours at most, and no parts are lost.
     fn is_shaped_as(&self, other: &Self) -> bool {
-        let same_coil = match (self.coil, other.coil) {
-            (Some(coil), Some(other)) => coil.with_color(other.color) == other,
-            (coil, other) => coil.is_none() && other.is_none(),
+        let without_colors = |looks: &Self| Self {
+            coil: looks.coil.map(|coil| coil.with_color(Color::NONE)),
+            telescope: looks.telescope.map(|t| t.with_color(Color::NONE)),
+            ..*looks
         };
-        let same_telescope = match (self.telescope, other.telescope) {
-            (Some(telescope), Some(other)) => telescope.with_color(other.color) == other,
-            (telescope, other) => telescope.is_none() && other.is_none(),
-        };
-        same_coil && same_telescope && self.has_parts == other.has_parts
+        without_colors(self) == without_colors(other)
     }
 }
 

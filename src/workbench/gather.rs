@@ -28,11 +28,12 @@ const FRAMES: usize = 16;
 /// Time between two sortings of the list, s. Changes of elements and names are taken up at the same times.
 const SORT: f32 = 0.25;
 
-/// Components that are read of a body: its kind, whether it sleeps, and its Rapier context.
+/// Components that are read of a body: its kind, whether it sleeps, its Rapier context, and its gravity scale.
 type Body<'a> = (
     &'a RigidBody,
     Option<&'a Sleeping>,
     Option<&'a RapierContextEntityLink>,
+    Option<&'a GravityScale>,
 );
 
 /// Parameters that read the world. The chosen element may be disabled; the panel says so.
@@ -54,7 +55,6 @@ pub(super) struct Look<'w, 's> {
     timestep: Option<Res<'w, TimestepMode>>,
     clock: Option<Res<'w, Time<Virtual>>>,
     real: Res<'w, Time<Real>>,
-    scales: Query<'w, 's, &'static GravityScale>,
     buttons: Option<Res<'w, ButtonInput<MouseButton>>>,
 }
 
@@ -243,17 +243,11 @@ impl Look<'_, '_> {
         let context = ends.into_iter().find_map(context);
         let configuration = context.and_then(|link| self.configurations.get(link.0).ok());
         let gravity = configuration.map_or(Vec3::ZERO, |configuration| configuration.gravity);
-        let movable = ends.into_iter().filter_map(|end| self.bearer(end));
-        let movable = movable.filter(|body| {
-            let kind = self.bodies.get(*body);
-            kind.is_ok_and(|(kind, ..)| *kind == RigidBody::Dynamic)
-        });
-        let scale = |body| self.scales.get(body).map_or(1.0, |scale| scale.0);
-        let scales = movable.map(scale);
-        gravity
-            * scales
-                .max_by(|a, b| a.abs().total_cmp(&b.abs()))
-                .unwrap_or(1.0)
+        let bodies = ends.into_iter().filter_map(|end| self.body(end));
+        let movable = bodies.filter(|(kind, ..)| **kind == RigidBody::Dynamic);
+        let scales = movable.map(|(.., scale)| scale.map_or(1.0, |scale| scale.0));
+        let greatest = scales.max_by(|a, b| a.abs().total_cmp(&b.abs()));
+        gravity * greatest.unwrap_or(1.0)
     }
 
     fn end(&self, entity: Entity, anchor: Vec3) -> End {
@@ -270,7 +264,7 @@ impl Look<'_, '_> {
             Some((RigidBody::Fixed, ..)) => EndKind::Fixed,
             Some(_) => EndKind::Kinematic,
         };
-        let asleep = body.and_then(|(_, sleeping, _)| sleeping);
+        let asleep = body.and_then(|(_, sleeping, ..)| sleeping);
         let name = self.named(entity);
         End {
             name: name.map_or_else(|| format!("{entity}"), Into::into),

@@ -292,6 +292,16 @@ fn a_skin_of_hardly_any_length_is_told_once_and_never_gets_an_endless_scale() {
     }
 }
 
+/// Materials of one kind on the parts of an element.
+fn materials<M: Material>(lab: &Lab, element: Entity) -> Vec<AssetId<M>> {
+    let of = |part: &Entity| {
+        let material = lab.app.world().get::<MeshMaterial3d<M>>(*part);
+        material.map(|material| material.0.id())
+    };
+    let parts = lab.get::<Children>(element);
+    parts.iter().filter_map(|part| of(&part)).collect()
+}
+
 /// A game colours a spring by its force in every frame. Its parts stay the same entities, and so do their meshes.
 #[test]
 fn other_colours_repaint_the_parts_and_the_same_looks_leave_them_alone() {
@@ -300,26 +310,8 @@ fn other_colours_repaint_the_parts_and_the_same_looks_leave_them_alone() {
     let element = lab.spawn(coilover(a, b));
     lab.run(0.1);
     let children = |lab: &Lab| lab.get::<Children>(element).to_vec();
-    let paints = |lab: &Lab| {
-        let paint = |part: &Entity| {
-            let paint = lab
-                .app
-                .world()
-                .get::<MeshMaterial3d<StandardMaterial>>(*part);
-            paint.map(|paint| paint.0.id())
-        };
-        children(lab).iter().filter_map(paint).collect::<Vec<_>>()
-    };
-    let wires = |lab: &Lab| {
-        let wire = |part: &Entity| {
-            let wire = lab
-                .app
-                .world()
-                .get::<MeshMaterial3d<RoundWireMaterial>>(*part);
-            wire.map(|wire| wire.0.id())
-        };
-        children(lab).iter().filter_map(wire).collect::<Vec<_>>()
-    };
+    let paints = |lab: &Lab| materials::<StandardMaterial>(lab, element);
+    let wires = |lab: &Lab| materials::<RoundWireMaterial>(lab, element);
     let (first, paint, wire) = (children(&lab), paints(&lab), wires(&lab));
     lab.get_mut::<Coil>(element).color = Color::BLACK;
     lab.tick();

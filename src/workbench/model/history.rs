@@ -80,11 +80,13 @@ impl History {
     /// Returns the numbers that an element would have without its edits. `now` are its present numbers. `None` if it has no
     /// edits.
     pub fn without(&self, entity: Entity, now: &Snapshot) -> Option<Snapshot> {
-        let mut out = now.clone();
-        for edit in self.done.iter().rev().filter(|edit| edit.entity == entity) {
-            out.carry(&edit.after, &edit.before);
-        }
-        self.has(entity).then_some(out)
+        self.has(entity).then(|| {
+            let mut out = now.clone();
+            for edit in self.done.iter().rev().filter(|edit| edit.entity == entity) {
+                out.carry(&edit.after, &edit.before);
+            }
+            out
+        })
     }
 }
 

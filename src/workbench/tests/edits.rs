@@ -84,10 +84,7 @@ fn a_number_that_is_clicked_but_not_typed_stays_as_it_is() {
     assert_eq!(person.lamp().stiffness, 100.0 / 3.0);
     assert_eq!(edits(&person), [None, None]);
     // What is typed is read, also if it is nearly the same.
-    person.click("33.3333 N/m");
-    person.type_text("33.33");
-    person.key(KeyCode::Enter);
-    person.run(2);
+    person.enter("33.3333 N/m", "33.33");
     assert_eq!(person.lamp().stiffness, 33.33);
     assert_eq!(edits(&person), [Some("a number"), None]);
 }
@@ -163,10 +160,7 @@ fn two_numbers_typed_one_after_the_other_are_two_edits() {
     person.click("Lamp spring");
     person.click("80 N/m");
     person.type_text("90");
-    person.click("1.5 N s/m");
-    person.type_text("2");
-    person.key(KeyCode::Enter);
-    person.run(2);
+    person.enter("1.5 N s/m", "2");
     let numbers = |person: &Person| (person.lamp().stiffness, person.lamp().damping);
     assert_eq!(numbers(&person), (90.0, 2.0));
     person.click("Undo");
@@ -181,10 +175,7 @@ fn two_numbers_typed_one_after_the_other_are_two_edits() {
 fn undo_while_a_number_is_typed_takes_that_number_back() {
     let mut person = Person::at_the_bench();
     person.click("Lamp spring");
-    person.click("1.5 N s/m");
-    person.type_text("2");
-    person.key(KeyCode::Enter);
-    person.run(2);
+    person.enter("1.5 N s/m", "2");
     person.click("80 N/m");
     person.type_text("90");
     person.click("Undo");

@@ -235,14 +235,20 @@ fn nothing_is_pulled_below_the_panel_or_without_the_key() {
     assert!(!person.sees("pulls a body"));
 }
 
-#[test]
-fn a_body_that_is_gone_is_let_go() {
+/// A person who holds the lamp. Returns the lamp too.
+fn holding_the_lamp() -> (Person, Entity) {
     let mut person = Person::at_the_bench();
     let lamp = body(&person, person.lamp);
     person.hold(KeyCode::ShiftLeft, ButtonState::Pressed);
     person.press_at(project(place(&person, lamp), EYE));
     person.run(5);
     assert_eq!(springs_of_a_hand(&mut person), 1);
+    (person, lamp)
+}
+
+#[test]
+fn a_body_that_is_gone_is_let_go() {
+    let (mut person, lamp) = holding_the_lamp();
     person.app.world_mut().entity_mut(lamp).despawn();
     person.run(5);
     assert_eq!(springs_of_a_hand(&mut person), 0);
@@ -331,12 +337,7 @@ fn a_press_on_the_panel_reaches_neither_the_scene_nor_the_game() {
 
 #[test]
 fn a_drag_that_reaches_the_panel_ends_there() {
-    let mut person = Person::at_the_bench();
-    let lamp = body(&person, person.lamp);
-    person.hold(KeyCode::ShiftLeft, ButtonState::Pressed);
-    person.press_at(project(place(&person, lamp), EYE));
-    person.run(3);
-    assert_eq!(springs_of_a_hand(&mut person), 1);
+    let (mut person, _) = holding_the_lamp();
     let list = person.place("Lamp spring").expect("in the list");
     person.move_to(list);
     person.run(3);

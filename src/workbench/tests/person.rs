@@ -60,24 +60,23 @@ fn read(outputs: Query<&EguiFullOutput>, mut seen: ResMut<Seen>) {
     }
 }
 
-/// Returns the position of a point of the world in the window, logical pixels.
-pub fn project(at: Vec3, eye: Vec3) -> Vec2 {
-    let projection = PerspectiveProjection {
+fn lens() -> Projection {
+    Projection::Perspective(PerspectiveProjection {
         aspect_ratio: SIZE.x as f32 / SIZE.y as f32,
         ..default()
-    };
-    let to_clip = Projection::Perspective(projection).get_clip_from_view();
+    })
+}
+
+/// Returns the position of a point of the world in the window, logical pixels.
+pub fn project(at: Vec3, eye: Vec3) -> Vec2 {
+    let to_clip = lens().get_clip_from_view();
     let clip = to_clip.project_point3(at - eye);
     Vec2::new(0.5 + 0.5 * clip.x, 0.5 - 0.5 * clip.y) * SIZE.as_vec2()
 }
 
 /// Spawns a camera.
 pub fn spawn_eye(world: &mut World) -> Entity {
-    let projection = PerspectiveProjection {
-        aspect_ratio: SIZE.x as f32 / SIZE.y as f32,
-        ..default()
-    };
-    let projection = Projection::Perspective(projection);
+    let projection = lens();
     let mut camera = Camera::default();
     camera.computed.clip_from_view = projection.get_clip_from_view();
     camera.computed.target_info = Some(RenderTargetInfo {
@@ -342,6 +341,14 @@ impl Person {
             other => panic!("no such key: {other:?}"),
         };
         self.press(key, logical, None);
+    }
+
+    /// Clicks a number, types another one, and waits until it acts.
+    pub fn enter(&mut self, number: &str, text: &str) {
+        self.click(number);
+        self.type_text(text);
+        self.key(KeyCode::Enter);
+        self.run(2);
     }
 
     pub fn type_text(&mut self, text: &str) {

@@ -7,10 +7,7 @@ use bevy::prelude::*;
 fn a_frequency_is_typed_and_the_stiffness_follows() {
     let mut person = Person::at_the_bench();
     person.click("Lamp spring");
-    person.click("1.00658 Hz");
-    person.type_text("2,5");
-    person.key(KeyCode::Enter);
-    person.run(2);
+    person.enter("1.00658 Hz", "2,5");
     let expected = 2.0 * (std::f32::consts::TAU * 2.5).powi(2);
     let stiffness = person.lamp().stiffness;
     assert!((stiffness / expected - 1.0).abs() < 1e-4, "{stiffness} N/m");
@@ -25,10 +22,7 @@ fn a_damping_ratio_is_typed_and_the_damping_follows() {
     let mut person = Person::at_the_bench();
     person.click("Lamp spring");
     // 1.5/(2 √(80 · 2)).
-    person.click("0.0592927");
-    person.type_text("1");
-    person.key(KeyCode::Enter);
-    person.run(2);
+    person.enter("0.0592927", "1");
     let lamp = person.lamp();
     let critical = 2.0 * (80.0_f32 * 2.0).sqrt();
     assert!((lamp.damping / critical - 1.0).abs() < 1e-4, "{lamp:?}");
@@ -50,10 +44,7 @@ fn a_sag_is_typed_and_the_load_stays_where_it_rests() {
     };
     let before = height(&mut person);
     // 2 · 9.81/80.
-    person.click("0.24525 m");
-    person.type_text("0.1");
-    person.key(KeyCode::Enter);
-    person.run(2);
+    person.enter("0.24525 m", "0.1");
     let lamp = person.lamp();
     assert!((lamp.stiffness - 196.2).abs() < 0.01, "{lamp:?}");
     let rest = lamp.rest_length.expect("a rest length");

@@ -27,10 +27,7 @@ fn a_nan_of_the_games_is_no_edit_and_can_be_typed_over() {
     assert!(person.sees("SpringDamper::stiffness is NaN"));
     // The undone edit can still be redone.
     assert_eq!(edits(&person), [None, Some("a number")]);
-    person.click("NaN N/m");
-    person.type_text("90");
-    person.key(KeyCode::Enter);
-    person.run(2);
+    person.enter("NaN N/m", "90");
     assert_eq!(person.lamp().stiffness, 90.0);
     assert_eq!(edits(&person), [Some("a number"), None]);
 }

@@ -82,8 +82,8 @@ impl Kept {
         self.left.extend(left.map(|(context, inside)| {
             let mut inside = KeptInside::of(inside);
             // Rapier removes joints with their bodies. In a pause, the rest of what is left stays in the engine.
+            let joints = world.get::<RapierContextJoints>(*context);
             inside.joints.retain(|kept| {
-                let joints = world.get::<RapierContextJoints>(*context);
                 joints.is_some_and(|all| all.impulse_joints.contains(joint_handle(kept.id)))
             });
             (*context, inside)
